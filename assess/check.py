@@ -11,18 +11,22 @@ A check is one file here or in assess.strength, its line in assess.checks, and i
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, Protocol
 
 import numpy as np
 
 from assess.margin import Kind, Level, Margin, skipped, strength_key
 from assess.situation import Situation
+from assess.work import Work, scaled
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from geometry import Band
 from pinbase.arrays import Floats
 
+# By the number of a place: the work of the allowable there; the name and the length of a dimension,
+# and the power of it with which the allowable grows.
+Shown = Callable[[int], tuple[Work, str, float, float]]
 Takes = Literal["results", "loads", "statics", "section forces"]
 Scope = Literal["case", "pin"]
 Rupture = Literal["shear", "bearing", "ultimate"]
@@ -77,7 +81,7 @@ class CheckText:
     """The text that is printed of a check, and the margins that carry it.
 
     level: at which the check is made, where `at_levels` does not make it at both. dimension: of its
-    demand.
+    demand. scatter: of the method against tests. omits: what it does not cover.
     """
 
     method: str
@@ -85,6 +89,8 @@ class CheckText:
     kind: Kind
     level: Level = "limit"
     dimension: str = "stress"
+    scatter: str = ""
+    omits: str = ""
 
     def at_levels(
         self,
@@ -122,11 +128,12 @@ class CheckText:
         allowable: Floats,
         at: tuple[str, ...],
         basis: str = "",
+        shown: Shown | None = None,
     ) -> Margin:
         """The worst of demands (T, S) with allowables (S,) at S places, called `at`, at the
-        instants of the loads.
+        instants of the loads. shown: the work of the allowable at a place, by its number.
         """
-        return self._worst(s, s.loads.times, demand, allowable, at, basis)
+        return self._worst(s, s.loads.times, demand, allowable, at, basis, shown)
 
     def _worst(
         self,
@@ -136,28 +143,42 @@ class CheckText:
         allowable: Floats,
         at: tuple[str, ...],
         basis: str,
+        shown: Shown | None,
     ) -> Margin:
         used = demand / allowable
         t, k = np.unravel_index(np.argmax(used), used.shape)
-        return Margin(
+        margin = Margin(
             self.method, self.clause, self.kind, self.level, s.factors.at(self.level),
             float(demand[t, k]), float(allowable[k]), self.dimension, at[int(k)],
-            time=None if times is None else float(times[t]), basis=basis,
+            time=None if times is None else float(times[t]), basis=basis, omits=self.omits,
         )  # fmt: skip
+        if shown is None:
+            return margin
+        formula, symbol, length, power = shown(int(k))
+        passing = scaled(symbol, length, margin.used, power)
+        return replace(margin, work=(formula,), passing=passing)
 
-    def along(self, s: Situation, demand: Floats, allowable: Floats, note: str = "") -> Margin:
+    def along(
+        self,
+        s: Situation,
+        demand: Floats,
+        allowable: Floats,
+        note: str = "",
+        shown: Shown | None = None,
+    ) -> Margin:
         """The worst of demands (T, S) with allowables (S,) at the stations of the section forces,
-        or at one place that stands for all.
+        or at one place that stands for all. shown: as in `worst`.
         """
         forces = s.forces
         at = forces.labels if demand.shape[1] == len(forces.labels) else ("",)
         basis = "; ".join(x for x in (forces.basis, note) if x)
-        return self._worst(s, forces.times, demand, allowable, at, basis)
+        return self._worst(s, forces.times, demand, allowable, at, basis, shown)
 
     def lacks(self, s: Situation, *needs: str) -> Margin:
         """The margin of the check where it is not made, for want of something."""
         factor = s.factors.at(self.level)
-        return skipped(self.method, self.clause, self.kind, self.level, factor, ", ".join(needs))
+        margin = skipped(self.method, self.clause, self.kind, self.level, factor, ", ".join(needs))
+        return replace(margin, omits=self.omits)
 
 
 Make = Callable[[CheckText, Situation], Sequence[Margin]]
@@ -185,8 +206,10 @@ def check(
     level: Level = "limit",
     dimension: str = "stress",
     scope: Scope = "case",
+    scatter: str = "",
+    omits: str = "",
 ) -> Callable[[Make], FunctionCheck]:
     """A decorator that makes a check of a function; arguments as in `Check` and `CheckText`."""
     return lambda make: FunctionCheck(
-        method, clause, kind, level, dimension, takes=takes, scope=scope, make=make
+        method, clause, kind, level, dimension, scatter, omits, takes=takes, scope=scope, make=make
     )

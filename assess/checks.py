@@ -6,10 +6,23 @@ and terminal then have it. The order is that of margins.csv.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from itertools import groupby
+from types import MappingProxyType
 
 from assess.check import Check, Scope
+from assess.clauses import (
+    affdl_joint,
+    affdl_lugs,
+    affdl_pins,
+    aisc_d5,
+    bth1,
+    ekvall,
+    melcon_hoblit,
+)
+from assess.clauses.lug_checks import lug_checks
+from assess.codes import DEFAULT_CODES, Code
 from assess.margin import Margin, for_comparison
 from assess.situation import Situation
 from assess.strength import eurocode_pins
@@ -22,7 +35,7 @@ from assess.strength.hand_checks import (
     mean_shear,
     neutral_axis_shear,
 )
-from assess.strength.lug_checks import lug_checks
+from assess.strength.lug_stress import lug_stress
 from assess.strength.model_stress import model_rupture, model_yield
 from assess.strength.plastic_bending import plastic_bending
 from assess.strength.section_forces import with_section_forces
@@ -30,6 +43,7 @@ from assess.strength.section_forces import with_section_forces
 CHECKS: tuple[Check, ...] = (
     model_yield,
     model_rupture,
+    lug_stress,
     collapse,
     mean_shear,
     neutral_axis_shear,
@@ -47,6 +61,44 @@ CHECKS: tuple[Check, ...] = (
     eurocode_pins.eurocode_bending_replaceable,
     fatigue_life,
 )
+EVERYWHERE = tuple(
+    check for check in CHECKS
+    if check.kind in ("model", "collapse", "fatigue", "hand") and check is not lug_checks
+)  # fmt: skip
+AIRCRAFT: tuple[Check, ...] = (
+    affdl_lugs.affdl_bearing,
+    affdl_lugs.affdl_net_section,
+    affdl_lugs.affdl_bushing,
+    melcon_hoblit.shear_bearing,
+    melcon_hoblit.tension,
+    melcon_hoblit.lug_yield,
+    melcon_hoblit.transverse,
+    melcon_hoblit.transverse_yield,
+    melcon_hoblit.oblique,
+    ekvall.ekvall_transverse,
+    ekvall.ekvall_bore_stress,
+    affdl_joint.affdl_joint,
+    affdl_pins.pin_shear,
+    affdl_pins.pin_bending,
+)
+LIFTING: tuple[Check, ...] = (
+    bth1.bth1_tension,
+    bth1.bth1_fracture,
+    bth1.bth1_shear,
+    bth1.bth1_bearing,
+)
+CIVIL: tuple[Check, ...] = (
+    *(check for check in CHECKS if check.kind == "clause"),
+    aisc_d5.aisc_member,
+)
+SETS: Mapping[Code, tuple[Check, ...]] = MappingProxyType(
+    {
+        "general": CHECKS,
+        "aircraft": (*EVERYWHERE, *AIRCRAFT),
+        "lifting": (*EVERYWHERE, *LIFTING),
+        "civil": (*EVERYWHERE, *CIVIL),
+    }
+)
 
 
 def margins_of(
@@ -54,11 +106,14 @@ def margins_of(
 ) -> list[Margin]:
     """All margins of a situation, at every place and level, in the order of the checks.
 
-    scope: of the checks that are made. checks: CHECKS if None.
+    A check that several chosen codes have is made once, with the largest of their factors.
+
+    scope: of the checks that are made. checks: those of the situation's codes if None.
 
     Raises: as `with_section_forces`.
     """
-    wanted = CHECKS if checks is None else checks
+    chosen = dict.fromkeys(check for code in s.codes for check in SETS[code])
+    wanted = chosen if checks is None else checks
     made = [check for check in wanted if check.scope == scope and _can_be_made(check, s)]
     every = list(with_section_forces(s)) if any(map(_takes_forces, made)) else []
     # Neighbours that take section forces are made together, once with each kind of these.
@@ -83,4 +138,17 @@ def _can_be_made(check: Check, s: Situation) -> bool:
 def _together(checks: list[Check], situations: Iterable[Situation]) -> Iterator[Margin]:
     for s in situations:
         for check in checks:
-            yield from check(s) if s.governs else map(for_comparison, check(s))
+            margins = _with_code(check, s)
+            yield from margins if s.governs else map(for_comparison, margins)
+
+
+def _with_code(check: Check, s: Situation) -> Iterable[Margin]:
+    """The margins of a check with the factors of the codes that have it, and their names."""
+    if s.codes == DEFAULT_CODES:
+        return check(s)
+    codes = [code for code in s.codes if check in SETS[code]]
+    factors = max(
+        (s.factors.of_code(code) for code in codes), key=lambda f: f.fitting, default=s.factors
+    )
+    name = ", ".join(codes)
+    return [replace(m, code=name) for m in check(replace(s, factors=factors))]

@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
+from assess.work import Quantity, Work
 from pinbase.dimensions import Length, Time
 
 Kind = Literal["hand", "clause", "model", "collapse", "fatigue", "contact"]
@@ -34,6 +35,10 @@ class Margin:
     the demand, for people.
     needs: what is missing where the check was not made. governs: whether the margin counts; if not,
     it is there for comparison.
+    code: the sets of checks to which it belongs (assess.checks), where the study chooses some.
+    work: the formulas of the allowable with their numbers. passing: the dimension that would just
+    pass, by its key. scatter: of the method against tests, where it was measured. omits: what the
+    check does not cover.
     """
 
     method: str
@@ -52,6 +57,11 @@ class Margin:
     formula: str = ""
     needs: str = ""
     governs: bool = True
+    code: str = ""
+    work: tuple[Work, ...] = ()
+    passing: Quantity | None = None
+    scatter: str = ""
+    omits: str = ""
 
     @property
     def dimension_of(self) -> dict[str, str]:
@@ -142,8 +152,9 @@ def _with_formula(margin: Margin) -> Margin:
 
 def _without_place(margin: Margin) -> Margin:
     return replace(
-        margin, demand=None, allowable=None, at="", z=None, time=None, basis="", formula=""
-    )
+        margin, demand=None, allowable=None, at="", z=None, time=None, basis="", formula="",
+        work=(), passing=None,
+    )  # fmt: skip
 
 
 def strength_key(material: str, which: str) -> str:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from assess.codes import DEFAULT_CODES, FITTING_FACTORS, Code
 from assess.fatigue.records import PointFatigue
+from assess.lug_factors import LugFactors
 from assess.margin import Level
 from assess.plastic.records import LimitLoad
 from fea.beam.round_section import Circle
@@ -18,13 +20,17 @@ from fea.core.material import Material
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.support.lugs.lug import Lug
-from fea.support.records import JointForces
+from fea.support.records import JointForces, LugStress
 from geometry import ArgumentError, Pin
 from pinbase.arrays import Floats
+
+if TYPE_CHECKING:
+    from fea.lug.in_joint import ShankAngle  # with the elements of lugs
 
 MAX_LEFT_COUPLE = 0.01  # couple that balance leaves, of the largest force times the pin's length
 SUPPORT_COUNT = 2  # lugs of a structure whose forces follow from equilibrium
 NO_LOADS = PinLoads("", (), np.zeros((1, 0, 3)))
+
 
 ForcesKind = Literal["even", "concentrated", "joint"]
 
@@ -32,7 +38,8 @@ ForcesKind = Literal["even", "concentrated", "joint"]
 @dataclass(frozen=True)
 class LoadFactors:
     """Factors on the loads of a study: at limit load (against yield), at ultimate load (against
-    rupture and collapse), and of fittings, which multiplies both.
+    rupture and collapse), and of fittings, which multiplies both. fitting_stated: whether the study
+    states the last, which then replaces that of a code.
 
     Source: 14 CFR 25.301 and 25.303 (limit and ultimate loads), 25.625 (fitting factor).
     """
@@ -40,6 +47,14 @@ class LoadFactors:
     limit: float = 1.0
     ultimate: float = 1.5
     fitting: float = 1.0
+    fitting_stated: bool = False
+
+    def of_code(self, code: Code) -> LoadFactors:
+        """The factors with the fitting factor of a code where the study states none."""
+        demanded = FITTING_FACTORS.get(code)
+        if demanded is None or self.fitting_stated:
+            return self
+        return replace(self, fitting=demanded)
 
     def at(self, level: Level) -> float:
         """The factor on demands at a level."""
@@ -157,6 +172,11 @@ class Situation:
     ones that the study chooses; others are beside them. governs: whether margins with them count.
 
     row: what was solved of the pin in this case; fatigue: over all cases.
+
+    codes: the sets of checks that the study chooses (assess.checks). design_factor: N_d of ASME
+    BTH-1. bending_factor: the modulus of rupture of the pin over its ultimate strength.
+    lug_factors: efficiency factors of lugs, by connection. lug_stresses: of those whose shank is
+    known; shank_angles: the directions of these shanks, by connection.
     """
 
     profile: Pin | None
@@ -176,6 +196,16 @@ class Situation:
     governs: bool = True
     row: SolvedRow | None = None
     fatigue: PinFatigue | None = None
+    codes: tuple[Code, ...] = DEFAULT_CODES
+    design_factor: float | None = None
+    bending_factor: float | None = None
+    lug_factors: Mapping[str, LugFactors] = field(default_factory=dict)
+    lug_stresses: tuple[LugStress, ...] = ()
+    shank_angles: Mapping[str, ShankAngle] = field(default_factory=dict)
+
+    def factors_of(self, connection: str) -> LugFactors:
+        """The efficiency factors of a lug."""
+        return self.lug_factors.get(connection, LugFactors())
 
     @property
     def pin(self) -> Pin:

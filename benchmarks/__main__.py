@@ -22,6 +22,7 @@ from benchmarks.joints import (
     joint,
     joint_ccx,
     joint_derivatives,
+    lugs,
     places,
 )
 from benchmarks.motion import motion_accuracy, peers_drop, peers_motion, scissor
@@ -71,6 +72,7 @@ ACCURACY = {
     "edge-peak": edge_peak.edge_peak,
     "places": places.places,
     "cells": cells.cells,
+    "lugs": lugs.lugs,
     "fillet": accuracy.fillet,
     "reliability": reliability.reliability,
     "publications": publications.publications,

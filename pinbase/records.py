@@ -9,6 +9,7 @@ the annotation to that of the object; it holds for all that the object holds.
 
 from __future__ import annotations
 
+import hashlib
 import io
 import json
 import math
@@ -79,6 +80,20 @@ def pack(value: object) -> bytes:
     named[JSON_ENTRY] = np.frombuffer(text.encode(), np.uint8)
     np.savez(file, **named)  # type: ignore[arg-type]
     return file.getvalue()
+
+
+def digest(value: object) -> str:
+    """Return a hash of a value, as `pack` takes it; equal values have equal ones.
+
+    Raises: TypeError as `pack`.
+    """
+    arrays: list[Array] = []
+    text = json.dumps(_written(value, arrays), separators=(",", ":"))
+    content = hashlib.sha256(text.encode())
+    for array in arrays:
+        content.update(f"{array.dtype.str}{array.shape}".encode())
+        content.update(array.tobytes())
+    return content.hexdigest()
 
 
 def unpack(kind: type[T], data: bytes) -> T:

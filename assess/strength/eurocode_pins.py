@@ -2,7 +2,7 @@
 
     shear                 F_v,Rd = 0.6 A f_up / gamma_M2
     bearing               F_b,Rd = 1.5 t d f_y / gamma_M0
-    bending               M_Rd = 1.5 W_el f_yp / gamma_M0
+    bending               M_Rd = 1.5 W_el f_yp / gamma_M0, at most W_pl f_yp / gamma_M0
     shear and bending     (M_Ed / M_Rd)^2 + (F_v,Ed / F_v,Rd)^2 <= 1
 
 and where a pin is meant to be replaced, at the loads of service,
@@ -10,6 +10,9 @@ and where a pin is meant to be replaced, at the loads of service,
     bearing               F_b,Rd,ser = 0.6 t d f_y / gamma_M6,ser
     bending               M_Rd,ser = 0.8 W_el f_yp / gamma_M6,ser
     contact               sigma_h,Ed = 0.591 sqrt(E F (d0 - d) / (d^2 t)) <= 2.5 f_y / gamma_M6,ser
+
+1.5 W_el is more than the fully plastic W_pl of a hollow pin whose bore is above 0.63 of its
+diameter, by 4.5 % at 0.75; no section has more than W_pl (EN 1993-1-1, 6.2.5).
 
 The first group is checked at ultimate, the second at limit load. f_y is the lower of the pin's and
 the lug's. For the interaction the largest moment and the largest shear of an instant are taken
@@ -28,6 +31,7 @@ import numpy as np
 from assess.check import CheckText, check
 from assess.margin import RATIO_DIMENSION, Margin, strength_key
 from assess.situation import SectionForces, Situation
+from assess.work import Work, work
 from pinbase.arrays import Floats
 
 GAMMA_M0, GAMMA_M2, GAMMA_M6_SER = 1.0, 1.25, 1.0  # recommended partial factors; 2.2 of the same
@@ -60,14 +64,20 @@ def bearing_resistance(
 
 
 def bending_resistance(
-    modulus: Floats | float, strength: float, *, replaceable: bool = False
+    modulus: Floats | float,
+    strength: float,
+    *,
+    plastic: Floats | float = math.inf,
+    replaceable: bool = False,
 ) -> Floats | float:
     """The bending resistance M_Rd, N m, or M_Rd,ser of a replaceable pin.
 
-    modulus: section modulus, m^3.
+    modulus, plastic: elastic and plastic section modulus, m^3.
     strength: yield strength, Pa.
     """
-    return (0.8 / GAMMA_M6_SER if replaceable else 1.5 / GAMMA_M0) * modulus * strength
+    if replaceable:
+        return 0.8 * modulus * strength / GAMMA_M6_SER
+    return np.minimum(1.5 * modulus, plastic) * strength / GAMMA_M0
 
 
 def double_shear_moment(force: float, outer: float, middle: float, gap: float) -> float:
@@ -104,7 +114,17 @@ def eurocode_shear(text: CheckText, s: Situation) -> list[Margin]:
         return []
     if fu is None:
         return [text.lacks(s, strength_key(s.material.name, "ultimate"))]
-    return [text.along(s, s.forces.shear, _sheared(s.forces, fu))]
+
+    def shown(k: int) -> tuple[Work, str, float, float]:
+        section = s.forces.sections[k]
+        resisted = work(
+            "F_v,Rd", float(shear_resistance(section.area, fu)), "force",
+            "0.6 × {A} × {f_up} / {γ_M2}", A=(section.area, "length^2"), f_up=(fu, "stress"),
+            γ_M2=(GAMMA_M2, "1"),
+        )  # fmt: skip
+        return resisted, "diameter", 2.0 * section.outer, 2.0
+
+    return [text.along(s, s.forces.shear, _sheared(s.forces, fu), shown=shown)]
 
 
 @_by_forces("EN 1993 bending", level="ultimate", dimension="moment")
@@ -173,8 +193,8 @@ def _sheared(forces: SectionForces, ultimate: float) -> Floats:
 
 
 def _bent(forces: SectionForces, strength: float, *, replaceable: bool = False) -> Floats:
-    modulus = forces.of_sections("modulus")
-    return np.asarray(bending_resistance(modulus, strength, replaceable=replaceable))
+    W_el, W_pl = forces.of_sections("modulus"), forces.of_sections("plastic_modulus")
+    return np.asarray(bending_resistance(W_el, strength, plastic=W_pl, replaceable=replaceable))
 
 
 def _bending(text: CheckText, s: Situation, *, replaceable: bool = False) -> list[Margin]:
@@ -183,7 +203,24 @@ def _bending(text: CheckText, s: Situation, *, replaceable: bool = False) -> lis
         return []
     if fy is None:
         return [text.lacks(s, strength_key(s.material.name, "yield"))]
-    return [text.along(s, s.forces.moment, _bent(s.forces, fy, replaceable=replaceable))]
+
+    def shown(k: int) -> tuple[Work, str, float, float]:
+        section = s.forces.sections[k]
+        W_el, W_pl = section.modulus, section.plastic_modulus
+        resisted = bending_resistance(W_el, fy, plastic=W_pl, replaceable=replaceable)
+        strength, moduli = {"f_yp": (fy, "stress")}, {"W_el": (W_el, "length^3")}
+        if replaceable:
+            formula = "0.8 × {W_el} × {f_yp} / {γ_M6}"
+            moment = work("M_Rd,ser", float(resisted), "moment", formula, **moduli, **strength,
+                          γ_M6=(GAMMA_M6_SER, "1"))  # fmt: skip
+        else:
+            formula = "min(1.5 × {W_el}, {W_pl}) × {f_yp} / {γ_M0}"
+            moment = work("M_Rd", float(resisted), "moment", formula, **moduli, **strength,
+                          W_pl=(W_pl, "length^3"), γ_M0=(GAMMA_M0, "1"))  # fmt: skip
+        return moment, "diameter", 2.0 * section.outer, 3.0
+
+    bent = _bent(s.forces, fy, replaceable=replaceable)
+    return [text.along(s, s.forces.moment, bent, shown=shown)]
 
 
 def _lower_strengths(s: Situation) -> tuple[list[float], list[str]]:
@@ -210,7 +247,18 @@ def _bearing(text: CheckText, s: Situation, *, replaceable: bool = False) -> lis
     )
     bare = [name for name in s.loads.surfaces if s.lug(name) is None]
     basis = f"strength of the pin alone at {', '.join(bare)}: no lug given" if bare else ""
-    return [text.worst(s, s.across, resisted, s.loads.surfaces, basis)]
+    factor = "0.6" if replaceable else "1.5"
+
+    def shown(k: int) -> tuple[Work, str, float, float]:
+        band, gamma = bands[k], GAMMA_M6_SER if replaceable else GAMMA_M0
+        bears = work(
+            "F_b,Rd", float(resisted[k]), "force", f"{factor} × {{t}} × {{d}} × {{f_y}} / {{γ}}",
+            t=(band.length, "length"), d=(2.0 * band.radius, "length"),
+            f_y=(strengths[k], "stress"), γ=(gamma, "1"),
+        )  # fmt: skip
+        return bears, "thickness", band.length, 1.0
+
+    return [text.worst(s, s.across, resisted, s.loads.surfaces, basis, shown)]
 
 
 def _hole(s: Situation, name: str) -> tuple[float, float, float, float]:

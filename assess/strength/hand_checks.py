@@ -30,6 +30,7 @@ import numpy as np
 from assess.check import CheckText, Rupture, WorstPlace, check
 from assess.margin import Margin
 from assess.situation import ForcesKind, NominalStress, Situation
+from assess.work import Work, scaled, work
 from fea.beam.line_load import acting, shares
 from fea.beam.timoshenko import SHEAR, stepped_beam
 from fea.core.material import Material
@@ -50,6 +51,7 @@ SHEAR_METHODS = (
     "double shear, mean",
     "lug, shear-out",
 )
+BENDING_FORMULA = "M c / I"
 MAX_HALF_DIFFERENCE = 0.1  # part of a band's load by which its two sides may differ in double shear
 
 
@@ -128,7 +130,7 @@ def bending(text: CheckText, s: Situation) -> list[Margin]:
     """The elastic bending stress M c / I, with each kind of section forces."""
     method, clause = BENDING_TEXTS[s.forces.kind]
     named = replace(text, method=method, clause=clause)
-    return _along(named, s, s.forces.bending(), s.material.yield_strength, "M c / I")
+    return _along(named, s, s.forces.bending(), s.material.yield_strength, BENDING_FORMULA)
 
 
 def _along(
@@ -141,4 +143,26 @@ def _along(
 ) -> list[Margin]:
     """The margins of a stress that follows from the section forces."""
     place, basis = WorstPlace(stress.at, stress.z, stress.time), s.forces.basis
-    return text.at_levels(s, stress.stress, place, s.material, strength, ruptures, formula, basis)
+    margins = text.at_levels(
+        s, stress.stress, place, s.material, strength, ruptures, formula, basis
+    )
+    shown, d = _shown(stress, formula), 2.0 * stress.section.outer
+    power = 3.0 if formula == BENDING_FORMULA else 2.0
+    return [
+        replace(m, work=(shown,), passing=scaled("diameter", d, m.used, power)) for m in margins
+    ]
+
+
+def _shown(stress: NominalStress, formula: str) -> Work:
+    """The work of a nominal stress in the worst section."""
+    section, value = stress.section, stress.stress
+    if formula == BENDING_FORMULA:
+        return work(
+            "σ", value, "stress", "{M} / {W}", M=(value * section.modulus, "moment"),
+            W=(section.modulus, "length^3"),
+        )  # fmt: skip
+    ratio = 1.0 if formula == "V / A" else section.vq_it
+    return work(
+        "τ", value, "stress", "{k} × {V} / {A}", k=(ratio, "1"),
+        V=(value * section.area / ratio, "force"), A=(section.area, "length^2"),
+    )  # fmt: skip

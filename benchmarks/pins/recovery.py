@@ -11,7 +11,7 @@ from fea.core.local_fit import continuation, nodal_extrapolation
 from fea.core.voigt import von_mises
 from fea.harmonic.assembly import elasticity
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.model import HarmonicModel, _polar
+from fea.harmonic.model import HarmonicModel, polar
 from fea.solid.model import SolidModel, acting
 from fea.solid.stress_recovery import nodal_stress
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
@@ -57,7 +57,7 @@ def _section(size: SectionSize) -> tuple[int, float, float, float]:
     model = HarmonicModel(PIN, meridian_mesh(PIN, size), STEEL, ("start",))
     fields = model.solve((load,))
     space = model.space
-    u = _polar(model.displace(load.n, model._applied(load.n, [load])[0]))
+    u = polar(model.displace(load.n, model._applied(load.n, [load])[0]))
     stress = elasticity(STEEL) @ space.sampled_strains(load.n, u)
     sampled = stress.reshape(-1, 6)
     averaged, fitted = (

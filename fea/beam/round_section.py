@@ -16,8 +16,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TypeVar
 
 from geometry import Segment
+from pinbase.arrays import Floats
+
+Radius = TypeVar("Radius", float, Floats)
 
 
 @dataclass(frozen=True)
@@ -69,13 +73,13 @@ class Circle:
         whole = (1.0 + m2) ** 2
         return 6.0 * (1.0 + nu) * whole / ((7.0 + 6.0 * nu) * whole + (20.0 + 12.0 * nu) * m2)
 
-    def flexure(self, r: float, nu: float) -> tuple[float, float]:
+    def flexure(self, r: Radius, nu: float) -> tuple[Radius, Radius]:
         """Amplitudes of s_rz (cos theta) and s_tz (sin theta) at r (m), Pa per N of shear along x.
 
         Source: Love, as the module.
         """
         a2, b2 = self.outer**2, self.inner**2
-        ring = a2 * b2 / r**2 if b2 else 0.0
+        ring = a2 * b2 / r**2 if b2 else 0.0 * r
         k, factor = (3.0 + 2.0 * nu) / 4.0, 1.0 / (2.0 * (1.0 + nu) * self.inertia)
         rz = factor * k * (a2 + b2 - ring - r**2)
         tz = -factor * (k * (a2 + b2 + ring) - (1.0 - 2.0 * nu) * r**2 / 4.0)

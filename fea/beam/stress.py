@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.round_section import Circle
+from fea.beam.round_section import Circle, Radius
 from fea.beam.stress_concentration import Notch, notches
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
 from fea.core.material import Material
@@ -111,13 +111,13 @@ def sample(forces: InternalForces) -> tuple[NDArray[np.intp], Floats]:
     return np.array(cells, dtype=np.intp), np.array(z)
 
 
-def section_stress(section: Circle, r: float, nu: float) -> Floats:
-    """Stress amplitudes (6, 4), Pa, at r (m) per V, M, N, T."""
-    out = np.zeros((6, 4))
-    out[RZ, SHEAR], out[TZ, SHEAR] = section.flexure(r, nu)
-    out[ZZ, MOMENT] = -r / section.inertia
-    out[ZZ, AXIAL] = 1.0 / section.area
-    out[TZ, TORQUE] = -r / section.polar
+def section_stress(section: Circle, r: Radius, nu: float) -> Floats:
+    """Stress amplitudes (..., 6, 4), Pa, at r (...), m, per V, M, N, T."""
+    out = np.zeros((*np.shape(r), 6, 4))
+    out[..., RZ, SHEAR], out[..., TZ, SHEAR] = section.flexure(r, nu)
+    out[..., ZZ, MOMENT] = -r / section.inertia
+    out[..., ZZ, AXIAL] = 1.0 / section.area
+    out[..., TZ, TORQUE] = -r / section.polar
     return out
 
 

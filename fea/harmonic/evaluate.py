@@ -176,10 +176,10 @@ def _left_out(around: Circumference, loads: PinLoads, top: Crest) -> float:
 
     A thin tube that becomes oval feels more of that harmonic than a solid pin.
     """
-    n, largest = around.last(np.array([top.point]))
-    if loads.distribution != "cosine" or n != loads.terms:
+    if loads.distribution != "cosine" or around.highest != loads.terms:
         return 0.0
-    return SERIES_REMAINDER_RATIO * float(largest[0, top.instant])
+    largest = around.last_at(np.array([top.point]), np.array([top.instant]))
+    return SERIES_REMAINDER_RATIO * float(largest[0])
 
 
 def _location(point: Floats, angle: float) -> Point:

@@ -225,8 +225,8 @@ class HarmonicModel(HarmonicBody):
         for n in sorted(set(moved.harmonics.tolist())):
             here = np.flatnonzero(moved.harmonics == n)
             forces, tractions[..., here] = self._applied(n, [loads[k] for k in here])
-            applied[:, :, here] = _polar(forces) * [[0.5], [0.5], [1.0]]
-            u[:, :, here] = _polar(self.displace(n, forces, self._shifted(n, loads, here)))
+            applied[:, :, here] = polar(forces) * [[0.5], [0.5], [1.0]]
+            u[:, :, here] = polar(self.displace(n, forces, self._shifted(n, loads, here)))
         return moved
 
     def read(
@@ -329,7 +329,7 @@ def generalised(forces: Floats) -> Floats:
     return np.stack([R + T, R - T, Z], axis=1).ravel()
 
 
-def _polar(u: Floats) -> Floats:
+def polar(u: Floats) -> Floats:
     """Amplitudes U, V, W, (N, 3, K), of unknowns p, m, w."""
     p, m, w = (u[c::3] for c in range(3))
     return np.stack([p + m, p - m, w], axis=1)

@@ -34,7 +34,7 @@ def inside(
     close: element size at the singularity, of its scale.
     nu: Poisson's ratio.
     """
-    distance, within, felt = _places(fields, singularity)
+    distance, within, felt = places_of(fields, singularity)
     far = around.top(felt)
     near = around.top(within & ~felt, far.value)
     top = near if near.value > far.value else far
@@ -43,11 +43,11 @@ def inside(
     maximum = ZoneMaximum(top.value, far.value, at)
     if not singularity.measured or close != CORNER_ELEMENT_SIZES[-1]:
         return maximum
-    exponent, how_strong = _growth(fields, around, singularity, distance, top.instant, nu)
+    exponent, how_strong = growth(fields, around, singularity, distance, top.instant, nu)
     return replace(maximum, exponent=exponent, strength=how_strong)
 
 
-def _places(fields: MeridianFields, singularity: Zone) -> tuple[Floats, Mask, Mask]:
+def places_of(fields: MeridianFields, singularity: Zone) -> tuple[Floats, Mask, Mask]:
     """Distances (S,), m, from a singularity, and masks of points in it and where it is felt."""
     r, z = fields.points.T
     distance = np.hypot(r - singularity.r, z - singularity.z)
@@ -66,10 +66,10 @@ def felt_beyond(
     maximum: float,
 ) -> bool:
     """Whether stress where a singularity is felt exceeds a maximum, Pa, in any of them."""
-    return any(around.exceeds(_places(fields, p)[2], maximum) for p in singularities)
+    return any(around.exceeds(places_of(fields, p)[2], maximum) for p in singularities)
 
 
-def _growth(
+def growth(
     fields: MeridianFields,
     around: Circumference,
     singularity: Zone,

@@ -9,12 +9,20 @@ from __future__ import annotations
 import numpy as np
 
 from fea.core.pressed import ARC_ANGLES
-from fea.harmonic.trigonometric_maximum import crest_of_samples, highest_crest, one_wave
+from fea.harmonic.trigonometric_maximum import (
+    crest_of_samples,
+    highest_crest,
+    one_wave,
+    upper_bound,
+)
 from pinbase.arrays import Floats, Ints, Mask
 
 SAMPLES_PER_WAVE = 5  # per degree of the polynomial; more than 2 determine it
 # rad, between samples about a crest: a parabola through those of whole arcs would be 1e-4 off.
 CREST_SAMPLE_STEP = 0.1 * float(ARC_ANGLES[1])
+# As fine as the grid of fea.harmonic.trigonometric_maximum: D h / 2 is 0.16, from where Newton's
+# method takes so many steps to round-off.
+STEADY_SAMPLES_PER_WAVE, STEADY_STEPS = 20, 6
 CACHED_BATCH = 32  # rows that are sampled at once, in the cache: half the time of thousands
 ON_SAMPLE_TOLERANCE = 1e-9  # of an arc: a nearer angle is that of a sample
 
@@ -32,6 +40,50 @@ def crest_all_round(n: Ints, back: Floats, forth: Floats, beat: Floats) -> tuple
     five = np.einsum("jiw,jw->ji", back, np.cos(turns))
     five += np.einsum("jiw,jw->ji", forth, np.sin(turns))
     return np.linalg.norm(five, axis=1), angle
+
+
+def steady_crests(n: Ints, back: Floats, forth: Floats) -> tuple[Floats, Floats]:
+    """As `crest_all_round`, to the last bit the same whichever other rows are asked for.
+
+    Each row takes the same operations in the same order: sums over its own samples, and a fixed
+    number of Newton's steps from all of its samples that may be next to the highest crest.
+    """
+    if len(n) < 2:
+        return one_wave(n, back, forth)
+    degree = 2 * int(n[-1])
+    angles = np.linspace(0.0, 2.0 * np.pi, STEADY_SAMPLES_PER_WAVE * degree, endpoint=False)
+    turns = n[:, None] * angles
+    five = np.concatenate([back, forth], axis=2) @ np.concatenate([np.cos(turns), np.sin(turns)])
+    square = np.square(five).sum(axis=1)
+    least = 2.0 * square.max(axis=1) - upper_bound(square, degree)
+    crest = (square >= np.roll(square, 1, axis=1)) & (square >= np.roll(square, -1, axis=1))
+    row, at = np.nonzero(crest & (square >= least[:, None]))
+    value, angle = _climbed(n, back[row], forth[row], angles[at], float(angles[1]))
+    order = np.lexsort((angle, value))
+    highest, where = np.zeros(len(back)), np.zeros(len(back))
+    highest[row[order]], where[row[order]] = value[order], angle[order]  # the last, largest, stays
+    return highest, where
+
+
+def _climbed(
+    n: Ints, back: Floats, forth: Floats, angle: Floats, most: float
+) -> tuple[Floats, Floats]:
+    """Von Mises stress (J,), Pa, at crests near angles (J,), rad, and the angles of these crests.
+
+    most: rad, of a step.
+    """
+    for _ in range(STEADY_STEPS):
+        turns = n * angle[:, None]
+        c, s = np.cos(turns)[:, None], np.sin(turns)[:, None]
+        waves = back * c + forth * s
+        five, bent = waves.sum(axis=2), -(n * n * waves).sum(axis=2)
+        risen = (n * (forth * c - back * s)).sum(axis=2)
+        slope, bend = (five * risen).sum(axis=1), (risen * risen + five * bent).sum(axis=1)
+        step = np.where(bend < 0.0, slope / np.where(bend < 0.0, bend, 1.0), 0.0)
+        angle = angle - np.clip(step, -most, most)
+    turns = n * angle[:, None]
+    five = (back * np.cos(turns)[:, None] + forth * np.sin(turns)[:, None]).sum(axis=2)
+    return np.sqrt(np.square(five).sum(axis=1)), angle
 
 
 def crest_where_read(n: Ints, back: Floats, forth: Floats, read: Mask) -> tuple[Floats, Floats]:

@@ -103,9 +103,7 @@ def harmonic_solution(
     pin, material, cases = problem.pin, problem.material, problem.cases
     singularities = problem.singularities
     close = tuple(
-        CORNER_ELEMENT_SIZES[
-            min(level, len(CORNER_ELEMENT_SIZES) - 1) if _matters(k, before) else 0
-        ]
+        CORNER_ELEMENT_SIZES[min(level, len(CORNER_ELEMENT_SIZES) - 1) if matters(k, before) else 0]
         for k in range(len(singularities))
     )
     spots = partial(_spots, pin, cases, singularities, close)
@@ -260,7 +258,7 @@ def _spot(singularity: Zone, near: float, factor: float) -> Spot:
     return Spot(p.r, p.z, size, p.radius)
 
 
-def _matters(singularity: int, before: Collection[MeshMaximum]) -> bool:
+def matters(singularity: int, before: Collection[MeshMaximum]) -> bool:
     """Return whether stress in a singularity is so large that it may govern, so that its growth is
     measured.
     """

@@ -37,8 +37,13 @@ import numpy as np
 from fea.core.pin_loads import Loads, require_solved
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.five_numbers import COS, COSINE_COMPONENTS, EVEN_COUNT, SIN, numbers
-from fea.harmonic.sampled_waves import crest_all_round, crest_where_read, sampled
-from fea.harmonic.trigonometric_maximum import form_maximum, upper_bound
+from fea.harmonic.sampled_waves import (
+    crest_all_round,
+    crest_where_read,
+    sampled,
+    steady_crests,
+)
+from fea.harmonic.trigonometric_maximum import form_maximum, one_wave, upper_bound
 from pinbase.arrays import Floats, Ints, Mask
 
 Instants = slice | Ints
@@ -54,6 +59,8 @@ LOW_HARMONICS = 4  # lowest harmonics, which are sampled together for a tighter 
 # Unit loads of one harmonic up to which quadratic forms take fewer operations than summed stresses.
 MAX_QUADRATIC_FORM_LOADS = 4
 ALL_INSTANTS = slice(None)
+ROUND_OFF = 1e-12  # relative, of a stress
+SAME_POINT = 1e-9  # relative: places and stresses that differ by no more differ by round-off
 
 
 @dataclass(frozen=True)
@@ -92,7 +99,7 @@ class Circumference:
     """
 
     def __init__(self, fields: MeridianFields, loads: Loads, region: Region | None = None) -> None:
-        self.region = region
+        self.region, self._loads = region, loads
         acting = loads.coefficients()
         require_solved(loads.case, acting, fields.loads)
         units = sorted(acting, key=lambda load: load.n)
@@ -135,12 +142,10 @@ class Circumference:
             out += self._of_harmonic(points, wave, instants)
         return out
 
-    def last(self, points: Ints) -> tuple[int, Floats]:
-        """The highest harmonic that acts, and the largest stress (J, T), Pa, of it alone."""
-        if not self._waves:
-            return 0, np.zeros((len(points), self.count))
-        wave = self._waves[-1]
-        return int(self._n[wave.start]), self._of_harmonic(points, wave)
+    @property
+    def highest(self) -> int:
+        """The highest harmonic that acts, 0 if none does."""
+        return int(self._n[-1]) if len(self._n) else 0
 
     def _of_harmonic(self, points: Ints, wave: slice, instants: Instants = ALL_INSTANTS) -> Floats:
         """The largest von Mises stress (J, T), Pa, of one harmonic by itself.
@@ -198,8 +203,40 @@ class Circumference:
         """
         return self._search(among, together=False, least=least)[0]
 
+    def each(self, among: Mask, least: Floats | float = 0.0) -> tuple[Floats, Ints]:
+        """The same with the points (T,) where they are; `least` may be one for each instant."""
+        value, point = self._search(among, together=False, least=least)
+        return value, self._first_there(point, among)
+
+    def _first_there(self, points: Ints, among: Mask) -> Ints:
+        """The first points of a mask (S,) with the place and the stress of these.
+
+        Elements share points, on which they find the same stress but for round-off, each in its own
+        directions along the outline, so that a search may find either.
+        """
+        if self.region is not None:
+            return points
+        one, i = np.unique(points, return_inverse=True)
+        first = [next((x for x in self._like(int(k)) if among[x]), k) for k in one]
+        return np.array(first, dtype=np.int64)[i]
+
+    def _like(self, point: int) -> list[int]:
+        """The points with the place and the stress of a point, rising."""
+        known: dict[tuple[object, ...], list[int]] = self.fields.derived
+        key = "like", self._at, point
+        if key not in known:
+            place, reach = self.fields.points[point], self._unit_reach[point]
+            apart = np.abs(self.fields.points - place).max(axis=1)
+            there = np.flatnonzero(apart <= SAME_POINT * np.abs(place).max())
+            differ = np.abs(self._unit_reach[there] - reach) <= SAME_POINT * reach
+            known[key] = there[differ.all(axis=1)].tolist()
+        return known[key]
+
     def exceeds(self, among: Mask, value: float) -> bool:
-        """Whether any point of a mask (S,) exceeds a value, Pa, at any instant."""
+        """Whether any point of a mask (S,) exceeds a value, Pa, by more than round-off at any
+        instant.
+        """
+        value *= 1.0 + ROUND_OFF
         return bool(self._search(among, together=True, least=value, soon=True)[0].max() > value)
 
     def top(self, among: Mask, least: float = 0.0) -> Crest:
@@ -207,20 +244,22 @@ class Circumference:
 
         least: Pa; the value of the result where no point exceeds it.
         """
-        value, point = self._search(among, together=True, least=least)
-        instant = int(value.argmax())
-        angle = self.round(point[[instant]], np.array([instant]))[1]
-        return Crest(float(value[instant]), int(point[instant]), instant, float(angle[0]))
+        reached, point = self._search(among, together=True, least=least)
+        point, instant = self._first_there(point, among), int(reached.argmax())
+        find = self.round if self.region is not None else self.crests
+        value, angle = find(point[[instant]], np.array([instant]))
+        most = float(value[0]) if reached[instant] > least else least
+        return Crest(most, int(point[instant]), instant, float(angle[0]))
 
     def _search(
-        self, among: Mask, together: bool, least: float = 0.0, soon: bool = False
+        self, among: Mask, together: bool, least: Floats | float = 0.0, soon: bool = False
     ) -> tuple[Floats, Ints]:
         """The maximum (T,), Pa, at every instant and its point (T,), by branch and bound.
 
         among: (S,) the points that are searched.
         together: only the largest of all instants is needed; those of other instants may be too
         low.
-        least: Pa, the value to exceed.
+        least: Pa, the value to exceed, or one (T,) for each instant.
         soon: stop at the first value beyond `least`.
         """
         rows, reach = self._by_reach(np.flatnonzero(among))
@@ -236,7 +275,7 @@ class Circumference:
             # No later point reaches more than this one, so the search is complete.
             if reach[k] <= (best.max() if together else best.min()):
                 break
-            if soon and best.max() > least:
+            if soon and best.max() > least:  # one value for all instants
                 break
             here = rows[k : k + POINT_BATCH]
             # Step 3: drop the instants at which no point of the batch can exceed the incumbent.
@@ -313,7 +352,7 @@ class Circumference:
         """The loosest bound (J, T), Pa: the sum over unit loads of the most that each does."""
         # The factor covers round-off, so that a bound is never below the value that it bounds.
         return np.asarray(
-            (self._unit_reach[points] @ self._amplitudes[:, instants]) * (1.0 + 1e-12)
+            (self._unit_reach[points] @ self._amplitudes[:, instants]) * (1.0 + ROUND_OFF)
         )
 
     @cached_property
@@ -364,6 +403,38 @@ class Circumference:
                 if len(rows):
                     value[rows], angle[rows] = find(points[rows], instants[rows], beat[rows])
         return value, angle
+
+    def crests(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
+        """As `round` at points that are read all round; to the last bit the same whichever other
+        pairs are asked for.
+        """
+        n = self._n[[wave.start for wave in self._waves]]
+        back, forth = self._waves_apart(points, instants)
+        return steady_crests(n, back, forth)
+
+    def last_at(self, points: Ints, instants: Ints) -> Floats:
+        """The largest stress (J,), Pa, of the highest harmonic alone at pairs, as steadily."""
+        if not self._waves:
+            return np.zeros(len(points))
+        back, forth = (np.array(x[:, :, -1:]) for x in self._waves_apart(points, instants))
+        return one_wave(self._n[-1:], back, forth)[0]
+
+    def of_instant(self, instant: int) -> Circumference:
+        """The same points at one instant alone."""
+        return Circumference(self.fields, self._loads.at(np.array([instant])), self.region)
+
+    def _waves_apart(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
+        """As `_pair_waves` of all harmonics, each pair summed by itself."""
+        five, starts = self._five[points], [wave.start for wave in self._waves]
+        summed = (
+            np.add.reduceat(five * x[instants][:, None], starts, axis=2)
+            for x in (self._first, self._second)
+        )
+        # In C order, so that later sums run along memory however many pairs there are.
+        a, b = (np.ascontiguousarray(x) for x in summed)
+        back, forth = a.copy(), b.copy()
+        back[:, SIN], forth[:, SIN] = -b[:, SIN], a[:, SIN]
+        return back, forth
 
     def _crests_where_read(
         self, points: Ints, instants: Ints, beat: Floats

@@ -11,7 +11,7 @@ Source: fea.beam.round_section, for the shear.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -25,6 +25,7 @@ from fea.beam.stress import RZ, TZ, ZZ, section_stress
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
 from fea.core.material import Material
 from fea.core.pin_loads import LoadAmounts, Loads
+from fea.harmonic.at_each import crest_of_each
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference, Crest
 from geometry import Pin
@@ -90,6 +91,7 @@ class SectionField:
         self._cells = np.repeat(free, SECTIONS_BETWEEN_STATIONS)
         part = np.tile(np.linspace(0.0, 1.0, SECTIONS_BETWEEN_STATIONS), len(free))
         self._z = stations[self._cells] + part * np.diff(stations)[self._cells]
+        self._near_points: dict[int, NearSections] = {}
 
     @cached_property
     def fields(self) -> MeridianFields:
@@ -142,22 +144,36 @@ class SectionField:
     def place(self, loads: Loads) -> AtSection:
         """The place and instant of the largest stress, and the section forces there."""
         top = self._top(loads)
-        row = top.point // len(WALL_FRACTIONS)
-        cell = self._cells[row]
-        z = self._closer_z(row)
-        cells = np.full(len(z), cell)
-        sections = sections_at(self.pin, self.forces, cells, z)
-        inside = self.forces.inside(cells, z)
-        forces = inside @ shares(self.forces.loads, self._felt(loads))[top.instant].T
-        both = zip(sections, forces, strict=True)
-        crests = [self._closer(section, tuple(x), top) for section, x in both]
-        values = np.array([value for value, _, _ in crests])
+        amounts = shares(self.forces.loads, self._felt(loads))[top.instant]
+        at = self._at(self._near(top.point), amounts, top.instant, top.angle)
+        return replace(at, course=self._course(loads, top.instant))
+
+    def place_of_each(self, loads: Loads) -> list[AtSection]:
+        """The same at every instant by itself, without its course; each to the last bit the same
+        whichever others are asked for.
+        """
+        top = crest_of_each(self.around(loads), self.all)
+        amounts = shares(self.forces.loads, self._felt(loads))
+        return [
+            self._at(self._near(point), amounts[k], k, angle)
+            for k, (point, angle) in enumerate(
+                zip(top.point.tolist(), top.angle.tolist(), strict=True)
+            )
+        ]
+
+    def _at(self, near: NearSections, amounts: Floats, instant: int, angle: float) -> AtSection:
+        """The largest stress near a point at an instant.
+
+        amounts: (2, K) of the unit loads. angle: of the point, rad.
+        """
+        forces = near.inside @ amounts.T
+        values, radii, angles = near.largest(forces, angle)
         k = int(values.argmax()) if values.max() > (1.0 + MIN_SECTION_GAIN) * values[0] else 0
         V, M, N, T = (forces[k, q] for q in (SHEAR, MOMENT, AXIAL, TORQUE))
-        value, r, angle = crests[k]
         return AtSection(
-            value, top.instant, int(cell), float(z[k]), r, angle, float(N[0]), float(np.hypot(*V)),
-            float(np.hypot(*M)), float(T[1]), sections[k], self._course(loads, top.instant),
+            float(values[k]), instant, near.cell, float(near.z[k]), float(radii[k]),
+            float(angles[k]), float(N[0]), float(np.hypot(*V)), float(np.hypot(*M)), float(T[1]),
+            near.sections[k],
         )  # fmt: skip
 
     def _course(self, loads: Loads, instant: int) -> tuple[tuple[float, float], ...]:
@@ -181,37 +197,74 @@ class SectionField:
         (span,) = (s for s in spans if s.first <= at.cell < s.last)
         return between_clamps(self.forces, span)
 
-    def _closer_z(self, row: int) -> Floats:
-        """The z of a section, by its number, and of others near it between the same stations, m."""
-        z, cell = float(self._z[row]), self._cells[row]
-        start, end = self.forces.stations[cell : cell + 2]
-        step = (end - start) / (SECTIONS_BETWEEN_STATIONS - 1)
-        near = np.linspace(max(start, z - step), min(end, z + step), CLOSER_POINTS)
-        return np.concatenate([[z], near])
+    def _near(self, point: int) -> NearSections:
+        """The sections near a point, by its number, between the same stations, and points of them
+        near it.
+        """
+        if point not in self._near_points:
+            row, number = divmod(point, len(WALL_FRACTIONS))
+            z, cell = float(self._z[row]), int(self._cells[row])
+            start, end = self.forces.stations[cell : cell + 2]
+            step = (end - start) / (SECTIONS_BETWEEN_STATIONS - 1)
+            near = np.linspace(max(start, z - step), min(end, z + step), CLOSER_POINTS)
+            z_of = np.concatenate([[z], near])
+            cells = np.full(len(z_of), cell)
+            sections = sections_at(self.pin, self.forces, cells, z_of)
+            walls = WALL_FRACTIONS[max(number - 1, 0) : number + 2]
+            parts = np.linspace(walls[0], walls[-1], CLOSER_POINTS)
+            by_section = {s: _at_radii(s, parts, self.nu) for s in set(sections)}
+            self._near_points[point] = NearSections(
+                cell,
+                z_of,
+                tuple(sections),
+                self.forces.inside(cells, z_of),
+                *(np.array([by_section[s][k] for s in sections]) for k in (0, 1)),
+            )
+        return self._near_points[point]
 
-    def _closer(
-        self, section: Circle, forces: tuple[Floats, ...], top: Crest
-    ) -> tuple[float, float, float]:
-        """Value, radius and angle of the largest stress in a section, near a point of it."""
-        number = top.point % len(WALL_FRACTIONS)
-        ends = (
-            WALL_FRACTIONS[max(number - 1, 0)],
-            WALL_FRACTIONS[min(number + 1, len(WALL_FRACTIONS) - 1)],
-        )
-        radii, per_force = _at_radii(section, np.linspace(*ends, CLOSER_POINTS), self.nu)
-        V, M, N, T = forces  # (2,) each: by phase, V and M of x and y
-        turns = top.angle + np.linspace(-CLOSER_ANGLE, CLOSER_ANGLE, CLOSER_POINTS)
-        c, s = np.cos(turns), np.sin(turns)
-        square = np.zeros((len(radii), len(turns)))
-        for row, factor in ((ZZ, 1.0), (RZ, 3.0), (TZ, 3.0)):
-            first, second = (c, s) if row != TZ else (s, -c)
-            of_v, of_m, of_n, of_t = per_force[:, row].T
-            stress = np.outer(of_v, V[0] * first + V[1] * second)
-            stress += np.outer(of_m, M[0] * first + M[1] * second)
-            stress += (of_n * N[0] - of_t * T[1] * (row == TZ))[:, None]
-            square += factor * stress**2
-        i, j = np.unravel_index(square.argmax(), square.shape)
-        return float(np.sqrt(square[i, j])), float(radii[i]), float(turns[j])
+
+@dataclass(frozen=True)
+class NearSections:
+    """Sections near a point of the largest stress, and R points of the wall in each.
+
+    cell: of the beam. z: (S,) m, that of the point first. inside: V, M, N, T (S, 4, K) of unit
+    loads. radii: (S, R) m. per_force: stress (S, R, 6, 4), Pa, per V, M, N, T.
+    """
+
+    cell: int
+    z: Floats
+    sections: tuple[Circle, ...]
+    inside: Floats
+    radii: Floats
+    per_force: Floats
+
+    @cached_property
+    def products(self) -> Floats:
+        """The products (S, R, 7) of stresses, of which s^2 + 3 t^2 is the sum with the forces'."""
+        m, n = (self.per_force[..., ZZ, q] for q in (MOMENT, AXIAL))
+        v, w = (self.per_force[..., row, SHEAR] for row in (RZ, TZ))
+        t = self.per_force[..., TZ, TORQUE]
+        squares = m * m, 2.0 * m * n, n * n, 3.0 * v * v, 3.0 * w * w, -6.0 * w * t, 3.0 * t * t
+        return np.stack(squares, axis=2)
+
+    def largest(self, forces: Floats, angle: float) -> tuple[Floats, Floats, Floats]:
+        """The largest stress (S,), Pa, of each section, its radius, m, and its angle, rad.
+
+        forces: V, M, N, T (S, 4, 2), by phase, V and M of x and y. angle: of the point, rad.
+        """
+        turns = angle + np.linspace(-CLOSER_ANGLE, CLOSER_ANGLE, CLOSER_POINTS)
+        waves = np.stack([np.cos(turns), np.sin(turns)])
+        v, m = (forces[:, q] @ waves for q in (SHEAR, MOMENT))
+        w = forces[:, SHEAR] @ np.stack([waves[1], -waves[0]])
+        axial, torque = forces[:, AXIAL, 0], forces[:, TORQUE, 1]
+        n, t = (np.broadcast_to(x[:, None], m.shape) for x in (axial, torque))
+        factors = np.stack([m * m, m * n, n * n, v * v, w * w, w * t, t * t], axis=1)
+        square = (self.products @ factors).reshape(len(forces), -1)
+        highest = square.argmax(axis=1)
+        at = np.arange(len(forces))
+        radius, turn = np.divmod(highest, len(turns))
+        value = np.sqrt(np.maximum(square[at, highest], 0.0))
+        return value, self.radii[at, radius], turns[turn]
 
 
 def _at_radii(section: Circle, parts: Floats, nu: float) -> tuple[Floats, Floats]:
@@ -219,7 +272,7 @@ def _at_radii(section: Circle, parts: Floats, nu: float) -> tuple[Floats, Floats
     (R, 6, 4).
     """
     radii = section.inner + parts * (section.outer - section.inner)
-    return radii, np.array([section_stress(section, float(r), nu) for r in radii])
+    return radii, section_stress(section, radii, nu)
 
 
 def sections_at(

@@ -11,7 +11,7 @@ contact         lugs in contact, on cells until these are fine enough   (fea.sup
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -22,6 +22,7 @@ from fea.core.linear_solver import SolveError
 from fea.core.model import Model
 from fea.core.peak import Reason
 from fea.core.requirement import DECIDED_TEXT, Requirement, decided
+from fea.core.zone import Zone
 from fea.harmonic.evaluate import Harmonic
 from fea.harmonic.first_mesh import FirstMesh
 from fea.solve.by_beam import by_beam
@@ -64,7 +65,7 @@ class Attempt:
 
     def refined(self, model: Model, why: Reason | None = None) -> dict[str, Solution]:
         """Solve the cases on finer and finer meshes of a model."""
-        why = why or _chosen(self.requirement, model.name)
+        why = why or chosen(self.requirement, model.name)
         return refine(model, self.held, self.problem, self.requirement, why, self.progress)
 
 
@@ -139,13 +140,11 @@ def _beam(at: Attempt) -> dict[str, Solution]:
     """The cases for which a beam is accurate enough; all if it is requested."""
     requirement, material = at.requirement, at.problem.material
     auto = requirement.model == "auto"
-    if auto and requirement.goal == "value" and requirement.tolerance < PLAIN_SECTION_ERROR:
-        return {}  # below the error of any beam
     out = {}
     for case in at.problem.cases:
         zones = zones_of(at.held.pin, at.held.clamps, material, (case,), requirement)
-        if auto and any(zone.kind != "edge of a load" for zone in zones):
-            continue  # where a beam cannot see the singularity
+        if beam_refused(requirement, zones):
+            continue
         solution = by_beam(at.held, at.problem, case, requirement)
         peak, why = solution.peak, REQUESTED_BEAM
         if auto:
@@ -161,6 +160,18 @@ def _beam(at: Attempt) -> dict[str, Solution]:
                 continue
         out[case.case] = with_reason(solution, why)
     return out
+
+
+def beam_refused(requirement: Requirement, zones: Collection[Zone]) -> bool:
+    """Whether no beam will do: below the error of any beam, or where it cannot see a singularity.
+
+    zones: of the loads.
+    """
+    if requirement.model != "auto":
+        return requirement.model != "beam"
+    if requirement.goal == "value" and requirement.tolerance < PLAIN_SECTION_ERROR:
+        return True
+    return any(zone.kind != "edge of a load" for zone in zones)
 
 
 def _beam_instead(at: Attempt) -> dict[str, Solution]:
@@ -306,7 +317,7 @@ def with_reason(solution: Solution, why: Reason) -> Solution:
     return replace(solution, peak=solution.peak.with_reason(why))
 
 
-def _chosen(requirement: Requirement, model: str) -> Reason:
+def chosen(requirement: Requirement, model: str) -> Reason:
     """The reason why this model, and no smaller one, is used."""
     if requirement.model == model:
         return Reason(f"{model}: requested", ("requested",))

@@ -96,7 +96,7 @@ def refine(
     Raises: MeshError, SolveError.
     """
     meshes, material = model.meshes, problem.material
-    posed = _posed(model, held, problem, requirement)
+    posed = posed_for(model, held, problem, requirement)
     seen = {
         c.case: MeshHistory(held.pin.name, c.case, model.name, (), (), meshes) for c in posed.cases
     }
@@ -109,7 +109,7 @@ def refine(
             next_mesh = meshes.unknowns_after(max(r.at_once or r.unknowns for r in before.results))
             if next_mesh > meshes.max_unknowns:
                 break
-            if excess := _too_much_memory(posed, model, next_mesh):
+            if excess := too_much_memory(posed, model, next_mesh):
                 text = f"; on the next mesh {excess}: allow more, or increase --tolerance"
                 limit = Reason(text, ("memory-limit",))
                 notes = {case: notes.get(case, NO_REASON) + limit for case in seen}
@@ -140,7 +140,7 @@ def refine(
     return out
 
 
-def _posed(
+def posed_for(
     model: Model, held: HeldPin, problem: PinProblem, requirement: Requirement
 ) -> MeshProblem:
     """The problem of a held pin as models take it; with local solids, of the profile of a pin with
@@ -173,7 +173,7 @@ def met(requirement: Requirement, material: Material, seen: MeshHistory) -> Reas
     return Reason(f"; {limit}", ("mesh-limit",))
 
 
-def _too_much_memory(problem: MeshProblem, model: Model, unknowns: float) -> str | None:
+def too_much_memory(problem: MeshProblem, model: Model, unknowns: float) -> str | None:
     """The reason why a mesh with so many unknowns takes more memory than there is; None if it does
     not.
     """

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from pinbase.dimensions import Force, Forces, Length, Lengths, Moments, Stress, Times
+from pinbase.dimensions import Force, Forces, Length, Lengths, Moments, Stress, Time, Times
 
 LineLoad = Annotated[float, "force length^-1"]
 Couple = Annotated[float, "moment"]
@@ -71,6 +71,42 @@ class JointRange:
 
 
 @dataclass(frozen=True)
+class LugStress:
+    """The largest stress at one wall of a lug, over all instants of a case.
+
+    wall: "bore", "bushing" (its bore) or "hole" (of the lug about a bushing).
+    place: "free" where nothing presses on the wall, "beneath" the pin, or beneath a "bushing".
+    max_hoop_stress: the largest tension along the wall.
+    angle: of the largest von Mises stress from the shank, degrees. z: along the pin. time: None
+    without a motion.
+    error_estimate: of max_von_mises, the sum of its parts: mesh and sectors, rings through the
+    thickness, sampling in time.
+    assumed: what the study does not state.
+    """
+
+    connection: str
+    wall: str
+    place: str
+    material: str
+    max_von_mises: Stress
+    max_hoop_stress: Stress
+    angle: float
+    z: Length
+    time: Time | None
+    error_estimate: Stress
+    mesh: Stress
+    rings: Stress
+    sampling: Stress
+    yield_strength: Stress | None = None
+    assumed: str = ""
+
+    @property
+    def safety_factor(self) -> float | None:
+        """Yield strength over the largest stress; None without a strength."""
+        return self.yield_strength / self.max_von_mises if self.yield_strength else None
+
+
+@dataclass(frozen=True)
 class JointForces:
     """The shear force and bending moment (T, Z) across the pin at z (Z,) at all instants of the
     case.
@@ -96,6 +132,7 @@ class JointResult:
     range: None where it was not computed.
     remark: why not, or what it leaves out.
     along: the pin at all instants, None for a prescribed joint.
+    lugs: the stress of lugs whose shank is known.
     """
 
     model: str
@@ -105,3 +142,4 @@ class JointResult:
     range: JointRange | None = None
     remark: str = ""
     along: JointForces | None = None
+    lugs: tuple[LugStress, ...] = ()

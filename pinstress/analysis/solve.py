@@ -30,7 +30,7 @@ from pinstress.study.reading.file import Study
 from reports.data.results import Field, PinResult
 
 if TYPE_CHECKING:  # what solves is imported where a task is not in the cache
-    from fea.support.support import Solution
+    from fea.support.support import PinProblem, Solution
 
 # Of a dimension, m, whose effect is found.
 DIMENSION_STEPS = {"in-lbf-s": 0.1 * 0.0254, "mm-N-s": 1e-3, "m-N-s": 1e-3}
@@ -185,13 +185,18 @@ def solutions(
     Raises: ArgumentError, MeshError, SolveError.
     """
     from fea.solve.solve import solve
+
+    return solve(problem_of(task, memo), for_task(study, task, requirement), tell)
+
+
+def problem_of(task: Task, memo: Memo | None = None) -> PinProblem:
+    """Return a task as it is solved; memo: as in `solutions`."""
     from fea.support.support import PinProblem
 
-    problem = PinProblem(
+    return PinProblem(
         task.pin, task.material, task.lugs, task.loads, task.between, task.ranges, task.clamps,
         memo,
     )  # fmt: skip
-    return solve(problem, for_task(study, task, requirement), tell)
 
 
 def for_task(study: Study, task: Task, requirement: Requirement) -> Requirement:
@@ -205,6 +210,9 @@ def _joints(study: Study, task: Task) -> Joints:
     joints = study.table.analysis.joints
     if joints == "contact" or joints == "foundation":
         return joints
+    # A beam on foundations gives no pressure around the bores of lugs.
+    if any(lug.shank for lug in task.lugs):
+        return "contact"
     # A beam sees no holes; damage depends on stress itself, not on a limit.
     return "auto" if task.pin.revolved and study.table.fatigue is None else "contact"
 
@@ -250,13 +258,33 @@ def _rows(
 
     ratio = plan.requirement.for_ratio  # which serves for the whole range
     landing = [None if ratio else landing_range(plan.loads, task, s) for s in solved]
-    joints = tuple(s.joint for s in solved) if task.lugs else _around(plan, task, solved)
+    joints = _in_lugs(task, solved, tell) if task.lugs else _around(plan, task, solved)
     limits = limit_loads(plan, task, solved, tell)
     parts = zip(solved, joints, limits, landing, strict=True)
     return tuple(
         PinResult(_with_notes(task, s.peak), joint=joint, limit_load=limit, landing=over)
         for s, joint, limit, over in parts
     )
+
+
+def _in_lugs(
+    task: Task, solved: tuple[Solution, ...], tell: Tell
+) -> tuple[JointResult | None, ...]:
+    """Return the joint of a pin in lugs by case, with the stress of lugs whose shank is known."""
+    if not any(lug.shank for lug in task.lugs):
+        return tuple(s.joint for s in solved)
+    from fea.lug.in_joint import lug_stresses
+    from fea.support.contact.held import HeldContact
+
+    memo, out = Memo(), []
+    for s in solved:
+        joint, case = s.joint, s.peak.case
+        if joint is not None and isinstance(s.held, HeldContact) and not s.held.alone:
+            tell(f"pin {task.pin.name}, stress of its lugs")
+            stress = lug_stresses(s.held.contact, case, task.shanks.get(case, {}), memo)
+            joint = replace(joint, lugs=stress)
+        out.append(joint)
+    return tuple(out)
 
 
 def unjudged(plan: Plan, task: Task, memo: Memo) -> tuple[PinResult, ...]:

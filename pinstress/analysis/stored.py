@@ -87,6 +87,7 @@ def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
         task.left_out,
         task.ranges,
         task.impulses,
+        task.shanks,
         [(case.reactions.times, case.range) for case in cases],
         task.material,
         replace(plan.requirement, memory=None),

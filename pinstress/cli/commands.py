@@ -189,6 +189,11 @@ def _settle_environment() -> None:
     type=click.Path(path_type=Path),
     help="Also write the requirements as JUnit XML, a test case each, for continuous integration.",
 )
+@click.option(
+    "--show-work",
+    is_flag=True,
+    help="Also print the work of every check: formula, numbers, what would pass, what is missing.",
+)
 @click.option("--no-cache", is_flag=True, help="Solve all pins again; do not reuse cached results.")
 @click.option("--json", "as_json", is_flag=True, help="Print results.json instead of the table.")
 @click.option("--open", "opens", is_flag=True, help="Open the report in the browser when done.")
@@ -210,6 +215,7 @@ def run(
     sensitivities: bool,
     fail_on_miss: bool,
     junit: Path | None,
+    show_work: bool,
     no_cache: bool,
     as_json: bool,
     quiet: bool,
@@ -225,7 +231,7 @@ def run(
     drawn = plots and not no_pictures
     wanted = OutputOptions(
         drawn, pdf, second, vtk, as_json, quiet, opens, jobs, cached, sensitivities, fail_on_miss,
-        junit,
+        junit, show_work,
     )  # fmt: skip
     return run_and_write(
         loaded,

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-from pinstress.cli.shared import choices, cluster_choices, example, read_study
-
-if TYPE_CHECKING:
-    from pinstress.explore.sweep.connection import ClusterConnection
+from pinstress.cli.shared import (
+    choices,
+    chosen_connection,
+    cluster_choices,
+    example,
+    read_study,
+)
 
 
 @click.command(
@@ -42,20 +45,13 @@ def sweep(
     quiet: bool,
     **cluster: Any,
 ) -> int:
-    connection = _connection(jobs, **cluster)
+    connection = chosen_connection(jobs, **cluster)
     loaded = read_study(study)
     from pinstress.cli.sweep import Way, sweep_and_write
 
     directory = out or Path("out") / f"{loaded.name}-sweep"
     way = Way(jobs, connection, resume, opens, quiet)
     return sweep_and_write(loaded, directory, pins, cases, way)
-
-
-def _connection(jobs: int | None, **cluster: Any) -> ClusterConnection | None:
-    """Return the connection to a cluster by the options of a command."""
-    from pinstress.explore.sweep.connection import connection_to
-
-    return connection_to(jobs=jobs, **cluster)
 
 
 @click.command(
@@ -83,7 +79,7 @@ def reliability(
     quiet: bool,
     **cluster: Any,
 ) -> int:
-    connection = _connection(jobs, **cluster)
+    connection = chosen_connection(jobs, **cluster)
     loaded = read_study(study)
     from pinstress.cli.reliability import reliability_and_write
 

@@ -15,11 +15,12 @@ from pinstress.cli.run import console, progress_bar
 from pinstress.cli.size import OTHER_FILE_REMEDY, close, target_of
 from pinstress.cli.streams import unneeded
 from pinstress.explore.size.at_probability import lighten_at
-from pinstress.explore.size.judged_pin import why_missed
+from pinstress.explore.size.judged_pin import judged_pin
 from pinstress.explore.size.least_weight import LightStudy, lighten
 from pinstress.explore.size.lightest_pin import Lightest, WeightGoal
 from pinstress.explore.size.pin_shape import DIMENSION_KINDS, Proportions
 from pinstress.explore.size.scaled_study import moved
+from pinstress.explore.size.size_pin import SizingGoal
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.pins import weight
 from pinstress.study.reading.errors import InputError
@@ -54,8 +55,10 @@ class Wishes:
         return [f"--{name}" for name, value in vars(self).items() if value is not None]
 
 
-def require_aim(study: Study, wishes: Wishes, required: float, step: float | None) -> WeightGoal:
+def require_aim(goal: SizingGoal, wishes: Wishes, step: float | None) -> WeightGoal:
     """Return the goal of the search that the options describe.
+
+    goal: the factors to reach. step: step to which diameters are rounded up, m.
 
     Raises: InputError for options that are invalid or contradict each other.
     """
@@ -75,7 +78,7 @@ def require_aim(study: Study, wishes: Wishes, required: float, step: float | Non
         usual.wall if wishes.wall is None else wishes.wall,
         usual.shoulder if wishes.shoulder is None else wishes.shoulder,
     )
-    return WeightGoal(required, vary, limits, step)
+    return WeightGoal(goal.required, vary, limits, step, goal.more)
 
 
 def lighten_and_write(
@@ -112,11 +115,12 @@ def lighten_and_write(
     system = study.system
     unit = system.force if heavy else f"{system.length}³"
     with unneeded(target):
-        print_light(rows, aim.required, (system.length, unit, heavy), console())
+        print_light(rows, aim.written, (system.length, unit, heavy), console())
         if probability is not None:
+            factor = "A required factor" if aim.more else f"The factor {short(aim.required)}"
             click.echo(
-                f"The factor {short(aim.required)} is that which is missed with probability "
-                f"{probability:g}, by the first order; pinstress reliability samples it."
+                f"{factor} is that which is missed with probability {probability:g}, by the first "
+                "order; pinstress reliability samples it."
             )
     if not quiet:
         close(study, design.study, target if changed else None)
@@ -128,7 +132,7 @@ def lighten_and_write(
         )
     missed = [row for row in rows if row.why]
     for row in missed:
-        click.echo(f"Not decided: pin {row.pin}: {row.why}.", err=True)
+        click.echo(f"{row.result.capitalize()}: pin {row.pin}: {row.why}.", err=True)
     return int(bool(missed) or not design.settled)
 
 
@@ -140,9 +144,16 @@ def _row(
     study: Study, design: LightStudy, lightest: Lightest, aim: WeightGoal, heavy: bool
 ) -> LightRow:
     rows = [p for p in design.results.pins if p.pin == lightest.pin and p.safety_factor is not None]
-    worst = min(rows, key=lambda p: low_factor(p) or 0.0) if rows else None
+    demanded = aim.of_pin(lightest.pin)
+    worst = min(
+        (p for p in rows if demanded.get(p.case, 1.0)),
+        key=lambda p: (low_factor(p) or 0.0) / demanded.get(p.case, 1.0),
+        default=None,
+    )
     before, after = (pin_of(x, lightest.pin).volume for x in (study, design.study))
     written = lightest.values is not None or lightest.scale is not None
+    judged = judged_pin(design.results, lightest.pin) if written else None
+    unlikely = _unlikely(design, lightest.pin, aim)
     return LightRow(
         pin=lightest.pin,
         factor=DASH if worst is None else factor_range(worst, "–"),
@@ -158,10 +169,9 @@ def _row(
         binding=lightest.binding[:MAX_NAMED_BINDING],
         bands=tuple(_bands(study, design.study, lightest.pin)) if written else (),
         solved=lightest.solved,
-        why=(why_missed(design.results, lightest.pin) or _unlikely(design, lightest.pin, aim))
-        if written
-        else lightest.why,
+        why=lightest.why if judged is None else judged.why or unlikely,
         way=lightest.way,
+        depends=judged is not None and judged.depends and not unlikely,
     )
 
 
@@ -171,7 +181,11 @@ def _unlikely(design: LightStudy, pin: str, aim: WeightGoal) -> str:
     """
     factors = {case: x for (name, case), x in design.at.items() if name == pin}
     unknown = [case for case, x in factors.items() if not math.isfinite(x)]
-    low = [case for case, x in factors.items() if x < aim.required * (1.0 - 1e-9)]
+    low = [
+        case
+        for case, x in factors.items()
+        if x < aim.required * aim.more.get((pin, case), 1.0) * (1.0 - 1e-9)
+    ]
     if unknown:
         return f"in {', '.join(unknown)} its factor at the probability was not found"
     return f"in {', '.join(low)} its factor at the probability is too small" if low else ""

@@ -8,7 +8,16 @@ from urllib.parse import quote
 
 import click
 
-from pinstress.cli.shared import JOBS_OPTION, PINS_OPTION, QUIET_OPTION, example, names, read_study
+from pinstress.cli.shared import (
+    JOBS_OPTION,
+    PINS_OPTION,
+    QUIET_OPTION,
+    chosen_connection,
+    cluster_choices,
+    example,
+    names,
+    read_study,
+)
 from pinstress.cli.streams import unneeded
 from pinstress.study.reading.errors import InputError
 
@@ -222,6 +231,7 @@ def completion(context: click.Context, shell: str) -> None:
     help="Safety factor to reach; overrides required_safety_factor and [[require]] of the study.",
 )
 @PINS_OPTION
+@cluster_choices
 @click.option(
     "--step",
     metavar="LENGTH",
@@ -273,10 +283,14 @@ def size(
     jobs: int | None,
     resume: bool,
     least_weight: bool,
+    scheduler: str | None,
+    tls: Path | None,
+    insecure: bool,
     **wishes: Any,
 ) -> int:
     from pinstress.study.schema.units import to_si
 
+    connection = chosen_connection(jobs, scheduler=scheduler, tls=tls, insecure=insecure)
     loaded = read_study(study)
     try:
         metres = None if step is None else to_si(step, "length", loaded.system)
@@ -292,17 +306,13 @@ def size(
         raise InputError(f"{wished.given[0]} needs --least-weight", code="needs-least-weight")
     if least_weight and resume:
         raise InputError("--resume is not for --least-weight", code="contradiction")
+    if least_weight and connection is not None:
+        raise InputError("--scheduler is not for --least-weight", code="contradiction")
     goal = require_wish(loaded, fos, metres)
     if least_weight:
-        if goal.more:
-            raise InputError(
-                "--least-weight takes one factor for all pins and cases, and those that "
-                "[[require]] states differ: give --fos",
-                code="contradiction",
-            )
-        aim = require_aim(loaded, wished, goal.required, metres)
+        aim = require_aim(goal, wished, metres)
         return lighten_and_write(loaded, aim, out, pins, quiet, jobs, wished.probability)
-    options = SizeOptions(out, pins, jobs, resume, quiet)
+    options = SizeOptions(out, pins, jobs, resume, quiet, connection)
     return size_and_write(loaded, goal, options)
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +12,7 @@ from pinbase.processes.pool import preload, processes
 from pinstress.analysis.results import run
 from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.run import RUN_LIBRARIES, RUN_MODELS, console, progress_bar
+from pinstress.cli.shared import connected
 from pinstress.cli.streams import unneeded
 from pinstress.explore.reliability.assess import assess
 from pinstress.explore.reliability.designs import for_values, random_numbers
@@ -24,7 +23,6 @@ from reports.tables.reliability import write_reliability
 from reports.text.reliability import name, print_reliability
 
 if TYPE_CHECKING:
-    from pinstress.explore.sweep.cluster import Cluster
     from pinstress.explore.sweep.connection import ClusterConnection
 
 RELIABILITY_JSON = "reliability.json"
@@ -64,7 +62,7 @@ def reliability_and_write(
             preload(*RUN_LIBRARIES, *RUN_MODELS)
             progress("the study as it is", 0.0)
             nominal = run(study, pins=pins, cases=cases, jobs=most)
-            with _cluster(connection) as cluster:
+            with connected(connection) as cluster:
                 assessment = assess(study, nominal, most, progress, pins, cases, cluster)
         write_reliability(assessment, staging)
         write_reliability_page(assessment, staging / RELIABILITY_PAGE)
@@ -73,18 +71,6 @@ def reliability_and_write(
     if not quiet:
         click.echo(f"Report: {directory / RELIABILITY_PAGE}", err=True)
     return _status(assessment)
-
-
-@contextmanager
-def _cluster(connection: ClusterConnection | None) -> Iterator[Cluster | None]:
-    """Connect to a cluster, if there is to be one."""
-    if connection is None:
-        yield None
-        return
-    from pinstress.explore.sweep.scheduler import cluster_at
-
-    with cluster_at(connection, lambda message: click.echo(f"Warning: {message}", err=True)) as it:
-        yield it
 
 
 def _status(assessment: Reliability) -> int:

@@ -48,6 +48,7 @@ from reports.tables.column import MAX_CSV_ROWS
 from reports.text.loads import print_loads
 from reports.text.safety_factors import print_safety_factors
 from reports.text.second_opinion import print_second_opinion
+from reports.text.work import print_work
 from reports.vtk.fields import surface, write_flow, write_pin
 
 FILE_COLUMNS = 120  # of output that is no terminal and has no width
@@ -80,6 +81,7 @@ class OutputOptions:
     sensitive: whether sensitivities are found in all cases.
     strict: whether a pin that misses its requirements changes the exit status.
     junit: the file for the requirements as JUnit XML, if any.
+    work: whether the work of every check is printed.
     """
 
     plots: bool = False
@@ -94,6 +96,7 @@ class OutputOptions:
     sensitive: bool = False
     strict: bool = False
     junit: Path | None = None
+    work: bool = False
 
 
 def run_and_write(
@@ -141,6 +144,8 @@ def run_and_write(
     else:
         with unneeded(directory):
             print_safety_factors(results, console(), str(study.path))
+            if wanted.work:
+                print_work(results, console())
             if wanted.second:
                 print_second_opinion(results, console())
     if not wanted.quiet:

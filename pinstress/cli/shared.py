@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 if TYPE_CHECKING:
+    from pinstress.explore.sweep.cluster import Cluster
+    from pinstress.explore.sweep.connection import ClusterConnection
     from pinstress.study.reading.file import Study
 
 Command = TypeVar("Command", bound=Callable[..., object])
@@ -70,6 +73,28 @@ def cluster_choices(command: Command) -> Command:
         "whoever reaches it can run code on the cluster.",
     )
     return scheduler(tls(insecure(command)))
+
+
+def chosen_connection(jobs: int | None, **cluster: Any) -> ClusterConnection | None:
+    """Return the connection to a cluster by the options of a command, None without one.
+
+    Raises: InputError.
+    """
+    from pinstress.explore.sweep.connection import connection_to
+
+    return connection_to(jobs=jobs, **cluster)
+
+
+@contextmanager
+def connected(connection: ClusterConnection | None) -> Iterator[Cluster | None]:
+    """Connect to a cluster, if there is to be one."""
+    if connection is None:
+        yield None
+        return
+    from pinstress.explore.sweep.scheduler import cluster_at
+
+    with cluster_at(connection, lambda message: click.echo(f"Warning: {message}", err=True)) as it:
+        yield it
 
 
 def read_study(path: Path) -> Study:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -13,6 +14,7 @@ from pinbase.processes.pool import preload, processes
 from pinstress.analysis.plan import prepare
 from pinstress.cli.new_file import require_new
 from pinstress.cli.run import RUN_LIBRARIES, RUN_MODELS, console, progress_bar
+from pinstress.cli.shared import connected
 from pinstress.cli.streams import unneeded
 from pinstress.explore.size.scaled_study import moved
 from pinstress.explore.size.size_pin import SizingGoal, SizingResult
@@ -29,6 +31,9 @@ from reports.data.results import Units
 from reports.format.numbers import DASH, short
 from reports.text.sizes import SizeRow, print_sizes
 
+if TYPE_CHECKING:
+    from pinstress.explore.sweep.connection import ClusterConnection
+
 OTHER_FILE_REMEDY = "choose another file with --out"
 
 
@@ -39,6 +44,7 @@ class SizeOptions:
     out: the new study, by default next to the study.
     pins: their names, by default all.
     jobs: number of pins sized in parallel, by default the number of cores.
+    connection: to a cluster that sizes them instead.
     resume: whether a size that did not end is resumed.
     """
 
@@ -47,6 +53,7 @@ class SizeOptions:
     jobs: int | None = None
     resume: bool = False
     quiet: bool = False
+    connection: ClusterConnection | None = None
 
 
 def size_and_write(study: Study, goal: SizingGoal, options: SizeOptions) -> int:
@@ -63,12 +70,15 @@ def size_and_write(study: Study, goal: SizingGoal, options: SizeOptions) -> int:
         require_new(target, OTHER_FILE_REMEDY)
     sizing = _Sizing(study, goal, target, state)
     sizing.start(options.resume)
-    jobs = processes(options.jobs)
+    jobs = 1 if options.connection else processes(options.jobs)
     try:
-        with progress_bar(alone=jobs == 1, quiet=options.quiet) as progress:
+        with (
+            progress_bar(alone=jobs == 1, quiet=options.quiet) as progress,
+            connected(options.connection) as cluster,
+        ):
             if jobs > 1:
                 preload(*RUN_LIBRARIES, *RUN_MODELS)
-            sized = size_pins(plan, goal, sizing.pins, sizing.finish, jobs, progress)
+            sized = size_pins(plan, goal, sizing.pins, sizing.finish, jobs, progress, cluster)
         new = sizing.write(sized)
     except BaseException as error:
         kept = sizing.stop()

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fea.support.records import BandContact, JointResult, Variation
+from fea.support.records import BandContact, JointResult, LugStress, Variation
 from reports.data.results import PinResult, Units
 from reports.format.numbers import DASH, engineering, short
 from reports.format.ranges import END_DIGITS, joint_range, part_words
 from reports.tables.column import Column, Grid, PinRow, Table, grid_of, in_order, read_only, texts
-from reports.tables.stress.joint import BAND_COLUMNS
+from reports.tables.stress.joint import BAND_COLUMNS, LUG_COLUMNS
 
 JOINT_TITLES = {"contact": "Contact with the lugs", "foundation": "Load from the lugs"}
 BAND_ORDER = (
@@ -29,6 +29,23 @@ BANDS_NOTE = (
     "per length in the direction of each link's force (negative: the opposite side of the bore "
     "carries), and the size of the bending moment."
 )
+LUG_ORDER = (
+    "connection",
+    "wall",
+    "place",
+    "max_von_mises",
+    "error_estimate",
+    "max_hoop_stress",
+    "angle",
+    "time",
+    "safety_factor",
+)
+LUGS_NOTE = (
+    "Stress of a lug: the largest about its bore over all instants. Free: where the pin does not "
+    "touch; beneath: where it presses. The angle is from the shank, as seen from the bore. ±: "
+    "mesh, rings through the thickness and sampling in time. Not in it: the lug is plane, but for "
+    "what uneven pressure through the thickness adds."
+)
 RANGE_NOTE = (
     "Range over the joint: the maximum with one property of the joint changed in all lugs at once, "
     "all else as the study describes or assumes it."
@@ -43,13 +60,15 @@ FOUNDATION_NOTE = (
 class JointPart:
     """The page's part on the joint of a pin.
 
-    sentence: on the error and range of the maximum. bands: if lugs support the pin.
+    sentence: on the error and range of the maximum. bands: if lugs support the pin. lugs: their
+    stress, if their shanks are known.
     range: the maximum with the joint changed, if computed. assumed: whether the lugs were assumed.
     """
 
     title: str
     sentence: str
     bands: Grid | None
+    lugs: Grid | None
     range: Grid | None
     assumed: bool
 
@@ -62,7 +81,8 @@ def joint_part(pin: PinResult, units: Units) -> JointPart | None:
     title = JOINT_TITLES.get(joint.model, "Range over the joint")
     bands = grid_of(_bands(pin, joint, units), units)
     assumed = joint.range is not None and joint.range.assumed
-    return JointPart(title, _sentence(pin, joint, units), bands, _range(joint, units), assumed)
+    parts = bands, grid_of(_lugs(pin, joint, units), units), _range(joint, units)
+    return JointPart(title, _sentence(pin, joint, units), *parts, assumed)
 
 
 def _sentence(pin: PinResult, joint: JointResult, units: Units) -> str:
@@ -85,6 +105,11 @@ def _sentence(pin: PinResult, joint: JointResult, units: Units) -> str:
 def _bands(pin: PinResult, joint: JointResult, units: Units) -> Table[PinRow[BandContact]]:
     rows = [PinRow(pin, units, band) for band in joint.bands]
     return Table("joint_bands", in_order(BAND_COLUMNS, BAND_ORDER), rows)
+
+
+def _lugs(pin: PinResult, joint: JointResult, units: Units) -> Table[PinRow[LugStress]]:
+    rows = [PinRow(pin, units, lug) for lug in joint.lugs]
+    return Table("lugs", in_order(LUG_COLUMNS, LUG_ORDER), rows)
 
 
 def _range(joint: JointResult, units: Units) -> Grid | None:

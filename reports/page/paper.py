@@ -182,6 +182,7 @@ def _case(pin: PinResult, results: Results) -> Content:
         "plot": plot_name("surface", pin.case, pin.pin),
         "places": None if places is None else asdict(places),
         "bands": asdict(joint.bands) if joint and joint.bands else None,
+        "lugs": asdict(joint.lugs) if joint and joint.lugs else None,
     }
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from reports.data.results import Results
 from reports.format.drawing.svg import INK_COLOUR, text
 from reports.format.words import BEYOND_YIELD, VERDICT_MEANINGS
-from reports.page.joint import BANDS_NOTE, FOUNDATION_NOTE, RANGE_NOTE
+from reports.page.joint import BANDS_NOTE, FOUNDATION_NOTE, LUGS_NOTE, RANGE_NOTE
 from reports.page.places import CONTACT_EDGES_NOTE, PLACES_NOTE, SECTION_NOTE
 from reports.page.stress_panel import LOAD_COLOUR
 from reports.tables.strength.hand_checks import HAND_CHECKS_NOTE
@@ -74,6 +74,7 @@ def reading_parts(results: Results) -> dict[str, str]:
         ],
         "Lugs": [
             BANDS_NOTE * any(joint.bands for joint in joints),
+            LUGS_NOTE * any(joint.lugs for joint in joints),
             FOUNDATION_NOTE * any(joint.model == "foundation" for joint in joints),
             RANGE_NOTE * any(joint.range for joint in joints),
         ],

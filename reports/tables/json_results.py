@@ -27,7 +27,7 @@ from reports.tables.strength.requirements import requirements_table
 from reports.tables.strength.safety_factors import FactorRow, safety_factors_table
 from reports.tables.strength.sensitivities import sensitivities_json
 from reports.tables.stress.calculix import opinion_json
-from reports.tables.stress.joint import joint_json
+from reports.tables.stress.joint import joint_json, lugs_table
 from reports.tables.stress.places import places_json
 
 RESULTS_SCHEMA = "pinstress-results/2"
@@ -83,6 +83,7 @@ def to_json(results: Results) -> dict[str, Any]:
         "headline": _headline(results),
         "pins": [_pin(row, factors) for row in factors.rows],
         "requirements": requirements_table(results).records(),
+        "lugs": lugs_table(results).records(),
         "margins": margins_table(results).records(),
         "changes": [asdict(change) for change in results.changes],
         "sensitivities": sensitivities_json(results),

@@ -37,6 +37,7 @@ class LightRow:
     requested.
     bands: those that changed. solved: number of designs. why: reason why the factor is not shown to
     be reached. way: a note on a search that was not run or did not end.
+    depends: whether it is reached as described, but not over all ranges of the study.
     """
 
     pin: str
@@ -52,6 +53,14 @@ class LightRow:
     solved: int
     why: str = ""
     way: str = ""
+    depends: bool = False
+
+    @property
+    def result(self) -> str:
+        """The outcome in words."""
+        if self.depends:
+            return "depends"
+        return "not decided" if self.why else "safe"
 
     @property
     def saved(self) -> float | None:
@@ -61,10 +70,11 @@ class LightRow:
 
 
 def print_light(
-    rows: Sequence[LightRow], required: float, units: tuple[str, str, bool], console: Console
+    rows: Sequence[LightRow], required: float | None, units: tuple[str, str, bool], console: Console
 ) -> None:
     """Print a row per pin, the whole, and the changes.
 
+    required: None where it is not the same for all.
     units: of length and of weight, or of volume where volumes are compared.
     """
     from rich.text import Text
@@ -84,8 +94,7 @@ def light_table(rows: Sequence[LightRow], weight: str) -> Table[LightRow]:
     weight: the heading of the weight, with the unit.
     """
     columns: list[Column[LightRow]] = [
-        *texts("Pin=pin"),
-        read_only("Result", lambda row: "not decided" if row.why else "safe", numeric=False),
+        *texts("Pin=pin Result=result"),
         read_only("FoS", lambda row: row.factor),
         read_only("FoS at p", lambda row: row.at, drop_if_empty=True),
         read_only(weight, lambda row: _heavy(row.weights[0]), rank=1),
@@ -114,12 +123,17 @@ def _residual(residual: float | None) -> str:
     return f"<{RESIDUAL_ROUND_OFF:g}" if residual < RESIDUAL_ROUND_OFF else f"{residual:.1g}"
 
 
-def _total(rows: Sequence[LightRow], required: float, what: str, unit: str) -> Iterator[str]:
-    count = sum(not row.why for row in rows)
+def _total(rows: Sequence[LightRow], required: float | None, what: str, unit: str) -> Iterator[str]:
+    everywhere = sum(not row.why for row in rows)
+    count = everywhere + sum(row.depends for row in rows)
+    ranges = "" if count == everywhere else f" as described, {everywhere} over its ranges"
+    factors = "their required factors"
+    if required is not None:
+        factors = f"the safety factor {short(required)}"
     yield (
         f"{count} of {len(rows)} pin{'s' if len(rows) != 1 else ''} "
-        f"reach{'es' if len(rows) == 1 else ''} the safety factor {short(required)} in a run of "
-        "the new study, with the error of its stress."
+        f"reach{'es' if len(rows) == 1 else ''} {factors} in a run of the new study{ranges}, "
+        "with the error of its stress."
     )
     known = [row for row in rows if row.saved is not None]
     if len(known) > 1:

@@ -14,6 +14,7 @@ from reports.data.unknowns import Unknown, unknowns
 from reports.format.numbers import engineering, short
 from reports.format.words import headline
 from reports.tables.published import published_maxima
+from reports.tables.strength.codes import CODES_TITLE, codes_table
 from reports.tables.strength.fatigue import fatigue_sentence
 from reports.tables.strength.limit_load import limits_table
 from reports.tables.strength.overview import (
@@ -70,6 +71,7 @@ def print_safety_factors(results: Results, console: Console, study: str = "") ->
         print_table(console, "Sensitivities", sensitivities, results.units)
     if results.fatigue:
         console.print(Text(fatigue_sentence(results.fatigue)))
+    print_table(console, CODES_TITLE, codes_table(results), results.units)
     print_table(console, "Past yield", limits_table(results), results.units)
     print_table(console, "Published values", published_maxima(results), results.units)
 

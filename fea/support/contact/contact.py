@@ -155,10 +155,18 @@ class ContactProblem:
     tail: n u_n / p_n of both together for higher harmonics, m/Pa, (R,).
     tilt: (B,) N m/rad, stiffness of the lugs' tilt, inf where guided, 0 where free.
     sectors: M, of equal angles, the first about x.
+    besides: (U, U) m/N, further displacement of cells under forces on cells, of a body that is not
+    alike in all directions.
     """
 
     def __init__(
-        self, bands: Bands, flexibility: Floats, tail: Floats, tilt: Sequence[float], sectors: int
+        self,
+        bands: Bands,
+        flexibility: Floats,
+        tail: Floats,
+        tilt: Sequence[float],
+        sectors: int,
+        besides: Floats | None = None,
     ) -> None:
         self.bands, self.sectors = bands, sectors
         self.angles = 2.0 * np.pi * np.arange(sectors) / sectors
@@ -169,6 +177,8 @@ class ContactProblem:
         self._link = np.repeat(bands.links[bands.band], sectors)
         self._count = int(bands.links.max()) + 1
         self._fixed = self._of_cells(flexibility, tail)
+        if besides is not None:
+            self._fixed = self._fixed + besides
         self._fit(bands, tilt)
 
     def cells_area(self, bands: Bands) -> Floats:

@@ -145,7 +145,7 @@ class PressedCases:
         for case in cases:
             instants = _instants(case, between.get(case.case))
             try:
-                self._at(instants)
+                self.states(instants)
                 if case.case in besides:
                     states = model.pressed(besides[case.case])
                     self._besides[case.case] = model.waves(states)
@@ -190,12 +190,12 @@ class PressedCases:
         """Make the patterns: accurate ones for instants that may govern, rough ones for others."""
         parts = [(waves, MODE_TOLERANCE) for waves in self._besides.values()]
         for case, links in self.instants.items():
-            waves, may = self.model.waves(self._at(links)), near[case].may
+            waves, may = self.model.waves(self.states(links)), near[case].may
             parts += [(waves[:, may], MODE_TOLERANCE), (waves[:, ~may], ROUGH_MODE_TOLERANCE)]
         if parts and not self._whole:
             self.patterns = self.model.patterns(parts, self.patterns)
 
-    def _at(self, links: PinLoads) -> list[ContactState]:
+    def states(self, links: PinLoads) -> list[ContactState]:
         """The contact at the loads' instants."""
         if links.times is None:
             return self.model.pressed(links)
@@ -210,17 +210,17 @@ class PressedCases:
     def press(self, links: PinLoads) -> PressureLoads:
         """The pressures on the pin under loads of its links."""
         assert self.patterns is not None
-        states = self._at(links)
+        states = self.states(links)
         return self.patterns.loads(self.model.waves(states), links, self.model.arcs(states))
 
     def on_rings(self, links: PinLoads) -> PinLoads:
         """The resultants of the pressures on the rings under loads of the links."""
-        states = self._at(links)
+        states = self.states(links)
         return resultants(self.model.pin, self.model.rings, self.model.waves(states), links)
 
     def joined(self, links: PinLoads, instant: int) -> JointContact:
         here = links.at(np.array([instant]))
-        return self.model.joined(self._at(here), self.press(here))
+        return self.model.joined(self.states(here), self.press(here))
 
     def compared(
         self, near: Mapping[str, Candidates], requirement: Requirement, alone: bool = False

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -16,15 +17,52 @@ from geometry import ArgumentError
 class Bushing:
     """A ring of its own material, bonded in an eye; thickness in m.
 
+    interference: of the diameters before it was pressed in, m.
+
     Raises: ArgumentError for a thickness that is not positive.
     """
 
     thickness: float
     material: Material
+    interference: float = 0.0
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.thickness) and self.thickness > 0.0):
             raise ArgumentError("the thickness of a bushing must be positive", "not-positive")
+        if not (math.isfinite(self.interference) and self.interference >= 0.0):
+            raise ArgumentError("the interference of a bushing must not be negative", "negative")
+
+
+HeadShape = Literal["round", "tapered", "square"]
+
+
+@dataclass(frozen=True)
+class Shank:
+    """The outline of a lug in its plane: the head about the bore, and the shank that holds it, m.
+
+    shape: "round": a head of the lug's outer diameter, with a shank of parallel sides; "tapered":
+    the same head, with sides that leave it as tangents; "square": a plate whose end is straight.
+    width: of the shank where it is held; of the whole plate for "square".
+    length: from the bore's centre to where the shank is held.
+    end: from the bore's centre to the end of the head; a round head is eccentric where it is not
+    half of the outer diameter.
+    angle: of the shank from the x axis of the pin, seen from the bore, rad; None where the
+    mechanism gives it.
+
+    Raises: ArgumentError for a length that is not positive.
+    """
+
+    shape: HeadShape
+    width: float
+    length: float
+    end: float
+    angle: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("width", "length", "end"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise ArgumentError(f"the {name} of a shank must be positive", "not-positive")
 
 
 @dataclass(frozen=True)
@@ -64,6 +102,7 @@ class Lug:
     tilt: N m/rad, stiffness of the link's tilt against the others about any axis across the pin;
     inf: guided, 0: free.
     bushing: the pin bears on it, if there is one.
+    shank: None where only the eye is known, of which no stress is computed then.
     range: of the uncertain properties of the lug.
 
     Raises: ArgumentError for impossible values; fea.support.lugs.fit checks those that depend on
@@ -78,6 +117,7 @@ class Lug:
     tilt: float = math.inf
     bushing: Bushing | None = None
     range: LugRange = LugRange()
+    shank: Shank | None = None
 
     def __post_init__(self) -> None:
         what = f"lug {self.connection}"

@@ -8,7 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from assess.checks import margins_of
+from assess.codes import DEFAULT_CODES, FITTING_FACTORS
 from assess.judgement import against_yield
+from assess.lug_factors import LugFactors
 from assess.margin import CLAMPED_LUG_PREFIX, FORMULA_CHECKS, Margin, skipped, worst_places
 from assess.situation import LoadFactors, Situation, SolvedRow, with_solved, with_supports
 from assess.strength.bending_arms import BendingArms, bending_arms
@@ -53,9 +55,12 @@ def assessed(study: Study, task: Task, row: PinResult) -> PinResult:
 
 
 def load_factors(study: Study) -> LoadFactors:
-    """Return the load factors of a study."""
+    """Return the load factors of a study; assess.checks adds the fitting factor that a code demands
+    where the study states none.
+    """
     a = study.table.analysis
-    return LoadFactors(a.limit_factor, a.ultimate_factor, a.fitting_factor)
+    stated = "fitting_factor" in a.model_fields_set
+    return LoadFactors(a.limit_factor, a.ultimate_factor, a.fitting_factor, stated)
 
 
 def factor_assumption(study: Study, rows: Iterable[PinResult]) -> tuple[str, ...]:
@@ -65,6 +70,9 @@ def factor_assumption(study: Study, rows: Iterable[PinResult]) -> tuple[str, ...
     if not assumed or not any(row.worst for row in rows):
         return ()
     values = ", ".join(f"{key} {getattr(table, key):g}" for key in assumed)
+    if "fitting_factor" in assumed:
+        fitting = {code: f for code, f in FITTING_FACTORS.items() if code in table.codes}
+        values += "".join(f" ({f:g} for the code {code})" for code, f in fitting.items())
     return (f"Margins of safety take the loads of the study as limit loads, with {values}.",)
 
 
@@ -78,14 +86,17 @@ def _situation(
     """
     table = study.table.pin[task.pin.name]
     sized = tuple(x for x in task.given if table.lug[x.connection].outer_diameter)
-    even = study.table.analysis.bending_moment == "formula"
+    even, codes = study.table.analysis.bending_moment == "formula", study.table.analysis.codes
     profile = task.pin.profile
     if profile is None:
-        s = Situation(None, task.material, loads, factors=load_factors(study))
+        s = Situation(None, task.material, loads, factors=load_factors(study), codes=codes)
         return s, "a profile, which a pin from a file does not have"
     s = Situation(
         profile, task.material, loads, task.clamps, task.given, load_factors(study),
-        table.replaceable, even_governs=even, sized=sized,
+        table.replaceable, even_governs=even, sized=sized, codes=codes,
+        design_factor=study.table.analysis.design_factor, bending_factor=table.bending_factor,
+        lug_factors={name: LugFactors(**dict(lug.factors)) for name, lug in table.lug.items()},
+        lug_stresses=joint.lugs if joint else (), shank_angles=task.shanks.get(loads.case, {}),
     )  # fmt: skip
     along = joint.along if joint else None
     now = loads
@@ -104,8 +115,8 @@ def _situation(
 
 
 def _not_made(s: Situation, why: str) -> Iterable[Margin]:
-    """Yield the checks that a situation does not allow, and those of lugs at clamps, whose force no
-    formula gives.
+    """Yield the checks that a situation does not allow, those of lugs at clamps, whose force no
+    formula gives, and the clauses of chosen codes for lugs whose size is not given.
 
     why: what the checks by formula need.
     """
@@ -117,6 +128,13 @@ def _not_made(s: Situation, why: str) -> Iterable[Margin]:
             for lug in s.sized
             if lug.connection in clamped
         }
+        if s.codes != DEFAULT_CODES:
+            sized = {lug.connection for lug in s.sized}
+            lacking |= {
+                f"clauses for the lug of {name}": f"pin.{s.profile.name}.lug.{name}.outer_diameter"
+                for name in s.loads.surfaces
+                if name not in sized
+            }
     factor = s.factors.at("limit")
     return [skipped(name, "", "hand", "limit", factor, needs) for name, needs in lacking.items()]
 

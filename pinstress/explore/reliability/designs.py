@@ -207,7 +207,7 @@ def _name(purpose: str, count: int, total: int) -> str:
 
 
 def _solved(evaluator: Evaluator, values: Array, _: object) -> list[list[DesignRow]]:
-    return [evaluator.rows(design) for design in values]
+    return evaluator.rows_of(values)
 
 
 def _lost(evaluator: Evaluator, died: ProcessDied) -> list[DesignRow]:

@@ -107,12 +107,12 @@ def lighten_at(
         design = replace(design, at=at, settled=design.settled and _reached(design, at, aim))
         if design.settled:
             break
-        more = {
+        likely = {
             (p.pin, p.case): p.safety_factor / at[p.pin, p.case]
             for p in design.results.pins
             if p.safety_factor and np.isfinite(at.get((p.pin, p.case), np.nan))
         }
-        design = lighten(study, replace(aim, more=more), pins, jobs, progress)
+        design = lighten(study, replace(aim, likely=likely), pins, jobs, progress)
     else:
         at = factors_at(design.study, [pin.pin for pin in design.pins], probability, progress)
         design = replace(design, at=at, settled=design.settled and _reached(design, at, aim))
@@ -125,8 +125,9 @@ def _reached(design: LightStudy, at: dict[Row, float], aim: WeightGoal) -> bool:
     for pin in design.pins:
         rows = [p for p in design.results.pins if p.pin == pin.pin and p.safety_factor]
         low = [
-            (low_factor(p) or 0.0) * at.get((p.pin, p.case), np.nan) / (p.safety_factor or 1.0)
+            (low_factor(p) or 0.0) * at.get((p.pin, p.case), np.nan) / (p.safety_factor or 1.0) / x
             for p in rows
+            if (x := aim.more.get((p.pin, p.case), 1.0))
         ]
         if pin.factor is None or not low:
             continue

@@ -134,13 +134,13 @@ def _all(
 def _written(study: Study, aim: WeightGoal, pins: list[Lightest]) -> Study:
     pins = [pin for pin in pins if not pin.kept]
     scales = {pin.pin: pin.scale for pin in pins if pin.scale is not None}
-    scaled = resized_study(study, scales, aim.standard, aim.required)
+    scaled = resized_study(study, scales, aim.standard, aim.written)
     values = {pin.pin: pin.values for pin in pins if pin.values is not None}
     shapes = {}
     for name in values:
         shape = VariedShape(study, pin_of(study, name), aim.vary, aim.limits)
         shapes[name] = (shape.pin, shape.dimensions)
-    return written_study(scaled, shapes, values, aim.step, aim.required)
+    return written_study(scaled, shapes, values, aim.step, aim.written)
 
 
 def _agrees(pin: Lightest, results: Results, aim: WeightGoal) -> bool:
@@ -149,7 +149,11 @@ def _agrees(pin: Lightest, results: Results, aim: WeightGoal) -> bool:
     rows = [p for p in results.pins if p.pin == pin.pin]
     if any(p.verdict == "unconverged" and p.decided for p in rows):
         return all(p.decided is not False for p in rows)  # it ended where that was decided
-    low = [f / more.get(p.case, 1.0) for p in rows if (f := low_factor(p)) is not None]
+    low = [
+        f / times
+        for p in rows
+        if (f := low_factor(p)) is not None and (times := more.get(p.case, 1.0))
+    ]
     if pin.factor is None or not low:
         return True
     return aim.required <= min(low) * (1.0 + 1e-9) <= pin.factor * (1.0 + FACTOR_TOLERANCE)

@@ -85,15 +85,22 @@ class WeightGoal:
     vary: kinds of dimensions (DIMENSION_KINDS) that may change.
     limits: geometric limits.
     step: step to which diameters are rounded up, m.
-    more: by pin and case, times the factor that the nominal design needs so that a less likely one
-    reaches it.
+    more: as SizingGoal has it.
+    likely: by pin and case, times that factor, which the nominal design needs so that a less likely
+    one reaches it.
     """
 
     required: float
     vary: tuple[str, ...] = DIMENSION_KINDS
     limits: Proportions = field(default_factory=Proportions)
     step: float | None = None
-    more: Mapping[tuple[str, str], float] | None = None
+    more: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    likely: Mapping[tuple[str, str], float] = field(default_factory=dict)
+
+    @property
+    def written(self) -> float | None:
+        """The required factor of the new study; None where that keeps its own requirements."""
+        return None if self.more else self.required
 
     @property
     def standard(self) -> StandardDiameters | None:
@@ -101,8 +108,12 @@ class WeightGoal:
         return None if self.step is None else StandardDiameters(self.step)
 
     def of_pin(self, pin: str) -> dict[str, float]:
-        """Return the multiples of the factor that a pin needs, by case."""
-        return {case: x for (name, case), x in (self.more or {}).items() if name == pin}
+        """Return the multiples of the factor that a pin needs, by case, 0 for none."""
+        return {
+            place[1]: self.more.get(place, 1.0) * self.likely.get(place, 1.0)
+            for place in self.more.keys() | self.likely.keys()
+            if place[0] == pin
+        }
 
 
 @dataclass(frozen=True)
@@ -112,7 +123,8 @@ class Lightest:
     values: its dimensions by key, m, as they are written; None if it is only scaled.
     scale: scale of a pin that is only scaled. Both are None where nothing reaches the factor, for
     the reason `why`.
-    before, factor: lower end of its factor as it was and with these dimensions.
+    before: lower end of its factor as it was, in the case that governed.
+    factor: the same with these dimensions, over what is demanded there, times the required one.
     scaled: its volume, m^3, were it only scaled; None where that is not known.
     whole: its dimensions, m, were it only scaled; None where they are not known.
     optimality: how far the result of the search meets the conditions of an optimum.
@@ -186,7 +198,7 @@ def lightest_pin(
         values = np.array([known.get(d.key, d.value) for d in shape.dimensions])
         stress.at(values, SLOPE_RANGE)
         sure = stress.sure(values)
-        before = problem.required * float(np.exp(-sure.largest))
+        before = problem.demanded(sure.governs) * float(np.exp(-sure.largest))
         stress.watched = decided(sure.peaks) if start.decided is None else start.decided
         start = replace(start, decided=stress.watched)
         first = stress.at(values)
@@ -228,24 +240,28 @@ def _only_scaled(stress: PinStress, aim: WeightGoal, start: Start) -> Lightest:
     """Scale all dimensions by one number, as `size` does, without derivatives."""
     problem, first = stress.problem, start.scale or 1.0
     factors: dict[float, float] = {}
+    governs: list[str] = []
     stress.watched = start.decided or frozenset()
 
     def factor_at(scale: float) -> float:
         solution = stress.of(resized_study(problem.study, {problem.name: scale}, aim.standard))
+        governs.append(solution.governs)
         if not factors and start.decided is None:
             stress.watched = decided(solution.peaks)
         factors[scale] = problem.required * float(np.exp(-solution.worst))
         return factors[scale]
 
+    def before() -> float | None:
+        times = problem.demanded(governs[0]) / problem.required if governs else 1.0
+        return times * factors[first] if factors else None
+
     try:
         best = smallest(factor_at, problem.required, first)
         way = SCALED_AS_WHOLE_NOTE.format("" if problem.shape.whole.revolved else CUTS_REASON)
     except (NoSizeError, ImpossibleError, InputError) as error:
-        return Lightest(
-            problem.name, before=factors.get(first), solved=len(factors), why=str(error)
-        )
+        return Lightest(problem.name, before=before(), solved=len(factors), why=str(error))
     return Lightest(
-        problem.name, None, best.scale, factors[first], best.factor, solved=len(factors), way=way,
+        problem.name, None, best.scale, before(), best.factor, solved=len(factors), way=way,
         decided=stress.watched,
     )  # fmt: skip
 
@@ -266,8 +282,12 @@ def problem_of(study: Study, plan: Plan, pin: str, aim: WeightGoal) -> SizingPro
             if any(kind_of(d.key) == kind for d in dimensions_of(study, shaft))
         ]
         return f"it has no {' or '.join(aim.vary)} to vary, only {' and '.join(has)}"
+    more = aim.of_pin(pin)
+    loads = {case: x for case, x in plan.loads.items() if more.get(case, 1.0)}
+    if not loads:
+        return "no factor is required of it"
     requirement = replace(plan.requirement, goal="value")
-    return SizingProblem(study, pin, shape, requirement, plan.loads, aim.required, aim.of_pin(pin))
+    return SizingProblem(study, pin, shape, requirement, loads, aim.required, more)
 
 
 class _Search:

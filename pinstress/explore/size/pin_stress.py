@@ -59,7 +59,7 @@ class SizingProblem:
 
     shape: its shape.
     requirement: requirements on the solution.
-    loads: by case.
+    loads: by case, of those in which a factor is required.
     required: the factor.
     more: by case, the multiple of the required factor that is needed there, mostly 1.
     """
@@ -72,18 +72,24 @@ class SizingProblem:
     required: float
     more: dict[str, float]
 
+    def demanded(self, case: str) -> float:
+        """Return the factor that is needed in a case."""
+        return self.required * self.more.get(case, 1.0)
+
 
 @dataclass(frozen=True)
 class SolvedPin:
     """A solved pin with values (n,) of the dimensions, m.
 
     places: stresses by the logarithms of the dimensions.
+    governs: the case of the largest of them, over what is allowed there.
     singular: by case, those of unbounded stress that must not govern.
     """
 
     values: Floats
     peaks: tuple[Maximum, ...]
     places: tuple[StressPlace, ...]
+    governs: str
     singular: tuple[CasePlace, ...] = ()
 
     @property
@@ -239,7 +245,8 @@ class PinStress:
                 self._known.add(part.name)
             places.append(StressPlace(part.name, value, slope, part.guess))
         at = np.zeros(0) if values is None else values
-        return SolvedPin(at, tuple(peaks), tuple(places), tuple(singular))
+        governs = max(of_case, key=lambda one: one[1])[0]
+        return SolvedPin(at, tuple(peaks), tuple(places), governs, tuple(singular))
 
     def _tasks(self, study: Study, values: Floats | None) -> list[Task]:
         """Return the pin under the cases that may govern."""
@@ -269,7 +276,7 @@ class PinStress:
         """Return the allowed stress, Pa."""
         strength = task.material.yield_strength
         assert strength is not None  # a pin without strength is refused before
-        return strength / (self.problem.required * self.problem.more.get(peak.case, 1.0))
+        return strength / self.problem.demanded(peak.case)
 
     def _of_task(
         self, study: Study, task: Task, requirement: Requirement, differentiated: bool

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from pinstress.explore.size.size_pin import SizingGoal, SizingResult, size_pin
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import Study
+
+if TYPE_CHECKING:
+    from pinstress.explore.sweep.cluster import Cluster
 
 MAX_SIZING_PASSES = 4
 
@@ -28,6 +32,7 @@ def size_pins(
     finished: Finished,
     jobs: int,
     progress: Progress,
+    cluster: Cluster | None = None,
 ) -> list[SizingResult]:
     """Size the pins of a plan.
 
@@ -36,12 +41,15 @@ def size_pins(
 
     before: pins that were sized earlier.
     finished: called with every pin as soon as it is sized.
+    jobs: number of pins sized in parallel here. cluster: where they are sized instead.
+
+    Raises: InputError where the cluster is lost.
     """
     names = list(dict.fromkeys(task.pin.name for task in plan.tasks))
     sized = {result.pin: result for result in before if result.pin in names}
     todo = [name for name in names if name not in sized]
     for _ in range(MAX_SIZING_PASSES):
-        _size(plan, goal, names, todo, sized, finished, jobs, progress)
+        _size(plan, goal, names, todo, sized, finished, jobs, progress, cluster)
         todo = loaded_more(plan, goal, list(sized.values()))
         if not todo:
             break
@@ -66,12 +74,9 @@ def _size(
     finished: Finished,
     jobs: int,
     progress: Progress,
+    cluster: Cluster | None,
 ) -> None:
     scales = {x.pin: x.scale for x in sized.values() if x.scale is not None}
-    work = [
-        Job(f"pin {name}", partial(_job, plan, name, goal, scales, _label(names, name)))
-        for name in todo
-    ]
 
     def done(number: int, outcome: SizingResult | ProcessDied) -> None:
         name = todo[number]
@@ -81,6 +86,15 @@ def _size(
         sized[name] = outcome if first is None else replace(outcome, before=first.before)
         finished(sized[name])
 
+    if cluster is not None:
+        from pinstress.explore.size.on_cluster import PinProblem, size_on
+
+        size_on(cluster, PinProblem.of(plan, goal), todo, scales, done, progress)
+        return
+    work = [
+        Job(f"pin {name}", partial(_job, plan, name, goal, scales, _label(names, name)))
+        for name in todo
+    ]
     in_parallel(work, jobs, progress, done=done)
 
 

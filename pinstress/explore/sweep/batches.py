@@ -10,6 +10,7 @@ import math
 import threading
 import time
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -17,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from loads import noted_files
-from pinstress.explore.sweep.evaluate import DesignRow, Evaluator
+from pinstress.explore.sweep.evaluate import STRENGTH_KEYS, DesignRow, Evaluator
 from pinstress.explore.sweep.laws import Floats
 from pinstress.explore.sweep.number import Number
 from pinstress.study.reading.file import Study, parse_study
@@ -26,9 +27,8 @@ TARGET_BATCH_SECONDS = 2.0  # s of work in a batch
 # s in which a batch is handed out to one of many processes and its rows are read
 BATCH_OVERHEAD_SECONDS = 0.008
 MAX_BATCH_DESIGNS = 5000  # designs in a batch
-STRENGTH_KEYS = ("yield_strength", "ultimate_strength", "shear_strength", "bearing_strength")
 
-_BATCH_LOCK = threading.Lock()  # workers of a user's cluster may have several threads
+_SOLVER_LOCK = threading.Lock()  # workers of a user's cluster may have several threads
 
 Rows = list[list[DesignRow]]
 
@@ -90,14 +90,21 @@ class SolvedBatch:
     seconds: float
 
 
-def solve_batch(problem: DesignProblem, batch: Batch) -> SolvedBatch:
-    """Solve the designs of a batch, with one thread in each numeric library."""
+@contextmanager
+def one_solver() -> Iterator[None]:
+    """Solve in one thread of this process at a time, with one in each numeric library."""
     from threadpoolctl import threadpool_limits
 
-    with _BATCH_LOCK, threadpool_limits(1):
+    with _SOLVER_LOCK, threadpool_limits(1):
+        yield
+
+
+def solve_batch(problem: DesignProblem, batch: Batch) -> SolvedBatch:
+    """Solve the designs of a batch."""
+    with one_solver():
         start = time.perf_counter()
         evaluator = evaluator_of(problem)
-        rows = [evaluator.rows(values) for values in batch.values]
+        rows = evaluator.rows_of(batch.values)
         return SolvedBatch(batch, rows, time.perf_counter() - start)
 
 

@@ -8,41 +8,37 @@ unit loads of a pin that only loads or strength change.
 
 from __future__ import annotations
 
-import hashlib
 import re
 from collections import OrderedDict
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Generic, TypeVar
 
 from assess.judgement import NOT_DECIDED
-from fea.core.material import Material
 from fea.core.peak import Maximum, Verdict
-from fea.core.requirement import Requirement
-from fea.support.lugs.lug import Lug
-from geometry import ArgumentError
+from geometry import ArgumentError, PinLike
 from loads import Linkage
 from pinbase.memo import Memo
-from pinbase.records import pack
 from pinstress.analysis.plan import prepare, requirement_of
 from pinstress.analysis.solve import solutions
-from pinstress.analysis.stored import shape_of
 from pinstress.explore.sweep.laws import Floats
 from pinstress.explore.sweep.number import Number
 from pinstress.explore.sweep.outcomes import bare_row, judged_row, outcome_words, stress_at
 from pinstress.explore.sweep.parameters import Parameter
+from pinstress.explore.sweep.superposed import PosedTask, Rows, posed_task, superposed
 from pinstress.study.model.cases import CaseLoads, case_loads
-from pinstress.study.model.impulses import ImpulseLoads
 from pinstress.study.model.mechanism.linkage import determined, linkage
 from pinstress.study.model.pins import pin as pin_of
-from pinstress.study.model.requirements import required_factor, required_factors
+from pinstress.study.model.requirements import required_factor
 from pinstress.study.model.tasks import Task, tasks
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, raw_study, with_raw, with_value
 from reports.data.results import PinResult
 
 MAX_MESHES_SIZE = 2 * 10**8  # bytes of meshes and fields in each of perhaps many processes
+MAX_SUPERPOSED = 256  # designs at once: with 5,000 points 10 MB for each array of bounds
+STRENGTH_KEYS = ("yield_strength", "ultimate_strength", "shear_strength", "bearing_strength")
 MAX_REMEMBERED_LOADS, MAX_REMEMBERED_ROWS = 64, 4096  # that are remembered, loads of each case
 # Of which loads do not depend
 TABLES_WITHOUT_LOADS = ("pin", "lug_defaults", "material", "analysis")
@@ -96,6 +92,17 @@ def rows_without_maximum(
         DesignRow(pin, case, None, None, None, "failed", reason=reason, code=code)
         for pin, case in table
     ]
+
+
+@dataclass(frozen=True)
+class PosedDesign:
+    """A design before it is solved: its tasks, and the rows, by pin and case, of what cannot be
+    built.
+    """
+
+    study: Study
+    tasks: tuple[PosedTask, ...]
+    failed: dict[tuple[str, str], DesignRow]
 
 
 class Recent(Generic[K, V]):
@@ -156,7 +163,10 @@ class Evaluator:
             MAX_REMEMBERED_LOADS * len(self._cases)
         )
         self.memo = Memo(MAX_MESHES_SIZE)
-        self._rows = Recent[str, tuple[PinResult, ...]](MAX_REMEMBERED_ROWS)
+        self._rows = Recent[str, Rows](MAX_REMEMBERED_ROWS)
+        self._shapes = Recent[tuple[object, ...], PinLike](MAX_REMEMBERED_LOADS)
+        self._alike = Recent[tuple[object, ...], str](MAX_REMEMBERED_LOADS)
+        self._of_shapes = [k for k, x in enumerate(self.numbers) if not only_loads(x)]
         self._of_loads = {
             case: [k for k, number in enumerate(self.numbers) if self._moves(number, case)]
             for case in self._cases
@@ -167,17 +177,22 @@ class Evaluator:
 
         values: of the parameters (p,), SI.
         """
-        numbers = [float(value) for value in values]
-        try:
-            study = self.changed(numbers)
-            loads = self.loads_of(study, numbers)
-        except (InputError, MemoryError) as error:
-            return [_failed(self.study, pin, case, error) for pin, case in self.table]
-        rows: dict[tuple[str, str], DesignRow] = {}
-        for pin in self._pins:
-            cases = [case for name, case in self.table if name == pin]
-            rows |= {(pin, case): row for case, row in self._of_pin(study, pin, cases, loads)}
-        return [rows[key] for key in self.table]
+        return self.rows_of([values])[0]
+
+    def rows_of(self, designs: Iterable[Sequence[float] | Floats]) -> list[list[DesignRow]]:
+        """Return the rows of designs, each as `rows` has them.
+
+        Pins that differ by their loads alone are superposed together.
+        designs: values of the parameters (p,) of each, SI.
+        """
+        values = [[float(value) for value in design] for design in designs]
+        out: list[list[DesignRow]] = []
+        for k in range(0, len(values), MAX_SUPERPOSED):
+            posed = [self._posed(design) for design in values[k : k + MAX_SUPERPOSED]]
+            new = (x for one in posed for x in one.tasks if self._rows.get(x.key) is None)
+            known = superposed(new, self.memo)
+            out += [self._answered(one, known) for one in posed]
+        return out
 
     def changed(self, values: Sequence[float]) -> Study:
         """Return the study with other values (SI) of its numbers.
@@ -236,69 +251,106 @@ class Evaluator:
             loads[name] = known
         return loads
 
-    def _of_pin(
-        self,
-        study: Study,
-        name: str,
-        cases: list[str],
-        loads: dict[str, CaseLoads | InputError],
-    ) -> Iterable[tuple[str, DesignRow]]:
-        wrong = {c: x for c in cases if isinstance(x := loads[c], InputError)}
-        right = {c: x for c in cases if not isinstance(x := loads[c], InputError)}
-        yield from ((c, _failed(study, name, c, error)) for c, error in wrong.items())
-        if not right:
-            return
-        try:
-            todo = tasks(study, [pin_of(study, name)], right)
-        except (InputError, ArithmeticError, MemoryError) as error:
-            yield from ((c, _failed(study, name, c, error)) for c in right)
-            return
-        requirement = requirement_of(study, memory=self._memory)
-        for task in todo:
-            yield from self._solved(study, task, requirement, right)
+    def _posed(self, values: Sequence[float]) -> PosedDesign:
+        """Return a design that is built, with its loads, and nothing solved.
 
-    def _solved(
-        self, study: Study, task: Task, requirement: Requirement, loads: Mapping[str, CaseLoads]
-    ) -> Iterable[tuple[str, DesignRow]]:
-        density = task.material.density
-        mass = density * task.pin.volume if density else None
+        values: of the parameters (p,), SI.
+        """
         try:
-            rows = self._rows_of(study, task, requirement, loads)
+            study = self.changed(values)
+            loads = self.loads_of(study, values)
+        except (InputError, MemoryError) as error:
+            failed = {(p, c): _failed(self.study, p, c, error) for p, c in self.table}
+            return PosedDesign(self.study, (), failed)
+        posed, failed = list[PosedTask](), dict[tuple[str, str], DesignRow]()
+        for pin in self._pins:
+            cases = [case for name, case in self.table if name == pin]
+            wrong = {c: x for c in cases if isinstance(x := loads[c], InputError)}
+            right = {c: x for c in cases if not isinstance(x := loads[c], InputError)}
+            failed |= {(pin, c): _failed(study, pin, c, error) for c, error in wrong.items()}
+            try:
+                posed += self._of_pin(study, pin, right, values) if right else ()
+            except (InputError, ArithmeticError, MemoryError) as error:
+                failed |= {(pin, c): _failed(study, pin, c, error) for c in right}
+        return PosedDesign(study, tuple(posed), failed)
+
+    def _of_pin(
+        self, study: Study, name: str, loads: dict[str, CaseLoads], values: Sequence[float]
+    ) -> list[PosedTask]:
+        """Return the tasks of a pin of a design.
+
+        loads: by case. values: of the parameters (p,), SI.
+
+        Raises: InputError, MeshError.
+        """
+        key = name, *(values[k] for k in self._of_shapes)
+        pin = self._shapes.get(key) or self._shapes.put(key, pin_of(study, name))
+        requirement = requirement_of(study, memory=self._memory)
+        posed = []
+        for task in tasks(study, [pin], loads):
+            alike = None if task.lugs or requirement.goal == "decide" else self._alike.get(key)
+            one = posed_task(study, task, requirement, loads, alike)
+            posed.append(one)
+            if not task.lugs:
+                self._alike.put(key, one.alike)
+        return posed
+
+    def _answered(self, design: PosedDesign, known: Mapping[str, Rows]) -> list[DesignRow]:
+        """Return the rows of a design; known: those of some tasks, by their keys."""
+        rows = dict(design.failed)
+        for posed in design.tasks:
+            rows |= self._solved(posed, known.get(posed.key))
+        return [rows[key] for key in self.table]
+
+    def _solved(self, posed: PosedTask, known: Rows | None) -> dict[tuple[str, str], DesignRow]:
+        """Return the rows of a task, by pin and case; known: those that are not judged yet."""
+        study, task, pin = posed.study, posed.task, posed.task.pin.name
+        try:
+            rows = known or self._rows_of(posed)
         except (InputError, ArgumentError, ArithmeticError, MemoryError) as error:
             names = [loads.case for loads in task.loads]
-            yield from ((c, _failed(study, task.pin.name, c, error)) for c in names)
-            return
-        pin = task.pin.name
-        for row in (judged_row(x, task, required_factor(study, pin, x.case)) for x in rows):
-            peak, good = row.maximum, row.verdict == "converged"
-            yield (
-                row.case,
-                DesignRow(
-                    row.pin,
-                    row.case,
-                    row.max_von_mises,
-                    row.error_estimate,
-                    row.safety_factor,
-                    peak.verdict,
-                    peak.time,
-                    mass,
-                    "" if good else row.note,
-                    "" if good else _code(peak),
-                    *outcome_words(row, task, study.system),
-                    peak.places.governs if peak.places else "",
-                    *stress_at(peak),
-                ),
-            )
+            return {(pin, c): _failed(study, pin, c, error) for c in names}
+        return {
+            (pin, x.case): _design_row(judged_row(x, task, required_factor(study, pin, x.case)),
+                                       task, study)
+            for x in rows
+        }  # fmt: skip
 
-    def _rows_of(
-        self, study: Study, task: Task, requirement: Requirement, loads: Mapping[str, CaseLoads]
-    ) -> tuple[PinResult, ...]:
-        key = _question(study, task, requirement, [loads[x.case].range for x in task.loads])
-        known = self._rows.get(key)
+    def _rows_of(self, posed: PosedTask) -> Rows:
+        known = self._rows.get(posed.key)
         if known is None:
-            solved = solutions(study, task, requirement, lambda _: None, self.memo)
-            known = self._rows.put(key, tuple(bare_row(task, s, loads) for s in solved))
+            task, silent = posed.task, (lambda _: None)
+            solved = solutions(posed.study, task, posed.requirement, silent, self.memo)
+            known = self._rows.put(posed.key, tuple(bare_row(task, s, posed.loads) for s in solved))
         return known
+
+
+def _design_row(row: PinResult, task: Task, study: Study) -> DesignRow:
+    """Return the row of a judged pin."""
+    density, peak, good = task.material.density, row.maximum, row.verdict == "converged"
+    return DesignRow(
+        row.pin,
+        row.case,
+        row.max_von_mises,
+        row.error_estimate,
+        row.safety_factor,
+        peak.verdict,
+        peak.time,
+        density * task.pin.volume if density else None,
+        "" if good else row.note,
+        "" if good else _code(peak),
+        *outcome_words(row, task, study.system),
+        peak.places.governs if peak.places else "",
+        *stress_at(peak),
+    )
+
+
+def only_loads(number: Number) -> bool:
+    """Return whether a number changes nothing of a pin but its given loads and what judges it."""
+    return all(
+        path[0] == "case" or (path[0] == "material" and path[-1] in STRENGTH_KEYS)
+        for path in number.paths
+    )
 
 
 def _names(content: object, case: str) -> bool:
@@ -308,46 +360,6 @@ def _names(content: object, case: str) -> bool:
     if isinstance(content, list | tuple):
         return any(_names(entry, case) for entry in content)
     return content == case
-
-
-def elastic(material: Material) -> Material:
-    """Return a material without its strengths, on which no stress depends."""
-    return Material(
-        material.name, material.youngs_modulus, material.poisson_ratio, material.density
-    )
-
-
-def _elastic_lug(lug: Lug) -> Lug:
-    """Return a lug without strengths, by which only its own share is judged (bare_row drops
-    that).
-    """
-    bushing = lug.bushing and replace(lug.bushing, material=elastic(lug.bushing.material))
-    return replace(lug, material=elastic(lug.material), bushing=bushing)
-
-
-def _question(
-    study: Study, task: Task, requirement: Requirement, ranges: Sequence[ImpulseLoads | None]
-) -> str:
-    """Return a hash of all on which a pin's answers depend in a study whose mechanism does not
-    change.
-
-    ranges: of impulses by case, as other ones may have the same forces.
-    """
-    decides = requirement.goal == "decide"
-    asks = (
-        shape_of(task.pin),
-        task.clamps,
-        task.lugs if decides else tuple(map(_elastic_lug, task.lugs)),
-        study.table.analysis.joints,
-        study.table.fatigue is not None,
-        task.loads,
-        task.ranges,
-        ranges,
-        task.material if decides else elastic(task.material),
-        replace(requirement, memory=None),
-        required_factors(study, task.pin.name, (loads.case for loads in task.loads)),
-    )
-    return hashlib.sha256(pack(asks)).hexdigest()
 
 
 def _code(peak: Maximum) -> str:

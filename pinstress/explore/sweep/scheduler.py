@@ -1,4 +1,5 @@
-"""Batches solved on the user's own cluster: a Dask scheduler and its workers.
+"""Batches of designs, or other work, solved on the user's own cluster: a Dask scheduler and its
+workers.
 
 Before a worker's rows are kept, it has reported the same versions as this process, and the files
 that the study names are sent to it: files at the same paths there are not read.
@@ -14,18 +15,17 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from distributed import Future, KilledWorker, get_worker
 
 from loads import FileError, read_regular, sent_files
 from pinbase.processes.pool import Job, Tell, in_parallel
 from pinstress.analysis.cache import REQUIRED_PACKAGES
-from pinstress.explore.sweep.batches import Batch, DesignProblem, SolvedBatch, solve_batch
+from pinstress.explore.sweep.batches import solve_batch
 from pinstress.explore.sweep.cluster import Cluster, connected, other_versions, short
 from pinstress.explore.sweep.connection import ClusterConnection
 from pinstress.explore.sweep.versions import versions
-from pinstress.explore.sweep.workers import BatchQueue
 from pinstress.study.model.imported_pin import MAX_BODY_SIZE
 from pinstress.study.reading.errors import InputError
 
@@ -45,13 +45,36 @@ Contents = tuple[tuple[str, bytes], ...]  # of files by their paths
 
 @dataclass(frozen=True)
 class WorkerAnswer:
-    """The answer of a worker: its address and versions; the rows, None if it first needs the
+    """The answer of a worker: its address and versions; the result, None if it first needs the
     files.
     """
 
     worker: str
     versions: dict[str, str]
-    done: SolvedBatch | None
+    done: Any
+
+
+class FilesProblem(Protocol):
+    """All that a worker needs to solve an item, as text, and a hash of the files beside it."""
+
+    @property
+    def files(self) -> str: ...
+
+
+class WorkQueue(Protocol):
+    """Items of work, and what becomes of them."""
+
+    def spread_over(self, workers: int) -> None:
+        """Size further items for a number of workers."""
+
+    def take(self) -> Any:
+        """Return the next item; None while there is none."""
+
+    def done(self, done: Any) -> None:
+        """Keep a result."""
+
+    def died(self, item: Any) -> None:
+        """Record that the process of an item ended by itself."""
 
 
 _contents: dict[str, Contents] = {}  # in a worker: of the study that is solved, by their hash
@@ -70,22 +93,27 @@ def cluster_at(
 
 
 def solve_on(
-    cluster: Cluster, problem: DesignProblem, files: tuple[Path, ...], work: BatchQueue
+    cluster: Cluster,
+    problem: Any,
+    files: tuple[Path, ...],
+    work: WorkQueue,
+    solve: Callable[[Any, Any], Any] = solve_batch,
 ) -> None:
-    """Solve batches on a cluster.
+    """Solve batches, or other items, on a cluster.
 
-    files: those that the study names.
+    problem: a dataclass that is a FilesProblem. files: those that the study names.
+    solve: solves an item of a problem.
 
     Raises: InputError where the scheduler or all workers are lost, or a worker that has come has
     other versions; batches kept by then stay.
     """
     contents = contents_of(files)
     problem = replace(problem, files=hash_of(contents))
-    running: dict[Future[WorkerAnswer], Batch] = {}
+    running: dict[Future[WorkerAnswer], Any] = {}
 
-    def start(batch: Batch, given: Contents | None) -> None:
-        sent = {"sent": pickle.dumps((solve_there, problem, given, batch))}
-        running[cluster.client.submit(eval, BATCH_EXPRESSION, sent, pure=False)] = batch
+    def start(item: Any, given: Contents | None) -> None:
+        sent = {"sent": pickle.dumps((solve_there, solve, problem, given, item))}
+        running[cluster.client.submit(eval, BATCH_EXPRESSION, sent, pure=False)] = item
 
     cluster.wait_for_worker()
     while True:
@@ -102,11 +130,11 @@ def solve_on(
             outcome = _outcome(cluster, future)
             if outcome is None:
                 continue  # its worker has gone with it: it is solved again
-            batch = running.pop(future)
+            item = running.pop(future)
             if isinstance(outcome, KilledWorker):
-                work.died(batch)
+                work.died(item)
             elif outcome.done is None:
-                start(batch, contents)
+                start(item, contents)
             else:
                 cluster.require_same({outcome.worker: outcome.versions})
                 work.done(outcome.done)
@@ -127,8 +155,10 @@ def _connect(connection: ClusterConnection, _: Tell) -> None:
         pass
 
 
-def solve_there(problem: DesignProblem, contents: Contents | None, batch: Batch) -> WorkerAnswer:
-    """Solve a batch in a worker, with the contents of the study's files, if they are given or were
+def solve_there(
+    solve: Callable[[Any, Any], Any], problem: FilesProblem, contents: Contents | None, item: Any
+) -> WorkerAnswer:
+    """Solve an item in a worker, with the contents of the study's files, if they are given or were
     before.
     """
     if contents is not None:
@@ -138,7 +168,7 @@ def solve_there(problem: DesignProblem, contents: Contents | None, batch: Batch)
     done = None
     if known is not None:
         with sent_files(dict(known)):
-            done = solve_batch(problem, batch)
+            done = solve(problem, item)
     return WorkerAnswer(get_worker().address, _versions_here(), done)
 
 

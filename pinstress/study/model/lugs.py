@@ -8,17 +8,18 @@ from dataclasses import dataclass, replace
 from fea.core.material import Material
 from fea.cut.inside import crosses_end
 from fea.support.lugs.fit import beyond_foundations, fitted, on_structure
-from fea.support.lugs.lug import Bushing, Lug, LugRange
+from fea.support.lugs.lug import Bushing, Lug, LugRange, Shank
 from geometry import ArgumentError, Band, Cut, Hole, Pin, PinLike, body_of_revolution
 from pinstress.study.model.iso286 import fit_of
 from pinstress.study.model.pins import material
 from pinstress.study.reading.file import Study
-from pinstress.study.schema.lugs import LugRangeTable, LugTable
+from pinstress.study.schema.lugs import BushingTable, LugRangeTable, LugTable, ShankTable
 from pinstress.study.schema.pins import PinTable
 
 EYE_DIAMETER_RATIO = 2.5  # outer diameter over the band's
 # Of the outer diameter: distance from the bore's centre to where the link clamps the eye
 CLAMP_DISTANCE_RATIO = 0.8
+SHANK_LENGTH_RATIO = 2.0  # the default, so far from the bore that how it is held does not count
 
 
 def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]:
@@ -226,7 +227,7 @@ def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Mater
     fit = None if given.fit is None else _fit(connection, given.fit, 2.0 * band.radius)
     middle = 0.0 if fit is None else sum(fit) / 2.0
     ring = given.bushing
-    bushing = None if ring is None else Bushing(ring.thickness, material(study, ring.material))
+    bushing = None if ring is None else _bushing(study, ring)
     return Lug(
         connection,
         outer,
@@ -236,6 +237,22 @@ def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Mater
         tilt,
         bushing,
         _range(given.range, fit),
+        None if given.shank is None else _shank(given.shank, outer),
+    )
+
+
+def _bushing(study: Study, given: BushingTable) -> Bushing:
+    return Bushing(given.thickness, material(study, given.material), given.interference)
+
+
+def _shank(given: ShankTable, outer: float) -> Shank:
+    """Return the outline of a lug. outer: its outer diameter, m."""
+    return Shank(
+        given.shape,
+        given.width or outer,
+        given.length or SHANK_LENGTH_RATIO * outer,
+        given.end or outer / 2.0,
+        given.angle,
     )
 
 

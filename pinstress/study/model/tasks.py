@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,6 +22,9 @@ from pinstress.study.model.pins import material
 from pinstress.study.reading.errors import Errors
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.shown import listed
+
+if TYPE_CHECKING:
+    from fea.lug.in_joint import ShankAngle
 
 
 @dataclass(frozen=True)
@@ -46,6 +50,7 @@ class Task:
     surroundings: lugs in which it may sit where none support it.
     impulses: by case that has an impulse.
     given: the lugs that the study gives, whether they support the pin or not.
+    shanks: by case and connection, the angles of the shanks of lugs.
     """
 
     pin: PinLike
@@ -59,6 +64,7 @@ class Task:
     surroundings: AssumedLugs | None = None
     impulses: dict[str, PinImpulse] = field(default_factory=dict)
     given: tuple[Lug, ...] = ()
+    shanks: dict[str, dict[str, ShankAngle]] = field(default_factory=dict)
 
 
 def tasks(study: Study, pins: list[PinLike], loads: dict[str, CaseLoads]) -> list[Task]:
@@ -124,8 +130,22 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
     given_ones = given_lugs(study, pin, in_lugs) if cases else ()
     return Task(
         pin, made_of, clamps, tuple(cases), left_out, ranges, between, in_lugs, around, impulses,
-        given_ones,
+        given_ones, _shanks(study, pin, loads, cases, in_lugs),
     )  # fmt: skip
+
+
+def _shanks(
+    study: Study,
+    pin: PinLike,
+    loads: dict[str, CaseLoads],
+    cases: list[PinLoads],
+    in_lugs: tuple[Lug, ...],
+) -> dict[str, dict[str, ShankAngle]]:
+    if not any(lug.shank for lug in in_lugs):
+        return {}
+    from pinstress.study.model.shanks import shank_angles  # with the elements of lugs
+
+    return {case.case: shank_angles(study, pin.name, loads[case.case]) for case in cases}
 
 
 def assumed_distribution(study: Study, todo: Iterable[Task]) -> str:

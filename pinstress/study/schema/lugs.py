@@ -1,13 +1,15 @@
 """The study file's form: the lugs in which pins sit, and what all of them have in common."""
 
 from collections.abc import Iterator
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.types import (
+    Angle,
     Length,
+    Name,
     NotNegativeLength,
     Number,
     PositiveLength,
@@ -23,9 +25,58 @@ class BushingTable(StrictTable):
     """Wall thickness."""
     material: str
     """Name of a `[material]`."""
+    interference: NotNegativeLength = 0.0
+    """Outer diameter of the bushing minus the diameter of the hole into which it was pressed."""
+
+
+class ShankTable(StrictTable):
+    """The outline of a lug: its head and the shank that holds it. With it, the stress of the lug
+    itself is computed.
+    """
+
+    shape: Literal["round", "tapered", "square"] = "round"
+    """"round": a round head and a shank of parallel sides; "tapered": a round head whose sides run
+    to the shank as tangents; "square": a plate with a straight end."""
+    width: PositiveLength | None = None
+    """Width of the shank where it is held, of a square plate throughout. Default: the outer
+    diameter."""
+    length: PositiveLength | None = None
+    """From the centre of the bore to where the shank is held. Default: 2 outer diameters."""
+    end: PositiveLength | None = None
+    """From the centre of the bore to the end of the head. Default: half of the outer diameter."""
+    angle: Angle | None = None
+    """Direction of the shank from the bore, from the pin's x axis. Default: towards the middle of
+    the body's other joints; where no mechanism gives it, against the largest force on the lug."""
+    toward: Name | None = None
+    """Name of the joint towards which the shank points. Not with `angle`."""
+
+    @model_validator(mode="after")
+    def _one_direction(self) -> "ShankTable":
+        if self.angle is not None and self.toward is not None:
+            raise ArgumentError("give angle or toward, not both", "give-one")
+        return self
 
 
 Times = Annotated[Number, Field(gt=0.0)]
+
+
+class LugFactorsTable(StrictTable):
+    """Efficiency factors of a lug for the code "aircraft", read off the figures of its source."""
+
+    K: Times | None = None
+    """Bearing: AFFDL-TR-69-42, figure 9-2 or 9-3."""
+    K_n: Times | None = None
+    """Net section: AFFDL-TR-69-42, figure 9-4."""
+    k_br: Times | None = None
+    """Shear-bearing by Melcon and Hoblit, instead of K."""
+    k_t: Times | None = None
+    """Tension by Melcon and Hoblit, instead of K_n."""
+    C: Times | None = None
+    """Yield by Melcon and Hoblit."""
+    k_tru: Times | None = None
+    """Transverse load, ultimate, by Melcon and Hoblit."""
+    k_try: Times | None = None
+    """Transverse load, yield, by Melcon and Hoblit."""
 
 
 class LugRangeTable(StrictTable):
@@ -63,6 +114,10 @@ class LugTable(StrictTable):
     Default: the bending stiffness of an eye clamped at a distance of 0.8 outer diameters."""
     bushing: BushingTable | None = None
     """A bushing bonded in the eye."""
+    shank: ShankTable | None = None
+    """The outline of the lug in its plane, which its own stress requires."""
+    factors: LugFactorsTable = LugFactorsTable()
+    """Efficiency factors of the lug, which only figures give."""
     range: LugRangeTable = LugRangeTable()
     """What is not known of the lug, for the range of the maximum over the joint (`joint.range`)."""
 

@@ -40,6 +40,9 @@ class MaterialTable(StrictTable):
     """Ultimate shear strength."""
     bearing_strength: Stress | None = None
     """Ultimate bearing strength, on the projected area."""
+    ultimate_strain: Annotated[Number, Field(gt=0.0, lt=1.0)] | None = None
+    """Total strain at the ultimate strength, for the plastic bending of pins after Cozzone (code
+    "aircraft")."""
     fatigue: SnTable | None = None
     """Stress-life curve, for `fatigue.method` "signed-von-mises" and "critical-plane"."""
     fkm: FkmTable | None = None
@@ -262,6 +265,9 @@ class PinTable(StrictTable):
     replaceable: Switch = False
     """Whether the pin is meant to be replaced; then EN 1993-1-8, 3.13 limits bearing, bending and
     contact stress at limit load, too."""
+    bending_factor: Annotated[Number, Field(gt=0.0)] | None = None
+    """Bending stress Mc/I at rupture over the ultimate strength of the material, off a figure, for
+    the code "aircraft". Default: by Cozzone, from the material's `ultimate_strain`."""
     clamp: list[str] = []
     """Clamped surfaces: "start" and "end" (the end faces), the name or connection of a segment (its
     outer surface), "hole 1", "flat 1", "slot 1", "passage 1", or a band. Default: none; forces and

@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError, ValidationInfo, field_validator, model_validator
 
+from assess.codes import Code
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.cases import GivenCase, InstantCase, LegCase, MotionCase, StaticCase
 from pinstress.study.schema.fatigue import FatigueTable
@@ -64,13 +65,25 @@ class AnalysisTable(StrictTable):
     The default is that of 14 CFR 25.303."""
     fitting_factor: Annotated[Number, Field(ge=1.0)] = 1.0
     """Additional factor of all checks of margins, for fittings whose strength no test proves; 14
-    CFR 25.625 demands 1.15."""
+    CFR 25.625 demands 1.15, which is the default of the code "aircraft"."""
+    code: Code | Annotated[list[Code], Field(min_length=1)] = "general"
+    """Which checks of strength are made of pins and lugs: textbooks and EN 1993-1-8 ("general");
+    AFFDL-TR-69-42, Melcon and Hoblit, Ekvall, Cozzone ("aircraft"); ASME BTH-1 ("lifting");
+    EN 1993-1-8 and ANSI/AISC 360, D5 ("civil"). A list shows them side by side."""
+    design_factor: Annotated[Number, Field(ge=1.0)] | None = None
+    """Design factor N_d of ASME BTH-1, 3-1.3, for the code "lifting": 2 for design category A, 3
+    for B."""
 
     bending_moment: Literal["joint", "formula"] = "joint"
     """Which bending moments and shear forces the checks of pins in solved joints take: those of
     the joint model ("joint") or those of even loads on the bands ("formula"); the others are
     listed for comparison, but the joint model's govern too where even loads leave a couple over.
     Pins without a joint model always have the formulas'."""
+
+    @property
+    def codes(self) -> tuple[Code, ...]:
+        """The sets of checks that are made, each once."""
+        return (self.code,) if isinstance(self.code, str) else tuple(dict.fromkeys(self.code))
 
     @model_validator(mode="after")
     def _ultimate_is_more(self) -> "AnalysisTable":

@@ -12,6 +12,7 @@ from reports.data.governing import governing, skipped
 from reports.data.results import PinResult, Results, Units
 from reports.format.numbers import DASH, engineering, short
 from reports.format.units import unit_name
+from reports.format.work_words import passing_text, work_text
 from reports.tables.column import Column, Table, fields, in_order, read_only, texts
 
 MARGIN_COLUMN_ORDER = (
@@ -90,7 +91,10 @@ COLUMNS: list[Column[MarginRow]] = [
     Column("time", lambda row: row.margin.time, "time", "time", drop_if_empty=True),
     *fields("margin.basis"),
     Column("not_made", lambda row: f"needs {row.margin.needs}" if row.margin.needs else ""),
-    *fields("margin.governs"),
+    *fields("margin.governs margin.code"),
+    Column("work", lambda row: work_text(row.margin, row.units)),
+    Column("would_pass", lambda row: passing_text(row.margin, row.units)),
+    *fields("margin.scatter not_covered=margin.omits"),
 ]  # fmt: skip
 ARM_COLUMNS: list[Column[ArmsRow]] = [
     *texts("arms.pin arms.case"),

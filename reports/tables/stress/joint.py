@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from fea.support.records import BandContact, JointRange, JointResult, Variation
+from fea.support.records import BandContact, JointRange, JointResult, LugStress, Variation
 from reports.data.results import Results
 from reports.format.numbers import DASH, engineering, short
 from reports.tables.column import (
@@ -98,6 +98,20 @@ RANGE_COLUMNS: list[Column[PinRow[Variation]]] = [
 ]
 
 
+LUG_COLUMNS: list[Column[PinRow[LugStress]]] = [
+    *PIN_AND_CASE,
+    *texts("connection=of.connection wall=of.wall place=of.place"),
+    Column("max_von_mises", lambda row: row.of.max_von_mises, "stress", "max von Mises"),
+    Column("error_estimate", lambda row: row.of.error_estimate, "stress", "±"),
+    Column("max_hoop_stress", lambda row: row.of.max_hoop_stress, "stress", "hoop stress"),
+    Column("angle", lambda row: row.of.angle, "degrees", "angle from the shank"),
+    Column("z", lambda row: row.of.z, "length", "z"),
+    Column("time", lambda row: row.of.time, "time", "time", drop_if_empty=True),
+    Column("safety_factor", lambda row: row.of.safety_factor, "", "factor of safety"),
+    *unit_columns("length stress time"),
+    *fields("of.mesh of.rings of.sampling", "stress"),
+    *fields("of.material of.assumed"),
+]
 # The keys of results.json.
 JOINT = fields("model bands bending_moment bending_moments remark")
 VARIATION = fields("what value length max_von_mises max_von_mises_interval=interval beneath")
@@ -106,7 +120,8 @@ VARIATION = fields("what value length max_von_mises max_von_mises_interval=inter
 def joint_tables(results: Results) -> list[Table[Any]]:
     """Return the tables of all pins in lugs.
 
-    They are bands, load per length along them, and the maximum with the joint changed.
+    They are bands, load per length along them, the maximum with the joint changed, and the stress
+    of lugs.
     """
     units = results.units
     joints = [(pin, pin.joint) for pin in results.pins if pin.joint is not None]
@@ -118,7 +133,15 @@ def joint_tables(results: Results) -> list[Table[Any]]:
         Table("joint_bands", BAND_COLUMNS, bands),
         Table("line_loads", LINE_LOAD_COLUMNS, steps),
         Table("joint_range", RANGE_COLUMNS, variations),
+        lugs_table(results),
     ]
+
+
+def lugs_table(results: Results) -> Table[PinRow[LugStress]]:
+    """Return the stress of the lugs whose shank is known."""
+    joints = [(pin, pin.joint) for pin in results.pins if pin.joint is not None]
+    rows = [PinRow(pin, results.units, lug) for pin, joint in joints for lug in joint.lugs]
+    return Table("lugs", LUG_COLUMNS, rows)
 
 
 def _steps(band: BandContact) -> Iterator[LoadStep]:

@@ -210,9 +210,11 @@ def test_stress_is_the_superposition() -> None:
 def test_no_load_has_no_harmonic_and_no_stress() -> None:
     loads = PinLoads("case", ("B",), np.zeros((2, 1, 3)))
     around = Circumference(unit_fields(loads, 4, 0), loads)
-    order, largest = around.last(np.arange(3))
-    assert order == 0
-    assert largest.tolist() == [[0.0, 0.0]] * 3
+    assert around.highest == 0
+    assert around.last_at(np.arange(3), np.zeros(3, dtype=int)).tolist() == [0.0] * 3
+    assert around.top(np.ones(4, dtype=bool)).value == 0.0
+    value, _ = around.crests(np.arange(3), np.ones(3, dtype=int))
+    assert value.tolist() == [0.0] * 3
 
 
 @settings(max_examples=20, deadline=None)

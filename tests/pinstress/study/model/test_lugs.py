@@ -290,7 +290,9 @@ def test_contact_is_found_by_the_harmonic_model_alone(tmp_path: Path, model: str
 
 
 def test_lugs_whose_size_is_given_are_checked_by_hand(tmp_path: Path) -> None:
-    """Net section F / ((W - D) t), with the bore that holds a bushing; others are not checked."""
+    """Net section F / (2 t b_eff), b_eff 0.6 b sqrt(D/b) without an ultimate strength, with the
+    bore that holds a bushing; others are not checked.
+    """
     given = """
 [pin.P.lug.L]
 outer_diameter = 60
@@ -302,7 +304,8 @@ bushing = { thickness = 2, material = "bronze" }
     assert set(checks) == {
         ("lug, net section", "L"), ("lug, shear-out", "L"), ("lug, bearing", "L"),
     }  # fmt: skip
-    assert checks["lug, net section", "L"] == pytest.approx(25000.0 / ((60.0 - 24.0) * 10.0))
+    effective = 0.6 * 18.0 * (24.0 / 18.0) ** 0.5
+    assert checks["lug, net section", "L"] == pytest.approx(25000.0 / (2.0 * effective * 10.0))
     assert "bending, joint model" in {c.method for c in found.hand_checks}
 
 

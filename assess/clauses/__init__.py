@@ -1,0 +1,1 @@
+"""Clauses of codes for pins and their lugs, one file each."""

@@ -1,0 +1,208 @@
+"""Joints in symmetrical double shear by AFFDL-TR-69-42, 9.4: the load shifts to the faces.
+
+    lugs and bushings    P_uLB = min(2 P_1, P_2)
+    shifted bending      P_max = 2 C (sqrt(P_ub arm / C + g^2) - g)
+                         C = P_1 P_2 / (P_1 t_2 + P_2 t_1)
+
+P_1 and P_2 are what one outer and the middle lug carry, with their bushings; t_1, t_2 their
+thicknesses, g the gap. P_ub = 2 M_u / arm is the load that breaks the pin in bending with even
+bearing, arm = t_1/2 + t_2/4 + g. A pin that yields bears more on the faces of the lugs that meet,
+as far as these carry it; P_max is the load with the widths b_1 and 2 b_2 that are left.
+
+The joint carries the least of lugs, shear of the pin, and the larger of both bending loads.
+
+Source: AFFDL-TR-69-42, Stress Analysis Manual, 9.4, equations 9-11 to 9-19.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from assess.check import CheckText, check
+from assess.clauses.affdl_lugs import (
+    LUG_OMITS,
+    MANUAL,
+    bearing_capacity,
+    bushing_capacity,
+    net_section_capacity,
+)
+from assess.clauses.cozzone import bending_strength
+from assess.clauses.eye import LoadedEye, loaded_eyes
+from assess.clauses.eye_margin import not_axial
+from assess.margin import Margin, strength_key
+from assess.situation import Situation
+from assess.strength.bending_arms import layout
+from assess.work import Work, work
+from fea.beam.round_section import thinnest_section
+from geometry import ArgumentError, Band
+
+LAYOUT = "double shear"
+LAYOUT_NEEDED = "symmetrical double shear, with the sizes of all three lugs"
+
+
+@dataclass(frozen=True)
+class DoubleShear:
+    """A joint in symmetrical double shear.
+
+    outer, middle: what one outer and the middle lug carry with their bushings, P_1 and P_2, N.
+    thickness: t_1 and t_2, gap: g, m. moment: M_u that breaks the pin, N m. shear: what breaks it
+    in both planes, N.
+    """
+
+    outer: float
+    middle: float
+    thickness: tuple[float, float]
+    gap: float
+    moment: float
+    shear: float
+
+    @property
+    def arm(self) -> float:
+        """The arm of the moment with even bearing, m (9-13)."""
+        t1, t2 = self.thickness
+        return t1 / 2.0 + t2 / 4.0 + self.gap
+
+    @property
+    def lugs(self) -> float:
+        """The load of lugs and bushings, N (9-11)."""
+        return min(2.0 * self.outer, self.middle)
+
+    @property
+    def even_bending(self) -> float:
+        """The load that breaks the pin in bending with even bearing, N (9-15)."""
+        return 2.0 * self.moment / self.arm
+
+    @property
+    def line_load(self) -> float:
+        """C, N/m: half of the load per width with which both lugs bear up to failure (9-16)."""
+        t1, t2 = self.thickness
+        return self.outer * self.middle / (self.outer * t2 + self.middle * t1)
+
+    @property
+    def shifted_bending(self) -> float:
+        """The same with the load shifted to the faces, N (9-16)."""
+        C, g = self.line_load, self.gap
+        return 2.0 * C * (math.sqrt(self.even_bending * self.arm / C + g**2) - g)
+
+    @property
+    def bearing_widths(self) -> tuple[float, float]:
+        """The widths b_1 of each outer lug and 2 b_2 of the middle one that bear, m (9-17)."""
+        load = self.shifted_bending
+        t1, t2 = self.thickness
+        return load * t1 / (2.0 * self.outer), load * t2 / self.middle
+
+    @property
+    def load(self) -> float:
+        """The load of the joint, N (9-19)."""
+        return min(self.lugs, self.shear, max(self.even_bending, self.shifted_bending))
+
+    def works(self) -> tuple[Work, ...]:
+        """The work of each load."""
+        (t1, t2), force, length = self.thickness, "force", "length"
+        P_1, P_2 = (self.outer, force), (self.middle, force)
+        return (
+            work("P_uLB", self.lugs, force, "min(2 × {P_1}, {P_2})", P_1=P_1, P_2=P_2),
+            work(
+                "P_ub", self.even_bending, force, "2 × {M_u} / ({t_1} / 2 + {t_2} / 4 + {g})",
+                M_u=(self.moment, "moment"), t_1=(t1, length), t_2=(t2, length),
+                g=(self.gap, length),
+            ),
+            work(
+                "C", self.line_load, "force length^-1",
+                "{P_1} × {P_2} / ({P_1} × {t_2} + {P_2} × {t_1})", P_1=P_1, P_2=P_2,
+                t_1=(t1, length), t_2=(t2, length),
+            ),
+            work(
+                "P_max", self.shifted_bending, force,
+                "2 × {C} × (√({P_ub} × {arm} / {C} + {g} × {g}) − {g})",
+                C=(self.line_load, "force length^-1"), P_ub=(self.even_bending, force),
+                arm=(self.arm, length), g=(self.gap, length),
+            ),
+            work(
+                "P", self.load, force, "min({P_uLB}, {P_us}, max({P_ub}, {P_max}))",
+                P_uLB=(self.lugs, force), P_us=(self.shear, force), P_ub=(self.even_bending, force),
+                P_max=(self.shifted_bending, force),
+            ),
+        )  # fmt: skip
+
+
+@check("AFFDL joint in double shear", f"{MANUAL}, 9.4, eq. 9-11 to 9-19", kind="clause",
+       takes="statics", level="ultimate", dimension="force",
+       omits=f"{LUG_OMITS} One diameter of the pin along all three lugs.")  # fmt: skip
+def affdl_joint(text: CheckText, s: Situation) -> list[Margin]:
+    """The force on the middle lug against what the joint carries with the load at the faces."""
+    joint = joint_of(s)
+    if isinstance(joint, list):
+        return [text.lacks(s, *joint)]
+    bands, loaded = _in_order(s)
+    for eye in loaded:
+        if across := not_axial(text, s, eye):
+            return [across]
+    t = int(loaded[1].size.argmax())
+    time = None if s.loads.times is None else float(s.loads.times[t])
+    return [
+        Margin(
+            text.method, text.clause, text.kind, text.level, s.factors.at(text.level),
+            float(loaded[1].size[t]), joint.load, text.dimension, bands[1].name, bands[1].middle,
+            time, s.material.name, loaded[1].basis, work=joint.works(), omits=text.omits,
+        )
+    ]  # fmt: skip
+
+
+def joint_of(s: Situation) -> DoubleShear | list[str]:
+    """The joint of a situation, or what it lacks to be one, or to be checked."""
+    bands, eyes = _in_order(s)
+    if len(bands) != len(eyes) or layout(s) != LAYOUT:
+        return [LAYOUT_NEEDED]
+    try:
+        return _joint(s, bands, eyes)
+    except ArgumentError as error:
+        return [str(error)]
+
+
+def _in_order(s: Situation) -> tuple[list[Band], list[LoadedEye]]:
+    """The bands along the pin, and the eyes of those of them whose size is given."""
+    eyes = {x.connection: x for x in loaded_eyes(s)}
+    bands = sorted((s.pin.band(name) for name in s.loads.surfaces), key=lambda b: b.z0)
+    return bands, [eyes[band.name] for band in bands if band.name in eyes]
+
+
+def _joint(s: Situation, bands: list[Band], eyes: list[LoadedEye]) -> DoubleShear | list[str]:
+    """The joint of three bands, or the keys that the study lacks.
+
+    Raises: ArgumentError as assess.clauses.cozzone.
+    """
+    section = min(
+        (
+            thinnest_section(segment, 0.0, segment.length)
+            for segment, z0, z1 in zip(
+                s.pin.segments, s.pin.stations, s.pin.stations[1:], strict=False
+            )
+            if z1 > bands[0].z0 and z0 < bands[2].z1
+        ),
+        key=lambda x: x.modulus,
+    )
+    strength, fsu = bending_strength(s, section), s.material.shear_strength
+    loads = [_lug_load(s, x) for x in eyes]
+    lacking = [key for load in loads if isinstance(load, list) for key in load]
+    lacking += strength if isinstance(strength, list) else []
+    lacking += [strength_key(s.material.name, "shear")] * (fsu is None)
+    if lacking or isinstance(strength, list) or fsu is None:
+        return list(dict.fromkeys(lacking))
+    first, middle, last = (load for load in loads if isinstance(load, float))
+    gap = max(bands[1].z0 - bands[0].z1, bands[2].z0 - bands[1].z1)
+    outer = max(bands[0].length, bands[2].length)
+    return DoubleShear(
+        min(first, last), middle, (outer, bands[1].length), gap,
+        strength.result.value * section.modulus, 2.0 * fsu * section.area,
+    )  # fmt: skip
+
+
+def _lug_load(s: Situation, x: LoadedEye) -> float | list[str]:
+    """The least load of a lug and its bushing, N, or the keys that the study lacks."""
+    every = bearing_capacity(s, x), net_section_capacity(s, x), bushing_capacity(x)
+    lists = [[c] if isinstance(c, str) else c for c in every if isinstance(c, list | str)]
+    if lists:
+        return [key for keys in lists for key in keys]
+    return min(c(x.eye).result.value for c in every if callable(c))

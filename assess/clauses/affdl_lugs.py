@@ -1,0 +1,168 @@
+"""Axially loaded lugs and their bushings by the Air Force's Stress Analysis Manual, chapter 9.
+
+    bearing          P_bru = K (a/D) F D t      F = min(F_tux, 1.304 F_tyx), a/D not above 1
+    net section      P_nu = K_n F (W - D) t     F = min(F_tu, 1.304 F_ty)
+    bushing          P_u = 1.304 F_cy Dp t
+
+1.304 is 1.5 / 1.15: an ultimate load above that would yield the lug under limit load. All are at
+ultimate load. The efficiency factors K and K_n are those of figures 9-2 to 9-4, which no formula
+gives: the study states them. The yield strength of the bushing stands for that in compression, and
+that of the lug for the one across the grain.
+
+For e/D of at least 1.5 the manual has K F (equations 9-1b and 9-2b), which a/D = 1 gives here.
+
+Source: AFFDL-TR-69-42, Stress Analysis Manual (reprint of October 1986), 9.3, equations 9-1 to 9-9;
+M. A. Melcon & F. M. Hoblit, Product Engineering, June 1953.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from assess.check import CheckText, check
+from assess.clauses.eye import Eye, LoadedEye, loaded_eyes
+from assess.clauses.eye_margin import (
+    EyeCapacity,
+    Strengths,
+    eye_margin,
+    lug_key,
+    strengths_of,
+)
+from assess.margin import Margin, strength_key
+from assess.situation import Situation
+from assess.work import Work, work
+
+MANUAL = "AFFDL-TR-69-42"
+ULTIMATE_OVER_YIELD = 1.304  # 1.5 / 1.15 as the manual has it
+STRENGTH_FORMULA = "min({F_tu}, 1.304 × {F_ty})"
+LUG_OMITS = (
+    "Not covered: loads across the shank, elongations under 5 %, strength across the grain other "
+    "than the material's, bending of the lug, fatigue."
+)
+
+
+def lug_strength(yields: float, ultimate: float) -> float:
+    """The lower of the ultimate strength and 1.304 times yield, Pa (9-3, 9-6)."""
+    return min(ultimate, ULTIMATE_OVER_YIELD * yields)
+
+
+def bearing_load(eye: Eye, K: float, yields: float, ultimate: float) -> Work:
+    """The ultimate load of the lug in bearing, shear-out and hoop tension, N (9-1 to 9-3).
+
+    K: of figure 9-2. yields, ultimate: strengths across the grain, Pa.
+    """
+    strength = lug_strength(yields, ultimate)
+    value = K * min(eye.a / eye.hole, 1.0) * strength * eye.hole * eye.thickness
+    return work(
+        "P_bru", value, "force",
+        f"{{K}} × min({{a}} / {{D}}, 1) × {STRENGTH_FORMULA} × {{D}} × {{t}}",
+        K=(K, "1"), a=(eye.a, "length"), D=(eye.hole, "length"), F_tu=(ultimate, "stress"),
+        F_ty=(yields, "stress"), t=(eye.thickness, "length"),
+    )  # fmt: skip
+
+
+def net_section_load(eye: Eye, K_n: float, yields: float, ultimate: float) -> Work:
+    """The ultimate load of the net section, N (9-4 to 9-6).
+
+    K_n: of figure 9-4. yields, ultimate: strengths, Pa.
+    """
+    strength = lug_strength(yields, ultimate)
+    value = K_n * strength * (eye.width - eye.hole) * eye.thickness
+    return work(
+        "P_nu", value, "force", f"{{K_n}} × {STRENGTH_FORMULA} × ({{W}} − {{D}}) × {{t}}",
+        K_n=(K_n, "1"), F_tu=(ultimate, "stress"), F_ty=(yields, "stress"),
+        W=(eye.width, "length"), D=(eye.hole, "length"), t=(eye.thickness, "length"),
+    )  # fmt: skip
+
+
+def bushing_load(eye: Eye, crushes: float) -> Work:
+    """The ultimate load of a bushing, N (9-8, 9-9).
+
+    crushes: its yield strength in compression, Pa.
+    """
+    value = ULTIMATE_OVER_YIELD * crushes * eye.pin * eye.thickness
+    return work(
+        "P_u", value, "force", "1.304 × {F_cy} × {D_p} × {t}",
+        F_cy=(crushes, "stress"), D_p=(eye.pin, "length"), t=(eye.thickness, "length"),
+    )  # fmt: skip
+
+
+_of_lugs = partial(
+    check, kind="clause", takes="loads", level="ultimate", dimension="force", omits=LUG_OMITS
+)
+
+
+@_of_lugs("AFFDL lug bearing", f"{MANUAL}, 9.3, eq. 9-1 to 9-3")
+def affdl_bearing(text: CheckText, s: Situation) -> list[Margin]:
+    """The axial force on every eye against its load in bearing and shear-out."""
+    return _margins(text, s, bearing_capacity, "k_br")
+
+
+@_of_lugs("AFFDL lug net section", f"{MANUAL}, 9.3, eq. 9-4 to 9-6")
+def affdl_net_section(text: CheckText, s: Situation) -> list[Margin]:
+    """The axial force on every eye against the load of its net section."""
+    return _margins(text, s, net_section_capacity, "k_t")
+
+
+@_of_lugs("AFFDL bushing", f"{MANUAL}, 9.3, eq. 9-8 and 9-9")
+def affdl_bushing(text: CheckText, s: Situation) -> list[Margin]:
+    """The force on every bushed eye against the yielding of its bushing."""
+    margins = []
+    for x in loaded_eyes(s):
+        capacity = bushing_capacity(x)
+        if isinstance(capacity, str):
+            margins.append(text.lacks(s, capacity))
+        elif capacity is not None:
+            margins.append(eye_margin(text, s, x, x.size, capacity, "thickness"))
+    return margins
+
+
+def bearing_capacity(s: Situation, x: LoadedEye) -> EyeCapacity | list[str]:
+    """The load of an eye in bearing as a function of it, or the keys that the study lacks."""
+    K, strengths = s.factors_of(x.connection).K, strengths_of(x.lug)
+    if K is None or strengths.missing:
+        return _lacking(s, x, "K" if K is None else "", strengths)
+    return partial(bearing_load, K=K, yields=strengths.yields, ultimate=strengths.ultimate)
+
+
+def net_section_capacity(s: Situation, x: LoadedEye) -> EyeCapacity | list[str]:
+    """The same of the load of its net section."""
+    K_n, strengths = s.factors_of(x.connection).K_n, strengths_of(x.lug)
+    if K_n is None or strengths.missing:
+        return _lacking(s, x, "K_n" if K_n is None else "", strengths)
+    return partial(net_section_load, K_n=K_n, yields=strengths.yields, ultimate=strengths.ultimate)
+
+
+def bushing_capacity(x: LoadedEye) -> EyeCapacity | str | None:
+    """The load of a bushing as a function of its eye, or the key that is missing; None without a
+    bushing.
+    """
+    if x.bushing is None:
+        return None
+    crushes = x.bushing.yield_strength
+    if crushes is None:
+        return strength_key(x.bushing.name, "yield")
+    return partial(bushing_load, crushes=crushes)
+
+
+def _lacking(s: Situation, x: LoadedEye, factor: str, strengths: Strengths) -> list[str]:
+    named = [lug_key(s, x.connection, f"factors.{factor}")] if factor else []
+    return [*named, *strengths.missing]
+
+
+def _margins(
+    text: CheckText,
+    s: Situation,
+    capacity_of: Callable[[Situation, LoadedEye], EyeCapacity | list[str]],
+    instead: str,
+) -> list[Margin]:
+    """instead: the factor by which another check covers the same, where only that is given."""
+    margins = []
+    for x in loaded_eyes(s):
+        capacity = capacity_of(s, x)
+        if not isinstance(capacity, list):
+            margins += [eye_margin(text, s, x, x.axial, capacity, "width")] * bool(x.axial.any())
+        elif getattr(s.factors_of(x.connection), instead) is None:
+            margins.append(text.lacks(s, *capacity))
+    return margins

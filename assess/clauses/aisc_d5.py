@@ -1,0 +1,101 @@
+"""Pin-connected members by ANSI/AISC 360, D5 and J7, by load and resistance factors (LRFD).
+
+    tensile rupture      P_n = F_u 2 t b_e               phi 0.75
+    shear rupture        P_n = 0.6 F_u 2 t (a + d/2)     phi 0.75
+    bearing              P_n = 1.8 F_y d t               phi 0.75
+    yielding             P_n = F_y w t                   phi 0.90
+
+b_e = 2 t + 0.63 in, at most the width beside the hole; a is the distance from the hole to the end
+of the plate. All are at ultimate load, whose factor stands for those of the load combinations.
+
+Source: ANSI/AISC 360-16, D2, D5.1 and J7; AISC Design Examples 15, D.7.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+from assess.check import CheckText, check
+from assess.clauses.eye import Eye, loaded_eyes
+from assess.clauses.eye_margin import eye_margin, not_axial, strengths_of
+from assess.margin import Margin
+from assess.situation import Situation
+from assess.work import Work, work
+
+RUPTURE_PHI, YIELD_PHI = 0.75, 0.90  # resistance factors, D5.1, J7 and D2
+WIDTH_BEYOND_THICKNESS = 0.63 * 0.0254  # m, of b_e
+OMITS = (
+    "Not covered: forces across the plate, the proportions of D5.2 (a at least 4/3 b_e, w at least "
+    "2 b_e + d, hole at most 1/32 in wider than the pin), load combinations."
+)
+
+
+def effective_width(eye: Eye) -> float:
+    """b_e, m (D5.1a)."""
+    return min(2.0 * eye.thickness + WIDTH_BEYOND_THICKNESS, eye.side)
+
+
+def tensile_rupture(eye: Eye, yields: float, ultimate: float) -> Work:
+    """The design strength phi P_n, N (D5-1). yields, ultimate: F_y and F_u, Pa."""
+    b_e = effective_width(eye)
+    return work(
+        "φP_n", RUPTURE_PHI * ultimate * 2.0 * eye.thickness * b_e, "force",
+        "0.75 × {F_u} × 2 × {t} × {b_e}",
+        F_u=(ultimate, "stress"), t=(eye.thickness, "length"), b_e=(b_e, "length"),
+    )  # fmt: skip
+
+
+def shear_rupture(eye: Eye, yields: float, ultimate: float) -> Work:
+    """The design strength phi P_n, N (D5-2); arguments as `tensile_rupture`."""
+    area = 2.0 * eye.thickness * (eye.a + eye.bearer / 2.0)
+    return work(
+        "φP_n", RUPTURE_PHI * 0.6 * ultimate * area, "force",
+        "0.75 × 0.6 × {F_u} × 2 × {t} × ({a} + {d} / 2)",
+        F_u=(ultimate, "stress"), t=(eye.thickness, "length"), a=(eye.a, "length"),
+        d=(eye.bearer, "length"),
+    )  # fmt: skip
+
+
+def bearing(eye: Eye, yields: float, ultimate: float) -> Work:
+    """The design strength phi R_n, N (J7-1); arguments as `tensile_rupture`."""
+    return work(
+        "φR_n", RUPTURE_PHI * 1.8 * yields * eye.bearer * eye.thickness, "force",
+        "0.75 × 1.8 × {F_y} × {d} × {t}",
+        F_y=(yields, "stress"), d=(eye.bearer, "length"), t=(eye.thickness, "length"),
+    )  # fmt: skip
+
+
+def gross_yielding(eye: Eye, yields: float, ultimate: float) -> Work:
+    """The design strength phi P_n, N (D2-1); arguments as `tensile_rupture`."""
+    return work(
+        "φP_n", YIELD_PHI * yields * eye.width * eye.thickness, "force", "0.90 × {F_y} × {w} × {t}",
+        F_y=(yields, "stress"), w=(eye.width, "length"), t=(eye.thickness, "length"),
+    )  # fmt: skip
+
+
+_FORMS = (
+    ("tensile rupture", "D5.1(a)", tensile_rupture, "width"),
+    ("shear rupture", "D5.1(b)", shear_rupture, "width"),
+    ("bearing", "J7", bearing, "thickness"),
+    ("yielding", "D2(a)", gross_yielding, "thickness"),
+)
+
+
+@check("AISC pin-connected member", "ANSI/AISC 360-16, D5", kind="clause", takes="loads",
+       level="ultimate", dimension="force", omits=OMITS)  # fmt: skip
+def aisc_member(text: CheckText, s: Situation) -> list[Margin]:
+    """The force on every plate against its limit states."""
+    margins = []
+    for x in loaded_eyes(s):
+        strengths = strengths_of(x.lug)
+        if across := not_axial(text, s, x):
+            margins.append(across)
+        elif strengths.missing:
+            margins.append(text.lacks(s, *strengths.missing))
+        elif x.axial.any():
+            for state, clause, strength, dimension in _FORMS:
+                capacity = partial(strength, yields=strengths.yields, ultimate=strengths.ultimate)
+                named = replace(text, method=f"AISC {state}", clause=f"ANSI/AISC 360-16, {clause}")
+                margins.append(eye_margin(named, s, x, x.axial, capacity, dimension))
+    return margins

@@ -1,0 +1,109 @@
+"""Lugs by Ekvall's efficiency factors, which tests confirm.
+
+    across the shank   P = K_BR F_tu D t        K_BR = -0.463 + 0.580 W/D
+    at the bore        sigma = K_tb F / (D t)   K_tb = 2.75 (W/D - 1)^-0.675
+
+for straight lugs, the first symmetric, the second pulled axially. The second is the elastic peak,
+beside yield for comparison: a lug yields locally long before it fails. K_BR of other directions is
+a curve over K_tb that is printed only as a figure, so there is no check of axial strength here.
+
+Source: J. C. Ekvall, Static Strength Analysis of Pin-Loaded Lugs, J. Aircraft 23(5), 1986, 438-443.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+from assess.check import CheckText, check
+from assess.clauses.eye import Eye, LoadedEye, loaded_eyes, place_of
+from assess.clauses.eye_margin import eye_margin
+from assess.margin import Margin, for_comparison, strength_key
+from assess.situation import Situation
+from assess.work import Work, work
+
+EKVALL = "Ekvall, J. Aircraft 23 (1986) 438"
+TESTED_WIDTHS = 1.33, 4.5  # W/D of the tests
+SYMMETRY_TOLERANCE = 0.01  # by which 2 e/W may differ from 1 for the factor of a symmetric lug
+SCATTER = (
+    "243 tests: test over prediction 1.003 in the mean, standard deviation 0.065; 90 % of tests "
+    "exceed 0.910, 99 % 0.837 times the prediction (95 % confidence)"
+)
+OMITS = (
+    "Not covered: localised bearing failure, eccentric heads, W/D outside 1.33 to 4.5; pins that "
+    "bend plastically lower the strength by up to 14 %."
+)
+
+
+def transverse_efficiency(eye: Eye) -> float:
+    """K_BR of a straight symmetric lug under a load across its shank."""
+    return -0.463 + 0.580 * eye.width / eye.hole
+
+
+def transverse_load(eye: Eye, ultimate: float) -> Work:
+    """The ultimate load across the shank, N. ultimate: strength, Pa."""
+    value = transverse_efficiency(eye) * ultimate * eye.hole * eye.thickness
+    return work(
+        "P", value, "force", "(−0.463 + 0.580 × {W} / {D}) × {F_tu} × {D} × {t}",
+        W=(eye.width, "length"), D=(eye.hole, "length"), F_tu=(ultimate, "stress"),
+        t=(eye.thickness, "length"),
+    )  # fmt: skip
+
+
+def bore_factor(eye: Eye) -> float:
+    """K_tb, the elastic stress at the bore over F / (D t), of a straight lug pulled axially."""
+    return float(2.75 * (eye.width / eye.hole - 1.0) ** -0.675)
+
+
+def bore_stress(eye: Eye, force: float) -> Work:
+    """The largest elastic stress at the bore, Pa, of an axial force, N."""
+    value = bore_factor(eye) * force / (eye.hole * eye.thickness)
+    return work(
+        "sigma", value, "stress", "2.75 × ({W} / {D} − 1)^-0.675 × {F} / ({D} × {t})",
+        W=(eye.width, "length"), D=(eye.hole, "length"), F=(force, "force"),
+        t=(eye.thickness, "length"),
+    )  # fmt: skip
+
+
+@check("Ekvall transverse", f"{EKVALL}, figure 4", kind="clause", takes="loads", level="ultimate",
+       dimension="force", scatter=SCATTER, omits=OMITS)  # fmt: skip
+def ekvall_transverse(text: CheckText, s: Situation) -> list[Margin]:
+    """The force across the shank of every symmetric lug against K_BR F_tu D t."""
+    margins = []
+    for x in loaded_eyes(s):
+        if not x.transverse.any():
+            continue
+        fu, low_high = x.lug.ultimate_strength, TESTED_WIDTHS
+        if not _tested(x) or abs(2.0 * x.eye.e / x.eye.width - 1.0) > SYMMETRY_TOLERANCE:
+            where = f"a symmetric lug with W/D from {low_high[0]:g} to {low_high[1]:g}"
+            margins.append(text.lacks(s, f"{where}, at {x.connection}"))
+        elif fu is None:
+            margins.append(text.lacks(s, strength_key(x.lug.name, "ultimate")))
+        else:
+            capacity = partial(transverse_load, ultimate=fu)
+            margins.append(eye_margin(text, s, x, x.transverse, capacity, "width"))
+    return margins
+
+
+@check("lug, elastic stress at the bore", f"{EKVALL}, K_tb", kind="clause", takes="loads",
+       omits="Not covered: forces across the shank, fits, bending of the pin.")  # fmt: skip
+def ekvall_bore_stress(text: CheckText, s: Situation) -> list[Margin]:
+    """The elastic peak at the bore of every axially loaded lug against yield, for comparison."""
+    margins = []
+    for x in loaded_eyes(s):
+        fy, t = x.lug.yield_strength, int(x.axial.argmax())
+        if fy is None or not _tested(x) or not x.axial.any() or x.transverse.any():
+            continue
+        stress, place = bore_stress(x.eye, float(x.axial[t])), place_of(s, x, t)
+        margins.append(
+            Margin(
+                text.method, text.clause, text.kind, text.level, s.factors.at(text.level),
+                stress.result.value, fy, at=x.connection, z=place.z, time=place.time,
+                material=x.lug.name, basis=x.basis, work=(stress,), omits=text.omits,
+            )
+        )  # fmt: skip
+    return [for_comparison(margin) for margin in margins]
+
+
+def _tested(x: LoadedEye) -> bool:
+    low, high = TESTED_WIDTHS
+    return low <= x.eye.width / x.eye.hole <= high

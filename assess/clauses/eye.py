@@ -1,0 +1,168 @@
+"""The eye of a lug as clauses see it, and the force on it along and across its shank."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from assess.check import WorstPlace
+from assess.situation import Situation
+from assess.work import would_pass
+from fea.core.material import Material
+from fea.support.lugs.lug import Lug
+from geometry import ArgumentError
+from pinbase.arrays import Floats
+
+EyeUtilisation = Callable[["Eye"], float]
+MAX_UTILISATION = 1e9  # that of an eye that cannot be, so that roots can be sought
+ROUND_OFF = 1e-9  # of a force, up to which its component along a direction is none
+AXIAL_BASIS = "the force taken along the shank, whose direction is not given"
+
+
+@dataclass(frozen=True)
+class Eye:
+    """The head of a lug, m.
+
+    width: W. hole: D, in the lug itself, around a bushing if there is one. pin: Dp. thickness: t.
+    end: e, from the centre of the bore to the end of the head; None: that of a round head, W / 2.
+    square: whether its end is straight.
+
+    Raises: ArgumentError for a head that is not wider, or does not reach further, than its hole.
+    """
+
+    width: float
+    hole: float
+    pin: float
+    thickness: float
+    bushed: bool = False
+    end: float | None = None
+    square: bool = False
+
+    def __post_init__(self) -> None:
+        if not (0.0 < self.pin <= self.hole < min(self.width, 2.0 * self.e)):
+            raise ArgumentError(
+                f"the eye of a lug must be wider than its bore of {self.hole:g} m, not "
+                f"{self.width:g} m, and reach further than its radius, not {self.e:g} m",
+                "out-of-range",
+            )
+
+    @property
+    def e(self) -> float:
+        """The distance from the centre of the bore to the end of the head, m."""
+        return self.width / 2.0 if self.end is None else self.end
+
+    @property
+    def a(self) -> float:
+        """The distance from the hole to the end of the head, m."""
+        return self.e - self.hole / 2.0
+
+    @property
+    def bearer(self) -> float:
+        """The diameter of what bears in the hole, m: the pin, or a bushing."""
+        return self.hole if self.bushed else self.pin
+
+    @property
+    def side(self) -> float:
+        """The width of the net section on one side of the hole, m."""
+        return (self.width - self.hole) / 2.0
+
+    def would_pass(self, dimension: str, utilisation: EyeUtilisation) -> float | None:
+        """The value of a dimension, m, at which a utilisation of the eye is 1; None where none is
+        near.
+        """
+
+        def used(x: float) -> float:
+            try:
+                changed: Eye = replace(self, **{dimension: x})  # type: ignore[arg-type]
+                return min(utilisation(changed), MAX_UTILISATION)
+            except ArgumentError:
+                return MAX_UTILISATION
+
+        return would_pass(used, getattr(self, dimension))
+
+
+@dataclass(frozen=True)
+class LoadedEye:
+    """An eye with the material around it and the force of its link at every instant.
+
+    connection: the lug's. lug: its material. bushing: that of its bushing, if there is one.
+    size: of the force across the pin, (T,) N. axial: its part along the shank that pulls the lug,
+    zero where it pushes; transverse: across the shank. basis: how these were found.
+    """
+
+    connection: str
+    eye: Eye
+    lug: Material
+    bushing: Material | None
+    size: Floats
+    axial: Floats
+    transverse: Floats
+    basis: str = ""
+
+
+def eye_of(s: Situation, lug: Lug) -> Eye:
+    """The eye of a lug on its band of the pin, as thick as the band is long.
+
+    Without a shank the head is round, and its end half of its width from the centre. The clearance
+    of a bushing is not in the hole of the lug.
+    """
+    band, bushed, shank = s.pin.band(lug.connection), lug.bushing is not None, lug.shank
+    pin = 2.0 * band.radius
+    ring = 2.0 * lug.bushing.thickness if lug.bushing else max(lug.clearance, 0.0)
+    if shank is None:
+        return Eye(lug.outer_diameter, pin + ring, pin, band.length, bushed)
+    square = shank.shape == "square"
+    width = shank.width if square else lug.outer_diameter
+    end = None if shank.end == width / 2.0 else shank.end
+    return Eye(width, pin + ring, pin, band.length, bushed, end, square)
+
+
+def loaded_eyes(s: Situation) -> list[LoadedEye]:
+    """The eyes of all lugs whose size the study gives and whose links push on the pin.
+
+    Without the direction of its shank a lug is taken as pulled along it by the whole force.
+    """
+    eyes = []
+    for lug in s.sized:
+        if lug.connection not in s.loads.surfaces:
+            continue
+        force = s.loads.forces[:, s.loads.surfaces.index(lug.connection), :2]
+        size = np.hypot(force[:, 0], force[:, 1])
+        if not size.any():
+            continue
+        axial, transverse, basis = size, np.zeros_like(size), AXIAL_BASIS
+        angle = _shank_angle(s, lug)
+        if angle is not None:
+            # A link that pulls draws the pin towards its shank.
+            x, y = np.cos(angle), np.sin(angle)
+            axial = _beyond_round_off(force[:, 0] * x + force[:, 1] * y, size)
+            transverse = _beyond_round_off(np.abs(force[:, 1] * x - force[:, 0] * y), size)
+            basis = ""
+        bushing = lug.bushing.material if lug.bushing else None
+        eye = eye_of(s, lug)
+        eyes.append(
+            LoadedEye(lug.connection, eye, lug.material, bushing, size, axial, transverse, basis)
+        )
+    return eyes
+
+
+def place_of(s: Situation, loaded: LoadedEye, instant: int) -> WorstPlace:
+    """The middle of the eye's band, at an instant of the loads."""
+    return WorstPlace.at_band(s.pin.band(loaded.connection), s.loads, instant)
+
+
+def _shank_angle(s: Situation, lug: Lug) -> Floats | None:
+    """The angle of a lug's shank at the instants of the loads, (T,) rad; None if not known."""
+    if lug.shank is None:
+        return None
+    turning = s.shank_angles.get(lug.connection)
+    if turning is not None:
+        return turning.at(s.loads.times, len(s.loads))
+    return None if lug.shank.angle is None else np.full(len(s.loads), lug.shank.angle)
+
+
+def _beyond_round_off(component: Floats, size: Floats) -> Floats:
+    """The positive part of a component of forces, without round-off."""
+    return np.where(component > ROUND_OFF * size, component, 0.0)

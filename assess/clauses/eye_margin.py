@@ -1,0 +1,82 @@
+"""The margin of an eye: a force on it against what a clause allows, with the work."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from assess.check import CheckText
+from assess.clauses.eye import Eye, LoadedEye, place_of
+from assess.margin import Margin, strength_key
+from assess.situation import Situation
+from assess.work import Quantity, Work
+from fea.core.material import Material
+from pinbase.arrays import Floats
+
+EyeCapacity = Callable[[Eye], Work]  # the force that an eye carries, N
+MAX_TRANSVERSE_RATIO = 0.05  # of the force, up to which a clause for axial loads is applied
+DIMENSION_NAMES = {"width": "outer_diameter", "thickness": "thickness", "pin": "diameter"}
+
+
+@dataclass(frozen=True)
+class Strengths:
+    """Strengths of the material of a lug, Pa, which a clause needs; `missing` has their keys."""
+
+    yields: float
+    ultimate: float
+    missing: tuple[str, ...] = ()
+
+
+def strengths_of(material: Material) -> Strengths:
+    """The yield and ultimate strength of a material, zero where they are missing."""
+    both = {"yield": material.yield_strength, "ultimate": material.ultimate_strength}
+    missing = tuple(strength_key(material.name, w) for w, x in both.items() if x is None)
+    return Strengths(both["yield"] or 0.0, both["ultimate"] or 0.0, missing)
+
+
+def lug_key(s: Situation, connection: str, key: str) -> str:
+    """A key of a lug as a study writes it."""
+    return f"pin.{s.pin.name}.lug.{connection}.{key}"
+
+
+def not_axial(text: CheckText, s: Situation, loaded: LoadedEye) -> Margin | None:
+    """The margin of a clause for axial loads where a force acts across the shank; else None."""
+    if loaded.transverse.max() <= MAX_TRANSVERSE_RATIO * loaded.size.max():
+        return None
+    return text.lacks(
+        s,
+        f"a force along the shank at lug {loaded.connection}, where it also acts across (clauses "
+        'for that: code = "aircraft")',
+    )
+
+
+def eye_margin(
+    text: CheckText,
+    s: Situation,
+    loaded: LoadedEye,
+    force: Floats,
+    capacity: EyeCapacity,
+    dimension: str,
+) -> Margin:
+    """The margin of the largest force on an eye.
+
+    force: (T,) N at the instants of the loads. dimension: of the eye, which is changed until it
+    just passes; it must raise the capacity.
+    """
+    instant = int(force.argmax())
+    largest, factor = float(force[instant]), s.factors.at(text.level)
+    allowed, place = capacity(loaded.eye), place_of(s, loaded, instant)
+
+    def utilisation(eye: Eye) -> float:
+        value = capacity(eye).result.value
+        return factor * largest / value if value > 0.0 else math.inf
+
+    passing = loaded.eye.would_pass(dimension, utilisation) if largest > 0.0 else None
+    return Margin(
+        text.method, text.clause, text.kind, text.level, factor, largest, allowed.result.value,
+        "force", loaded.connection, place.z, place.time, loaded.lug.name, loaded.basis,
+        work=(allowed,), scatter=text.scatter, omits=text.omits,
+        passing=None if passing is None
+        else Quantity(DIMENSION_NAMES[dimension], passing, "length"),
+    )  # fmt: skip

@@ -1,0 +1,137 @@
+"""Hand checks of the lugs in which a pin sits: net section, shear-out, bearing.
+
+Nominal stresses of an eye of width W, bore D and thickness t, on a pin of diameter d, as if its
+link pulled with the largest force F of the case:
+
+    net section    F / (C_r 2 t b_eff),  b_eff = min(b, 4 t, 0.6 b F_u/F_y sqrt(D/b)), b = (W - D)/2
+    shear-out      F / (2 L t),  L = sqrt(e^2 - (D/2 sin 40)^2) - D/2 cos 40
+    bearing        F / (d t)
+
+A wide net section is not all used: stress gathers at the bore, and a lug breaks there before the
+rest has yielded. b_eff and C_r, which a loose pin lowers, are those of ASME BTH-1 (of a material
+without an ultimate strength with F_u = F_y, which is on the safe side). F / ((W - D) t) would be
+about half of that stress at W = 5 D.
+
+The shear planes run along the force from the bore, 40 degrees off it, to the edge of the head, e
+from the centre of the bore; their length is e - D/2 cos 40 where that is straight. The stresses are
+compared with yield, in shear with yield over sqrt(3) (von Mises); yield as the strength in bearing
+is a convention. Neither the stress concentration at the bore nor a load across the link is in them.
+
+Source: ASME BTH-1, Design of Below-the-Hook Lifting Devices, 3-3.3, equations 3-45 to 3-47 (net
+section), by D. Duerr, J. Struct. Eng. 132(2), 2006, 182-194; R. G. Budynas & J. K. Nisbett,
+Shigley's Mechanical Engineering Design, 8-12 (edge shear, bearing); E. F. Bruhn, Analysis and
+Design of Flight Vehicle Structures, D1 (planes at 40 degrees); ANSI/AISC 360, J7 (the same area in
+bearing).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+from assess.check import CheckText, Rupture, check
+from assess.clauses.bth1 import effective_width, pin_to_hole
+from assess.clauses.eye import Eye, LoadedEye, loaded_eyes, place_of
+from assess.clauses.eye_margin import DIMENSION_NAMES
+from assess.margin import Margin
+from assess.situation import Situation
+from assess.strength.hand_checks import BEARING_SOURCE, SHIGLEY_JOINTS, shear_yield
+from assess.work import Quantity, Work, work
+
+BTH1 = "ASME BTH-1, 3-3.3; Duerr 2006"
+BRUHN = "Bruhn, Analysis and Design of Flight Vehicle Structures, D1"
+NET_SECTION_FORMULA = "F / (C_r 2 t b_eff)"
+SHEAR_OUT_FORMULA = "F / (2 t (sqrt(e^2 - (D/2 sin 40°)^2) - D/2 cos 40°))"
+SQUARE_SHEAR_OUT_FORMULA = "F / (2 t (e - D/2 cos 40°))"
+BEARING_FORMULA = "F / (d t)"
+SHEAR_PLANE_ANGLE = math.radians(40.0)  # of shear-out, off the direction of the force
+OMITS = "Not covered: stress concentration at the bore, forces across the shank, fatigue."
+NET_SECTION = CheckText("lug, net section", BTH1, "hand", omits=OMITS)
+SHEAR_OUT = CheckText("lug, shear-out", BRUHN, "hand", omits=OMITS)
+BEARING = CheckText("lug, bearing", BEARING_SOURCE, "hand", omits=OMITS)
+_LugCheck = tuple[CheckText, Callable[[Eye], Work], float | None, Rupture, str, str]
+
+
+def net_section_stress(force: float, ultimate_over_yield: float, eye: Eye) -> Work:
+    """The tension on the part of the net section that carries, Pa.
+
+    force: N. ultimate_over_yield: F_u / F_y of the lug.
+
+    Source: as the module.
+    """
+    b_eff, C_r = effective_width(eye, ultimate_over_yield), pin_to_hole(eye)
+    return work(
+        "σ", force / (C_r * 2.0 * eye.thickness * b_eff), "stress",
+        "{F} / ({C_r} × 2 × {t} × {b_eff})",
+        F=(force, "force"), C_r=(C_r, "1"), t=(eye.thickness, "length"), b_eff=(b_eff, "length"),
+    )  # fmt: skip
+
+
+def shear_out_stress(force: float, eye: Eye) -> Work:
+    """The shear stress on the two planes by which the pin would push out a piece of the eye, Pa.
+
+    Arguments and source as `net_section_stress`.
+    """
+    across = eye.hole / 2.0 * math.sin(SHEAR_PLANE_ANGLE)
+    along = eye.hole / 2.0 * math.cos(SHEAR_PLANE_ANGLE)
+    length = (eye.e if eye.square else math.sqrt(eye.e**2 - across**2)) - along
+    return work(
+        "τ", force / (2.0 * length * eye.thickness), "stress", "{F} / (2 × {t} × {L})",
+        F=(force, "force"), t=(eye.thickness, "length"), L=(length, "length"),
+    )  # fmt: skip
+
+
+def bearing_stress(force: float, eye: Eye) -> Work:
+    """The bearing stress on the projected area in the bore, Pa; as `net_section_stress`."""
+    return work(
+        "σ", force / (eye.bearer * eye.thickness), "stress", "{F} / ({d} × {t})",
+        F=(force, "force"), d=(eye.bearer, "length"), t=(eye.thickness, "length"),
+    )  # fmt: skip
+
+
+@check("lug", SHIGLEY_JOINTS, kind="hand", takes="loads")
+def lug_checks(_: CheckText, s: Situation) -> list[Margin]:
+    """Net section, shear-out and bearing of every loaded lug whose size is given.
+
+    They are checked at the instant when the force across the pin is largest, taken along the shank
+    whatever its direction. The lug is as thick as its band is long.
+    """
+    return [m for loaded in loaded_eyes(s) for m in _of_lug(s, loaded)]
+
+
+def _of_lug(s: Situation, loaded: LoadedEye) -> list[Margin]:
+    t, material, eye = int(loaded.size.argmax()), loaded.lug, loaded.eye
+    force, place, yields = float(loaded.size[t]), place_of(s, loaded, t), material.yield_strength
+    ratio = 1.0
+    if material.ultimate_strength is not None and yields is not None:
+        ratio = material.ultimate_strength / yields
+    out_formula = SQUARE_SHEAR_OUT_FORMULA if eye.square else SHEAR_OUT_FORMULA
+    net = partial(net_section_stress, force, ratio)
+    out, bears = partial(shear_out_stress, force), partial(bearing_stress, force)
+    every: tuple[_LugCheck, ...] = (
+        (NET_SECTION, net, yields, "ultimate", NET_SECTION_FORMULA, "width"),
+        (SHEAR_OUT, out, shear_yield(material), "shear", out_formula, "width"),
+        (BEARING, bears, yields, "bearing", BEARING_FORMULA, "thickness"),
+    )
+    margins = []
+    for text, stress, strength, ruptures, formula, dimension in every:
+        shown = stress(eye)
+        for m in text.at_levels(
+            s, shown.result.value, place, material, strength, ruptures, formula
+        ):
+            passing = _passing(eye, dimension, stress, m)
+            margins.append(replace(m, work=(shown,), passing=passing, omits=text.omits))
+    return margins
+
+
+def _passing(
+    eye: Eye, dimension: str, stress: Callable[[Eye], Work], margin: Margin
+) -> Quantity | None:
+    """The dimension of an eye that would just pass a margin."""
+    allowable, factor = margin.allowable, margin.factor
+    if not allowable:
+        return None
+    value = eye.would_pass(dimension, lambda e: factor * stress(e).result.value / allowable)
+    return value if value is None else Quantity(DIMENSION_NAMES[dimension], value, "length")

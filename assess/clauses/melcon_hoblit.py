@@ -1,0 +1,230 @@
+"""Lugs under axial, transverse and oblique loads by the method of Melcon and Hoblit.
+
+    shear-bearing    P_bru = k_br F_tux D t
+    tension          P_tu = k_t F_tu (W - D) t
+    yield            P_y = C (F_tyx / F_tux) min(P_bru, P_tu)
+    transverse       P_tru = k_tru F_tux D t       P_try = k_try F_tyx D t
+    oblique          (R_a^1.6 + R_tr^1.6)^0.625 <= 1
+
+R_a and R_tr are the axial and the transverse part of the force over what the lug carries of each.
+The efficiency factors are those of the method's figures, which no formula gives: the study states
+them. `average_area` is the ratio with which the figure of the transverse ones is entered.
+
+The study has one ultimate and one yield strength of a material; those across the grain (F_tux,
+F_tyx) are to be stated there where they are lower.
+
+Source: M. A. Melcon & F. M. Hoblit, Developments in the Analysis of Lugs and Shear Pins, Product
+Engineering, June 1953; M. C. Y. Niu, Airframe Stress Analysis and Sizing, 9.8.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from assess.check import CheckText, check
+from assess.clauses.eye import Eye, LoadedEye, loaded_eyes, place_of
+from assess.clauses.eye_margin import eye_margin, lug_key, strengths_of
+from assess.margin import RATIO_DIMENSION, Margin, strength_key
+from assess.situation import Situation
+from assess.work import Work, work
+from pinbase.arrays import Floats
+
+NIU = "Melcon & Hoblit; Niu, Airframe Stress Analysis, 9.8"
+OBLIQUE_EXPONENT = 1.6  # of the interaction; 0.625 is its inverse
+OMITS = (
+    "Not covered: elongations under 5 %, strength across the grain other than the material's, "
+    "bending of the lug, fatigue."
+)
+AXIAL_KEYS, TRANSVERSE_KEYS = ("k_br", "k_t"), ("k_tru",)
+
+
+def shear_bearing_load(eye: Eye, k_br: float, ultimate: float) -> Work:
+    """P_bru, N. ultimate: strength across the grain, Pa."""
+    return _on_bearing_area("P_bru", "k_br", eye, k_br, "F_tu", ultimate)
+
+
+def tension_load(eye: Eye, k_t: float, ultimate: float) -> Work:
+    """P_tu, N. ultimate: strength along the grain, Pa."""
+    area = (eye.width - eye.hole) * eye.thickness
+    return work(
+        "P_tu", k_t * ultimate * area, "force", "{k_t} × {F_tu} × ({W} − {D}) × {t}",
+        k_t=(k_t, "1"), F_tu=(ultimate, "stress"), W=(eye.width, "length"),
+        D=(eye.hole, "length"), t=(eye.thickness, "length"),
+    )  # fmt: skip
+
+
+def yield_load(ultimate_load: float, C: float, yields: float, ultimate: float) -> Work:
+    """P_y, N, of the lower ultimate load, N. yields, ultimate: strengths across the grain, Pa."""
+    return work(
+        "P_y", C * yields / ultimate * ultimate_load, "force", "{C} × ({F_ty} / {F_tu}) × {P_u}",
+        C=(C, "1"), F_ty=(yields, "stress"), F_tu=(ultimate, "stress"),
+        P_u=(ultimate_load, "force"),
+    )  # fmt: skip
+
+
+def transverse_load(k_tru: float, ultimate: float, eye: Eye) -> Work:
+    """P_tru, N. ultimate: strength across the grain, Pa."""
+    return _on_bearing_area("P_tru", "k_tru", eye, k_tru, "F_tu", ultimate)
+
+
+def transverse_yield_load(k_try: float, yields: float, eye: Eye) -> Work:
+    """P_try, N. yields: yield strength across the grain, Pa."""
+    return _on_bearing_area("P_try", "k_try", eye, k_try, "F_ty", yields)
+
+
+def average_area(outer: tuple[float, float], inner: tuple[float, float]) -> float:
+    """The average area A_av = 6 / (3/A1 + 1/A2 + 1/A3 + 1/A4) of a transverse load, m^2.
+
+    outer: A1 and A4; inner: A2 and A3, the net sections around the hole, m^2.
+    """
+    (first, fourth), (second, third) = outer, inner
+    return 6.0 / (3.0 / first + 1.0 / second + 1.0 / third + 1.0 / fourth)
+
+
+def oblique_ratio(axial: Floats | float, transverse: Floats | float) -> Floats:
+    """(R_a^1.6 + R_tr^1.6)^0.625 of the ratios of both parts of a force."""
+    n = OBLIQUE_EXPONENT
+    return np.asarray((np.power(axial, n) + np.power(transverse, n)) ** (1.0 / n))
+
+
+_of_lugs = partial(
+    check, kind="clause", takes="loads", level="ultimate", dimension="force", omits=OMITS
+)
+
+
+@_of_lugs("Melcon-Hoblit shear-bearing", NIU)
+def shear_bearing(text: CheckText, s: Situation) -> list[Margin]:
+    """The axial force on every eye whose k_br is given against shear-out and bearing."""
+    return [
+        eye_margin(text, s, x, x.axial, partial(shear_bearing_load, k_br=k, ultimate=fu), "width")
+        if (fu := x.lug.ultimate_strength)
+        else text.lacks(s, *strengths_of(x.lug).missing)
+        for x in _pulled(s)
+        if (k := s.factors_of(x.connection).k_br) is not None
+    ]
+
+
+@_of_lugs("Melcon-Hoblit tension", NIU)
+def tension(text: CheckText, s: Situation) -> list[Margin]:
+    """The axial force on every eye whose k_t is given against the net section."""
+    return [
+        eye_margin(text, s, x, x.axial, partial(tension_load, k_t=k, ultimate=fu), "width")
+        if (fu := x.lug.ultimate_strength)
+        else text.lacks(s, *strengths_of(x.lug).missing)
+        for x in _pulled(s)
+        if (k := s.factors_of(x.connection).k_t) is not None
+    ]
+
+
+@check("Melcon-Hoblit yield", NIU, kind="clause", takes="loads", dimension="force", omits=OMITS)
+def lug_yield(text: CheckText, s: Situation) -> list[Margin]:
+    """The axial force on every eye whose k_br and k_t are given against its yield load."""
+    margins = []
+    for x in _pulled(s):
+        k, strengths = s.factors_of(x.connection), strengths_of(x.lug)
+        if k.k_br is None or k.k_t is None:
+            continue
+        lacking = list(strengths.missing) + _lacking(s, x, "C")
+        if lacking or k.C is None:
+            margins.append(text.lacks(s, *lacking))
+            continue
+
+        def capacity(
+            eye: Eye, k_br: float = k.k_br, k_t: float = k.k_t, C: float = k.C,
+            fy: float = strengths.yields, fu: float = strengths.ultimate,
+        ) -> Work:  # fmt: skip
+            loads = shear_bearing_load(eye, k_br, fu), tension_load(eye, k_t, fu)
+            return yield_load(min(load.result.value for load in loads), C, fy, fu)
+
+        margins.append(eye_margin(text, s, x, x.axial, capacity, "width"))
+    return margins
+
+
+@_of_lugs("Melcon-Hoblit transverse", NIU)
+def transverse(text: CheckText, s: Situation) -> list[Margin]:
+    """The force across the shank of every eye against k_tru."""
+    return _across(text, s, "k_tru", "ultimate")
+
+
+@check("Melcon-Hoblit transverse yield", NIU, kind="clause", takes="loads", dimension="force",
+       omits=OMITS)  # fmt: skip
+def transverse_yield(text: CheckText, s: Situation) -> list[Margin]:
+    """The force across the shank of every eye against k_try."""
+    return _across(text, s, "k_try", "yield")
+
+
+def _across(text: CheckText, s: Situation, key: str, which: str) -> list[Margin]:
+    """which: the strength that the factor multiplies."""
+    margins = []
+    for x in loaded_eyes(s):
+        k = getattr(s.factors_of(x.connection), key)
+        strength = getattr(x.lug, f"{which}_strength")
+        if not x.transverse.any():
+            continue
+        if k is None or strength is None:
+            missing = [strength_key(x.lug.name, which)] if strength is None else []
+            margins.append(text.lacks(s, *_lacking(s, x, key), *missing))
+            continue
+        load = transverse_load if which == "ultimate" else transverse_yield_load
+        margins.append(
+            eye_margin(text, s, x, x.transverse, partial(load, k, strength), "thickness")
+        )
+    return margins
+
+
+@check("Melcon-Hoblit oblique", NIU, kind="clause", takes="loads", level="ultimate",
+       dimension=RATIO_DIMENSION, omits=OMITS)  # fmt: skip
+def oblique(text: CheckText, s: Situation) -> list[Margin]:
+    """Both parts of an oblique force together on every eye, against 1."""
+    eyes = [x for x in loaded_eyes(s) if (x.axial * x.transverse).any()]
+    return [_oblique(text, s, x) for x in eyes]
+
+
+def _oblique(text: CheckText, s: Situation, x: LoadedEye) -> Margin:
+    k, fu = s.factors_of(x.connection), x.lug.ultimate_strength
+    if k.k_br is None or k.k_t is None or k.k_tru is None or fu is None:
+        lacking = _lacking(s, x, *AXIAL_KEYS, *TRANSVERSE_KEYS)
+        return text.lacks(s, *lacking, *(m for m in strengths_of(x.lug).missing if "ultim" in m))
+    along = shear_bearing_load(x.eye, k.k_br, fu), tension_load(x.eye, k.k_t, fu)
+    axial = min(load.result.value for load in along)
+    across = transverse_load(k.k_tru, fu, x.eye)
+    used = oblique_ratio(x.axial / axial, x.transverse / across.result.value)
+    t = int(used.argmax())
+    place, (R_a, R_tr) = (
+        place_of(s, x, t),
+        (x.axial[t] / axial, x.transverse[t] / across.result.value),
+    )
+    both = work(
+        "R", used[t], RATIO_DIMENSION, "({R_a}^1.6 + {R_tr}^1.6)^0.625", R_a=(R_a, "1"),
+        R_tr=(R_tr, "1"),
+    )  # fmt: skip
+    return Margin(
+        text.method, text.clause, text.kind, text.level, s.factors.at(text.level), float(used[t]),
+        1.0, RATIO_DIMENSION, x.connection, place.z, place.time, x.lug.name, x.basis,
+        work=(*along, across, both), omits=text.omits,
+    )  # fmt: skip
+
+
+def _pulled(s: Situation) -> list[LoadedEye]:
+    """The eyes that are pulled along their shanks at any instant."""
+    return [x for x in loaded_eyes(s) if x.axial.any()]
+
+
+def _lacking(s: Situation, x: LoadedEye, *keys: str) -> list[str]:
+    factors = s.factors_of(x.connection)
+    return [
+        lug_key(s, x.connection, f"factors.{key}") for key in keys if getattr(factors, key) is None
+    ]
+
+
+def _on_bearing_area(
+    symbol: str, factor_symbol: str, eye: Eye, factor: float, strength_symbol: str, strength: float
+) -> Work:
+    return work(
+        symbol, factor * strength * eye.hole * eye.thickness, "force",
+        f"{{{factor_symbol}}} × {{{strength_symbol}}} × {{D}} × {{t}}",
+        **{factor_symbol: (factor, "1"), strength_symbol: (strength, "stress"),
+           "D": (eye.hole, "length"), "t": (eye.thickness, "length")},
+    )  # fmt: skip

@@ -1,0 +1,23 @@
+"""Efficiency factors of lugs, which a study reads off the figures of its source."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class LugFactors:
+    """Factors of a lug without units, None where the study does not give them.
+
+    K, K_n: of AFFDL-TR-69-42, figures 9-2 (and 9-3) and 9-4. k_br, k_t: of Melcon and Hoblit for
+    shear-bearing and tension, C: of the yield load; k_tru, k_try: for transverse loads, ultimate
+    and yield.
+    """
+
+    K: float | None = None
+    K_n: float | None = None
+    k_br: float | None = None
+    k_t: float | None = None
+    C: float | None = None
+    k_tru: float | None = None
+    k_try: float | None = None

@@ -1,0 +1,1 @@
+"""The limit load of a lug in plane strain, and its ultimate load."""

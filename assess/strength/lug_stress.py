@@ -1,0 +1,58 @@
+"""The stress of lugs as margins: the largest von Mises stress about the bore against yield and
+rupture, with its error (fea.lug). The safety factor that the study requires of the pin is required
+of its lugs as well.
+
+Where the pin presses on the bore the stress is contact's: beyond yield it flattens, which bearing
+checks judge. It is there for comparison.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from assess.check import CheckText, WorstPlace, check
+from assess.margin import Margin, for_comparison
+from assess.situation import Situation
+from assess.strength.model_stress import CLAUSE
+from fea.core.material import Material
+from fea.support.lugs.lug import Lug
+from fea.support.records import LugStress
+
+METHOD = "lug, von Mises stress at the bore"
+
+
+@check(METHOD, CLAUSE, kind="model", takes="results")
+def lug_stress(text: CheckText, s: Situation) -> list[Margin]:
+    """The margin of every wall of the lugs whose shank is known; for others, what they lack."""
+    by_name = {lug.connection: lug for lug in s.lugs}
+    margins = [
+        margin
+        for stress in s.lug_stresses
+        for margin in _margins(text, s, stress, by_name[stress.connection])
+    ]
+    lacking = [f"lug.{lug.connection}.shank" for lug in s.sized if lug.shank is None]
+    if lacking and s.joint is not None:
+        margins.append(text.lacks(s, *lacking))
+    return margins
+
+
+def _margins(text: CheckText, s: Situation, stress: LugStress, lug: Lug) -> list[Margin]:
+    material = _material(stress, lug)
+    place = WorstPlace(stress.connection, stress.z, stress.time)
+    named = text if stress.wall == "bore" else replace(text, method=f"{text.method}, {stress.wall}")
+    margins = named.at_levels(
+        s, stress.max_von_mises + stress.error_estimate, place, material, material.yield_strength,
+        "ultimate", basis="maximum with its error",
+    )  # fmt: skip
+    if stress.place == "beneath":
+        return [for_comparison(replace(m, method=f"{m.method}, beneath the pin")) for m in margins]
+    required = s.row.required if s.row else None
+    return [
+        replace(m, factor=max(m.factor, required or 0.0)) if m.level == "limit" else m
+        for m in margins
+    ]
+
+
+def _material(stress: LugStress, lug: Lug) -> Material:
+    """The material of a wall of a lug."""
+    return lug.bearing if stress.wall in ("bore", "bushing") else lug.material

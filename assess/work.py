@@ -1,0 +1,83 @@
+"""The work of a check: its formula, the numbers in it, and what would just pass."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Annotated
+
+from scipy.optimize import brentq
+
+MAX_CHANGE = 10.0  # times by which a dimension is changed at most to find what just passes
+STEP_RATIO = 1.15  # of dimensions that are tried one after another; the root is between two
+PASSING_TOLERANCE = 1e-6  # relative, of the value that just passes
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number of a formula: its symbol, its value in SI and its dimension ("1" for a ratio)."""
+
+    symbol: str
+    value: Annotated[float, "own"]
+    dimension: str = "1"
+
+    @property
+    def dimension_of(self) -> dict[str, str]:
+        """The dimension of the value, for the conversion of units (pinbase.records.in_units)."""
+        return {"own": self.dimension}
+
+
+@dataclass(frozen=True)
+class Work:
+    """A formula with its numbers and its result.
+
+    formula: with the symbols of the quantities in braces: "1.8 × {F_y} × {d} × {t}". Every term of
+    it has the same dimension in any system of units.
+    """
+
+    result: Quantity
+    formula: str
+    quantities: tuple[Quantity, ...]
+
+
+def work(
+    symbol: str, value: float, dimension: str, formula: str, **quantities: tuple[float, str]
+) -> Work:
+    """Return the work of a result; each quantity is a value in SI with its dimension."""
+    return Work(
+        Quantity(symbol, float(value), dimension),
+        formula,
+        tuple(Quantity(name, float(x), kind) for name, (x, kind) in quantities.items()),
+    )
+
+
+def scaled(symbol: str, now: float, utilisation: float, power: float) -> Quantity | None:
+    """Return the length that would just pass where what a check carries grows with a power of it;
+    None without a load.
+
+    now: the present length, m.
+    """
+    if not 0.0 < utilisation < float("inf"):
+        return None
+    return Quantity(symbol, now * utilisation ** (1.0 / power), "length")
+
+
+def would_pass(utilisation: Callable[[float], float], now: float) -> float | None:
+    """Return the value of a dimension nearest to the present one at which a utilisation is 1, on
+    its safe side; None where none is within MAX_CHANGE.
+
+    utilisation: as a function of the dimension; it falls as this grows.
+    now: the present value.
+    """
+    step = STEP_RATIO if utilisation(now) > 1.0 else 1.0 / STEP_RATIO
+    last = now
+    while now / MAX_CHANGE <= last <= now * MAX_CHANGE:
+        following = last * step
+        if (utilisation(following) > 1.0) != (step > 1.0):
+            low, high = sorted((last, following))
+            root: float = brentq(
+                lambda x: utilisation(x) - 1.0, low, high, rtol=PASSING_TOLERANCE, xtol=1e-12
+            )
+            return root * (1.0 + PASSING_TOLERANCE)
+        last = following
+    return None

@@ -1,0 +1,1 @@
+"""The stress of lugs in their plane."""

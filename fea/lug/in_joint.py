@@ -1,0 +1,114 @@
+"""The stress of a pin's lugs at all instants of a case whose contact is solved."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from fea.lug.lug_stress import BandLoad, BoreStress, LugInPlane, bore_stresses
+from fea.lug.through_thickness import EyeStress, eye_stress
+from fea.support.contact.pressed_cases import PressedCases
+from fea.support.lugs.lug import Lug
+from fea.support.records import LugStress
+from pinbase.arrays import Floats
+from pinbase.memo import Memo
+
+ALONG_FORCE = "shank along the largest force, in tension"
+
+
+@dataclass(frozen=True)
+class ShankAngle:
+    """The angle of a shank from the pin's x axis, (T,) rad, at times (T,) s; one angle and None
+    where it does not turn.
+
+    assumed: what is assumed of it, in words.
+    """
+
+    angle: Floats
+    times: Floats | None = None
+    assumed: str = ""
+
+    def at(self, times: Floats | None, count: int) -> Floats:
+        """The angle at times (count,) of the same motion, which may be None for one instant."""
+        if self.times is None or times is None:
+            return np.full(count, float(self.angle[0]))
+        return np.asarray(np.interp(times, self.times, np.unwrap(self.angle)))
+
+
+def lug_stresses(
+    contact: PressedCases, case: str, angles: Mapping[str, ShankAngle], memo: Memo
+) -> tuple[LugStress, ...]:
+    """The stress at the bores of all lugs that have a shank, in one case.
+
+    angles: of shanks, by connection; a shank without one lies along the largest force.
+
+    Raises: ArgumentError for an impossible outline; MeshError, SolveError.
+    """
+    return tuple(_of_lugs(contact, case, angles, memo))
+
+
+def _of_lugs(
+    contact: PressedCases, case: str, angles: Mapping[str, ShankAngle], memo: Memo
+) -> Iterator[LugStress]:
+    model, links = contact.model, contact.instants[case]
+    waves = model.waves(contact.states(links))
+    count = waves.shape[1]
+    for rows, lug, ends in model.by_lug():
+        if lug.shank is None:
+            continue
+        pressure = waves[:, :, rows]
+        band = model.whole.band(lug.connection)
+        length = np.diff(ends)
+        force = 0.5 * np.einsum("trp,r->tp", pressure[1], 2.0 * math.pi * band.radius * length)
+        if not force.any():
+            continue
+        given = angles.get(lug.connection)
+        angle = _along(force, count) if given is None else given.at(links.times, count)
+        load = BandLoad(force, pressure, length, angle, links.times)
+        inner = max(max(s.bores) for s in model.whole.segments if s.connection == lug.connection)
+
+        of = lug, model.material, inner / 2.0, band.radius
+        eye = _eye(contact, lug, ends, memo)
+        assumed = ALONG_FORCE if given is None else given.assumed
+        middles = band.z0 + 0.5 * (ends[1:] + ends[:-1])
+        for stress in bore_stresses(partial(LugInPlane, *of, memo=memo), eye, load):
+            yield _record(lug, stress, float(middles[stress.ring]), assumed)
+
+
+def _along(force: Floats, count: int) -> Floats:
+    """The angle of a shank that pulls against the largest force on its lug, (count,) rad."""
+    x, y = -force[np.hypot(*force.T).argmax()]
+    return np.full(count, math.atan2(y, x))
+
+
+def _eye(contact: PressedCases, lug: Lug, ends: Floats, memo: Memo) -> EyeStress:
+    model = contact.model
+    alike, highest = model.likeness(lug, ends), model.cells.highest
+    return memo.get(
+        ("eye stress", alike, model.cells),
+        lambda: eye_stress(model.on_lugs[alike], lug, highest),
+    )
+
+
+def _record(lug: Lug, stress: BoreStress, z: float, assumed: str) -> LugStress:
+    return LugStress(
+        connection=lug.connection,
+        wall=stress.wall,
+        place=stress.place,
+        material=stress.material.name,
+        max_von_mises=stress.von_mises,
+        max_hoop_stress=stress.hoop,
+        angle=math.degrees(math.remainder(stress.angle, 2.0 * math.pi)),
+        z=z,
+        time=stress.time,
+        error_estimate=stress.error,
+        mesh=stress.mesh,
+        rings=stress.rings,
+        sampling=stress.sampling,
+        yield_strength=stress.material.yield_strength,
+        assumed=assumed,
+    )

@@ -1,0 +1,351 @@
+"""The largest stress at the bore of a lug over all instants of a case, with its error.
+
+The hoop stress is that of the plane lug with its shank, in its own contact with the pin under the
+mean load through the thickness, and what uneven pressure through the thickness adds
+(fea.lug.through_thickness). Where the pin does not touch the bore the hoop stress is alone; beneath
+the pin the pressure acts beside it, and von Mises' stress is that of plane stress,
+
+    sqrt(s^2 + s p + p^2)    with a hoop stress s and a pressure p.
+
+Hoop stress plus pressure is smooth along the bore, pressure is not: it rises as a root from where
+contact ends. So the sum is read there, not at the nearest point.
+
+At the sharp edges of a bore pressure has no bound; beneath the pin the outermost rings are not read
+there, as on the pin. Beside the contact they are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fea.core.material import Material
+from fea.lug.plane_contact import PlaneContact
+from fea.lug.plane_fields import Elasticity, PlaneFields, plane_fields, waves
+from fea.lug.through_thickness import EyeStress
+from fea.support.lugs.lug import Lug
+from geometry.shape.lug_outline import LugOutline
+from pinbase.arrays import Floats
+from pinbase.memo import Memo
+
+COARSER = 2  # times as long: elements and sectors with which the result is compared
+MIN_RINGS_OF_SHARP_BORE = 2  # of which the outermost are not read beneath the pin
+USUAL_AROUND = 96  # elements and sectors around the bore
+
+
+@dataclass(frozen=True)
+class BandLoad:
+    """What the joint does to one lug in one case, at T instants.
+
+    force: of the pin on the lug, (T, 2) N in the pin's axes.
+    pressure: harmonics (N + 1, T, R, 2) Pa of the pressure on its R rings, in the pin's axes.
+    length: of the rings, (R,) m.
+    angle: of the shank from the pin's x axis, (T,) rad.
+    times: (T,) s, None without a motion.
+    """
+
+    force: Floats
+    pressure: Floats
+    length: Floats
+    angle: Floats
+    times: Floats | None = None
+
+    def at(self, instant: int) -> BandLoad:
+        """The load at one instant."""
+        one = slice(instant, instant + 1)
+        times = None if self.times is None else self.times[one]
+        return BandLoad(self.force[one], self.pressure[:, one], self.length, self.angle[one], times)
+
+
+@dataclass(frozen=True)
+class BoreStress:
+    """The largest stress at one wall of a lug, beside the contact or beneath it.
+
+    wall: "bore", "bushing" (its bore) or "hole" (of the lug about a bushing).
+    place: "free" where nothing presses on the wall, "beneath" the pin, or beneath a "bushing".
+    von_mises, hoop: Pa. hoop: the largest tension; von_mises is at `angle`.
+    angle: from the shank, rad. ring: number of the ring. instant, time: of the largest.
+    mesh, rings, sampling: parts of the error of von_mises, Pa.
+    """
+
+    wall: str
+    place: str
+    material: Material
+    von_mises: float
+    hoop: float
+    angle: float
+    ring: int
+    instant: int
+    time: float | None
+    mesh: float = 0.0
+    rings: float = 0.0
+    sampling: float = 0.0
+
+    @property
+    def error(self) -> float:
+        """The error of von_mises, Pa, by mesh and sectors, rings, and sampling in time."""
+        return self.mesh + self.rings + self.sampling
+
+
+class LugInPlane:
+    """A lug with its shank about a pin, in its plane.
+
+    inner, radius: of the pin's bore and of its band, m.
+    """
+
+    def __init__(
+        self,
+        lug: Lug,
+        pin: Material,
+        inner: float,
+        radius: float,
+        around: int = USUAL_AROUND,
+        memo: Memo | None = None,
+    ) -> None:
+        self.lug, self.radius, self.outline = lug, radius, outline_of(lug, radius)
+        elastic = _elasticity(lug)
+        scaled = _scaled(self.outline)
+        self.fields: PlaneFields = (memo or Memo()).get(
+            ("plane lug", scaled, elastic, around), lambda: plane_fields(scaled, elastic, around)
+        )
+        E = lug.material.youngs_modulus
+        self.contact = PlaneContact(
+            self.fields, E, lug.bearing, pin, inner, radius, lug.clearance, around
+        )
+        bushing = lug.bushing
+        interference = 0.0 if bushing is None else bushing.interference
+        self.misfit = interference / self.outline.hole * E
+
+    def amounts(self, pressures: Floats) -> Floats:
+        """The amounts (T, K) of the unit loads under pressures (T, M), Pa, and the misfit."""
+        misfit = np.full((len(pressures), 1), self.misfit)
+        return np.hstack([pressures @ self.contact.waves, misfit])
+
+
+def outline_of(lug: Lug, radius: float) -> LugOutline:
+    """The outline of a lug that has a shank, about a band of some radius, m.
+
+    Raises: ArgumentError where its dimensions contradict each other.
+    """
+    shank = lug.shank
+    assert shank is not None
+    bore = 2.0 * radius
+    hole = None if lug.bushing is None else bore + 2.0 * lug.bushing.thickness
+    return LugOutline(
+        shank.shape, bore, lug.outer_diameter, shank.width, shank.length, shank.end, hole
+    )
+
+
+def _scaled(outline: LugOutline) -> LugOutline:
+    """The outline of a bore of radius 1, alike for similar lugs."""
+    one = outline.bore / 2.0
+    lengths = "bore", "head", "width", "length", "end", "interface"
+    sizes = {name: getattr(outline, name) for name in lengths}
+    return replace(outline, **{name: x and round(x / one, 9) for name, x in sizes.items()})
+
+
+def _elasticity(lug: Lug) -> Elasticity:
+    nu, bearing = lug.material.poisson_ratio, lug.bearing
+    return Elasticity(
+        nu, bearing.youngs_modulus / lug.material.youngs_modulus, bearing.poisson_ratio
+    )
+
+
+def bore_stresses(
+    make: Callable[..., LugInPlane], eye: EyeStress, load: BandLoad
+) -> tuple[BoreStress, ...]:
+    """The largest stress at the walls of a lug over the instants of a load.
+
+    make: gives the plane lug by `around`, its elements around the bore. eye: of its annulus.
+
+    Raises: MeshError, SolveError.
+    """
+    usual, coarse = (make(around=x) for x in (USUAL_AROUND, USUAL_AROUND // COARSER))
+    out = []
+    for stress in _walls(usual, eye, load):
+        here = load.at(stress.instant)
+        others = _walls(coarse, eye, here), _walls(usual, eye, _on_pairs(here))
+        mesh, rings = (abs(stress.von_mises - _same(x, stress).von_mises) for x in others)
+        out.append(replace(stress, mesh=mesh, rings=rings))
+    return tuple(out)
+
+
+def _same(among: list[BoreStress], stress: BoreStress) -> BoreStress:
+    """The stress at the same wall and place; the largest at the wall where there is none."""
+    of_wall = [x for x in among if x.wall == stress.wall]
+    alike = [x for x in of_wall if x.place == stress.place]
+    return max(alike or of_wall, key=lambda x: x.von_mises)
+
+
+@dataclass(frozen=True)
+class _Around:
+    """Stress around a wall of a lug at T instants on R rings, at points where it may be largest.
+
+    angle: (T, P) rad, from the shank. hoop, von_mises: (T, R, P) Pa, -inf where not read.
+    """
+
+    angle: Floats
+    hoop: Floats
+    von_mises: Floats
+
+    def largest(
+        self, wall: str, place: str, material: Material, times: Floats | None
+    ) -> Iterator[BoreStress]:
+        """The largest stress over all instants, rings and points; none where none is read."""
+        by_instant = self.von_mises.max(axis=(1, 2), initial=-np.inf)
+        if not by_instant.max() > 0.0:
+            return
+        t, r, k = np.unravel_index(int(self.von_mises.argmax()), self.von_mises.shape)
+        yield BoreStress(
+            wall,
+            place,
+            material,
+            float(by_instant.max()),
+            float(self.hoop.max()),
+            float(self.angle[t, k]),
+            int(r),
+            int(t),
+            None if times is None else float(times[t]),
+            sampling=0.0 if times is None else _beyond(times, by_instant),
+        )
+
+
+def _beyond(times: Floats, values: Floats) -> float:
+    """By how much a parabola through the largest of values (T,) and its neighbours exceeds it."""
+    k = int(values.argmax())
+    if not 0 < k < len(values) - 1 or not np.isfinite(values[k - 1 : k + 2]).all():
+        return 0.0
+    x, y = times[k - 1 : k + 2] - times[k], values[k - 1 : k + 2] - values[k]
+    bend = (y[0] / x[0] - y[2] / x[2]) / (x[0] - x[2])
+    slope = y[0] / x[0] - bend * x[0]
+    return float(-0.25 * slope * slope / bend) if bend < 0.0 else 0.0
+
+
+def _walls(plane: LugInPlane, eye: EyeStress, load: BandLoad) -> list[BoreStress]:
+    """The largest stress at each wall, without the parts of its error but that of sampling."""
+    lug, bushing = plane.lug, plane.lug.bushing
+    pressure = plane.contact.pressures(_along_shank(load))
+    amounts = plane.amounts(pressure)
+    wall, material = ("bushing", bushing.material) if bushing else ("bore", lug.material)
+    free, beneath = _bore(plane, eye, load, pressure, amounts)
+    out = [
+        *free.largest(wall, "free", material, load.times),
+        *beneath.largest(wall, "beneath", material, load.times),
+    ]
+    if bushing:
+        hole = _hole(plane, eye, load, amounts)
+        out += hole.largest("hole", "bushing", lug.material, load.times)
+    return out
+
+
+def _along_shank(load: BandLoad) -> Floats:
+    """The force per thickness along the shank and across it, (T, 2) N/m."""
+    c, s = np.cos(load.angle), np.sin(load.angle)
+    x, y = load.force.T / load.length.sum()
+    return np.stack([c * x + s * y, c * y - s * x], axis=1)
+
+
+def _added(eye: EyeStress, load: BandLoad, angles: Floats, hole: bool = False) -> Floats:
+    """What uneven pressure through the thickness adds, (T, R, P) Pa, at angles (P,) from the
+    shank.
+    """
+    amplitude = eye.added(load.pressure, load.length, hole)
+    turns = angles + load.angle[:, None]  # (T, P)
+    n = np.arange(len(amplitude))[:, None, None]
+    cos, sin = np.cos(n * turns), np.sin(n * turns)
+    first = np.einsum("ntr,ntp->trp", amplitude[..., 0], cos)
+    return np.asarray(first + np.einsum("ntr,ntp->trp", amplitude[..., 1], sin))
+
+
+def _bore(
+    plane: LugInPlane, eye: EyeStress, load: BandLoad, pressure: Floats, amounts: Floats
+) -> tuple[_Around, _Around]:
+    """The stress of the wall on which the pin bears, where it is free and beneath the pin."""
+    wall = plane.fields.bore
+    pressed = np.vstack([waves(wall.angles), np.zeros((1, len(wall.angles)))])
+    total = (amounts @ (wall.hoop + pressed))[:, None] + _added(eye, load, wall.angles)
+    # At the middles of sectors; two points of a wall a sector.
+    middles, here = wall.angles[::2], pressure[:, None] * _shares(load)[:, :, None]
+    at_middles = np.broadcast_to(middles, pressure.shape)
+    hoop = total[:, :, ::2] - here
+    # And free where contact ends, of which there are two at most at most instants.
+    edge, known = _ends_of_contact(pressure)
+    at = np.where(known, edge, 0.0)
+    beside = np.where(known[:, None], _between(total, 2.0 * at), -np.inf)
+    open_hoop = np.where(pressure[:, None] > 0.0, -np.inf, hoop)
+    free = np.concatenate([open_hoop, beside], axis=2)
+    angle = np.hstack([at_middles, at * (middles[1] - middles[0])])
+    read = np.broadcast_to(pressure[:, None] > 0.0, hoop.shape).copy()
+    if not plane.lug.edge_radius and len(load.length) > MIN_RINGS_OF_SHARP_BORE:
+        read[:, [0, -1]] = False
+    under = np.sqrt(hoop * hoop + hoop * here + here * here)
+    unread = np.full_like(hoop, -np.inf)
+    return (
+        _Around(angle, free, np.where(np.isfinite(free), np.abs(free), -np.inf)),
+        _Around(at_middles, np.where(read, hoop, unread), np.where(read, under, unread)),
+    )
+
+
+def _shares(load: BandLoad) -> Floats:
+    """The load per length of each ring over the mean, (T, R), in the direction of the force."""
+    first = load.pressure[1] if len(load.pressure) > 1 else np.zeros((1, len(load.length), 2))
+    mean = np.einsum("trp,r->tp", first, load.length / load.length.sum())
+    size = np.einsum("tp,tp->t", mean, mean)[:, None]
+    along = np.einsum("trp,tp->tr", first, mean)
+    return np.where(size > 0.0, np.maximum(along, 0.0) / np.where(size > 0.0, size, 1.0), 1.0)
+
+
+def _ends_of_contact(
+    pressure: Floats,
+) -> tuple[Floats, np.ndarray[tuple[int, int], np.dtype[np.bool_]]]:
+    """Where contact ends, (T, 2 M) in sectors from the first one's middle, and which of these
+    exist.
+
+    Of a pressure that rises as a root, the last pressed sector has a mean that tells how far
+    contact reaches into it.
+    """
+    last = pressure > 0.0
+    M = pressure.shape[1]
+    ends, known = [], []
+    for step in (1, -1):
+        beyond, before = np.roll(last, -step, axis=1), np.roll(pressure, step, axis=1)
+        is_end = last & ~beyond
+        ratio = np.where(
+            is_end & (before > 0.0), pressure / np.where(before > 0.0, before, 1.0), 1.0
+        )
+        reach = 1.0 / ((1.0 + 1.0 / np.maximum(ratio, 1e-9)) ** (2.0 / 3.0) - 1.0)
+        ends.append(np.arange(M) + step * (np.minimum(reach, 1.0) - 0.5))
+        known.append(is_end)
+    return np.hstack(ends), np.hstack(known)
+
+
+def _between(values: Floats, at: Floats) -> Floats:
+    """Values (T, R, P), at equally spaced points around, at (T, E) points between, (T, R, E)."""
+    P = values.shape[2]
+    low = np.floor(at).astype(np.int64)
+    part = (at - low)[:, None]
+    first = np.take_along_axis(values, np.mod(low, P)[:, None], axis=2)
+    second = np.take_along_axis(values, np.mod(low + 1, P)[:, None], axis=2)
+    return np.asarray((1.0 - part) * first + part * second)
+
+
+def _hole(plane: LugInPlane, eye: EyeStress, load: BandLoad, amounts: Floats) -> _Around:
+    """The stress of the lug about its bushing."""
+    assert plane.fields.hole is not None
+    wall = plane.fields.hole.at(amounts)
+    hoop = wall.hoop[:, None] + _added(eye, load, wall.angles, hole=True)
+    radial, shear = wall.radial[:, None], wall.shear[:, None]
+    von_mises = np.sqrt(hoop * hoop - hoop * radial + radial * radial + 3.0 * shear * shear)
+    return _Around(np.broadcast_to(wall.angles, wall.hoop.shape), hoop, von_mises)
+
+
+def _on_pairs(load: BandLoad) -> BandLoad:
+    """The load with the pressure even over each pair of rings."""
+    pressure, length = load.pressure.copy(), load.length
+    for first in range(0, len(length) - 1, 2):
+        pair = slice(first, first + 2)
+        share = length[pair] / length[pair].sum()
+        pressure[:, :, pair] = np.einsum("ntrp,r->ntp", pressure[:, :, pair], share)[:, :, None]
+    return replace(load, pressure=pressure)

@@ -1,0 +1,98 @@
+"""Contact of a pin with a lug in its plane, with the lug as stiff as its outline makes it.
+
+The flexibility of the pin is that of a round section, exact by harmonics; that of the lug comes
+from its finite elements; what is beyond their harmonics is a half-plane's, of both. Contact is
+frictionless, as in fea.support.contact.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fea.core.material import Material
+from fea.lug.plane_fields import HARMONICS, PlaneFields
+from fea.support.bands import Bands
+from fea.support.contact.contact import ContactProblem
+from fea.support.contact.flexibility import half_plane
+from fea.support.contact.pressure_loads import waves_of_sectors
+from fea.support.foundation.plane_contact import pin_harmonics
+from pinbase.arrays import Floats
+
+USUAL_SECTORS = 96  # docs/measured has what fewer and more give
+
+
+def in_plane_stress(material: Material) -> Material:
+    """The material whose plane strain is the given one's plane stress."""
+    E, nu = material.youngs_modulus, material.poisson_ratio
+    return Material(
+        material.name, E * (1.0 + 2.0 * nu) / (1.0 + nu) ** 2, nu / (1.0 + nu), material.density
+    )
+
+
+@dataclass(frozen=True)
+class PlaneContact:
+    """A pin's section in a lug.
+
+    fields: of the lug. modulus: of the lug, Pa. bearing: the material on which the pin bears.
+    inner, radius: of the pin's bore, 0 if solid, and of the surface, m.
+    clearance: of the diameters, m.
+    grown: by how much a bushing's misfit moves its bore outwards, m, at the sectors' middles; it
+    is part of the clearance that the study states, except where it is not even.
+    """
+
+    fields: PlaneFields
+    modulus: float
+    bearing: Material
+    pin: Material
+    inner: float
+    radius: float
+    clearance: float
+    sectors: int = USUAL_SECTORS
+
+    @cached_property
+    def problem(self) -> ContactProblem:
+        """The contact problem, with lengths of a band of 1 m."""
+        r = self.radius
+        pin, bearing = in_plane_stress(self.pin), in_plane_stress(self.bearing)
+        tail = np.array([half_plane(pin, r) + half_plane(bearing, r)])
+        flexible = pin_harmonics(self.inner, r, pin)[: HARMONICS + 1, None, None]
+        one = np.ones(1)
+        gap = np.array([0.5 * self.clearance])
+        bands = Bands(np.zeros(1), one, np.array([r]), np.zeros(1, dtype=np.int64), gap)
+        return ContactProblem(bands, flexible, tail, (math.inf,), self.sectors, self._of_lug)
+
+    @cached_property
+    def waves(self) -> Floats:
+        """The amounts of the unit pressures under unit pressures on the sectors, (M, 2 H + 1)."""
+        both = waves_of_sectors(self.sectors, HARMONICS)  # (H + 1, M, 2)
+        return np.concatenate([both[:, :, 0], both[1:, :, 1]]).T
+
+    @property
+    def _of_lug(self) -> Floats:
+        """The mean displacement outwards of sectors under forces on sectors, (M, M) m/N."""
+        M = self.sectors
+        n = np.arange(HARMONICS + 1)
+        turns = np.outer(2.0 * np.pi * np.arange(M) / M, n)
+        mean = np.sinc(n / M)
+        at = np.hstack([np.cos(turns) * mean, (np.sin(turns) * mean)[:, 1:]])
+        unit = self.radius / self.modulus
+        area = 2.0 * np.pi * self.radius / M
+        both = unit / area * at @ self.fields.flexibility @ self.waves.T
+        return np.asarray(0.5 * (both + both.T))
+
+    def pressures(self, forces: Floats) -> Floats:
+        """The pressures (T, M), Pa, on the sectors under forces (T, 2) of the pin on the lug, N/m,
+        along the shank and across it.
+
+        Raises: SolveError where contact does not settle.
+        """
+        out, start = [], None
+        for force in forces:
+            state = self.problem.solve(-force[None], start=start)
+            start = state.active if state.pressure.any() else None
+            out.append(state.pressure[0])
+        return np.array(out)

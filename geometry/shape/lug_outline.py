@@ -1,0 +1,97 @@
+"""The outline of a lug in its plane: a head about a bore, and the shank by which it is held.
+
+The bore's centre is the origin and the shank leaves along x.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from pinbase.errors import ArgumentError
+
+HeadShape = Literal["round", "tapered", "square"]
+OutlineShape = Literal["round", "tapered", "square", "ring"]
+MIN_WALL = 1e-3  # of a head, of its bore's diameter
+
+
+@dataclass(frozen=True)
+class LugOutline:
+    """The outline of a lug, m.
+
+    shape: "round": a round head on a shank of parallel sides; "tapered": a round head whose sides
+    leave it as tangents; "square": a plate with a straight end; "ring": a head without a shank.
+    bore: diameter, of a bushing's inside if there is one.
+    head: outer diameter of a round head.
+    width: of the shank where it is held; of the whole plate for "square".
+    length: from the bore's centre to where the shank is held.
+    end: from the bore's centre to the end of the head.
+    interface: diameter of the hole in which a bushing sits; None without one.
+
+    Raises: ArgumentError where the head does not surround its bore, or the shank does not fit it.
+    """
+
+    shape: OutlineShape
+    bore: float
+    head: float
+    width: float = 0.0
+    length: float = 0.0
+    end: float = 0.0
+    interface: float | None = None
+
+    def __post_init__(self) -> None:
+        hole = self.hole / 2.0
+        if self.shape != "square":
+            wall = self.head / 2.0 - abs(self.centre) - hole
+        else:
+            wall = min(self.end, self.width / 2.0) - hole
+        if wall < MIN_WALL * self.hole:
+            raise ArgumentError(
+                f"the head leaves no wall about its hole of {self.hole:.4g} m: its outer diameter, "
+                "width or end is too small",
+                "lug-too-narrow",
+            )
+        if self.shape != "ring":
+            self._require_shank(hole)
+
+    def _require_shank(self, hole: float) -> None:
+        if self.width <= self.hole:
+            raise ArgumentError(
+                f"the shank is {self.width:.4g} m wide, narrower than the hole of {self.hole:.4g} "
+                "m: give a width larger than that",
+                "shank-too-narrow",
+            )
+        if self.shape == "round" and self.width > self.head * (1.0 + 1e-9):
+            raise ArgumentError(
+                f"the shank is {self.width / self.head:.4g} times as wide as its round head: use "
+                'shape = "tapered", or a smaller width',
+                "shank-too-wide",
+            )
+        least = hole if self.shape == "square" else self.centre + self.head / 2.0
+        if self.length <= least:
+            raise ArgumentError(
+                f"the shank is held {self.length:.4g} m from the bore's centre, inside of its "
+                f"head: give a length above {least:.4g} m",
+                "shank-too-short",
+            )
+
+    @property
+    def hole(self) -> float:
+        """The diameter of the hole in the lug itself, m."""
+        return self.bore if self.interface is None else self.interface
+
+    @property
+    def centre(self) -> float:
+        """The x of the centre of a round head, m: 0 unless the bore is eccentric."""
+        return 0.0 if self.shape in ("ring", "square") else self.head / 2.0 - self.end
+
+    @property
+    def joints(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """The points where the upper side leaves a round head and where it is held, m."""
+        R, half = self.head / 2.0, min(self.width, self.head) / 2.0
+        if self.shape == "round":
+            return (self.centre + math.sqrt(R * R - half * half), half), (self.length, half)
+        along, across = self.length - self.centre, self.width / 2.0
+        turn = math.atan2(across, along) + math.acos(R / math.hypot(along, across))
+        return (self.centre + R * math.cos(turn), R * math.sin(turn)), (self.length, across)

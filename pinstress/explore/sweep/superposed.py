@@ -1,0 +1,127 @@
+"""Pins of designs as they are to be solved, and those together that differ by their loads alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from fea.core.material import Material
+from fea.core.requirement import Requirement
+from fea.support.lugs.lug import Lug
+from geometry import ArgumentError
+from pinbase.memo import Memo
+from pinbase.records import digest
+from pinstress.analysis.solve import for_task, problem_of
+from pinstress.analysis.stored import shape_of
+from pinstress.explore.sweep.outcomes import bare_row
+from pinstress.study.model.cases import CaseLoads
+from pinstress.study.model.requirements import required_factors
+from pinstress.study.model.tasks import Task
+from pinstress.study.reading.file import Study
+from reports.data.results import PinResult
+
+Rows = tuple[PinResult, ...]
+
+
+@dataclass(frozen=True)
+class PosedTask:
+    """A pin of a design in some cases, as it is to be solved.
+
+    loads: by case. alike: all but loads on which the answer depends, as a hash; key: all.
+    """
+
+    study: Study
+    task: Task
+    requirement: Requirement
+    loads: Mapping[str, CaseLoads]
+    alike: str
+    key: str
+
+
+def posed_task(
+    study: Study,
+    task: Task,
+    requirement: Requirement,
+    loads: Mapping[str, CaseLoads],
+    alike: str | None = None,
+) -> PosedTask:
+    """Return a task with the hashes of what its answer depends on in a study whose mechanism does
+    not change.
+
+    alike: of a task that differs by its loads alone, if one is known.
+    """
+    alike = alike or _alike(study, task, requirement)
+    factors = required_factors(study, task.pin.name, (x.case for x in task.loads))
+    # Impulses of other ranges may have the same forces.
+    ranges = [loads[x.case].range for x in task.loads]
+    key = digest((alike, task.clamps, task.loads, task.ranges, ranges, factors))
+    return PosedTask(study, task, requirement, loads, alike, key)
+
+
+def superposed(posed: Iterable[PosedTask], memo: Memo) -> dict[str, Rows]:
+    """Return the rows, by key, of those tasks that are solved together with others; they are what
+    each has when it is solved alone.
+
+    memo: of meshes and unit fields.
+    """
+    groups: dict[tuple[object, ...], dict[str, PosedTask]] = {}
+    for one in posed:
+        if len(one.task.loads) == 1 and not (one.task.lugs or one.task.ranges or one.task.between):
+            (loads,) = one.task.loads
+            bands = one.task.clamps, loads.case, loads.surfaces, loads.distribution, len(loads)
+            groups.setdefault((one.alike, *bands), {})[one.key] = one
+    out: dict[str, Rows] = {}
+    for group in groups.values():
+        if len(group) > 1:
+            out |= _together(list(group.values()), memo)
+    return out
+
+
+def _together(group: Sequence[PosedTask], memo: Memo) -> dict[str, Rows]:
+    """Return the rows of tasks that differ by their loads, as far as they can be superposed."""
+    from fea.solve.solve_each import solve_each, superposable
+    from fea.support.support import Solution
+
+    first = group[0]
+    task = replace(first.task, material=elastic(first.task.material))
+    problem, requirement = problem_of(task, memo), for_task(first.study, task, first.requirement)
+    if not superposable(problem, requirement):
+        return {}
+    try:
+        maxima = solve_each(problem, tuple(x.task.loads[0] for x in group), requirement)
+    except (ArgumentError, ArithmeticError, MemoryError):
+        return {}  # each says by itself what is wrong
+    return {
+        one.key: (bare_row(one.task, Solution(maximum, None, one.task.loads[0]), one.loads),)
+        for one, maximum in zip(group, maxima, strict=True)
+        if maximum is not None
+    }
+
+
+def elastic(material: Material) -> Material:
+    """Return a material without its strengths, on which no stress depends."""
+    return Material(
+        material.name, material.youngs_modulus, material.poisson_ratio, material.density
+    )
+
+
+def _elastic_lug(lug: Lug) -> Lug:
+    """Return a lug without strengths, by which only its own share is judged (bare_row drops
+    that).
+    """
+    bushing = lug.bushing and replace(lug.bushing, material=elastic(lug.bushing.material))
+    return replace(lug, material=elastic(lug.material), bushing=bushing)
+
+
+def _alike(study: Study, task: Task, requirement: Requirement) -> str:
+    decides = requirement.goal == "decide"
+    return digest(
+        (
+            shape_of(task.pin),
+            task.lugs if decides else tuple(map(_elastic_lug, task.lugs)),
+            study.table.analysis.joints,
+            study.table.fatigue is not None,
+            task.material if decides else elastic(task.material),
+            replace(requirement, memory=None),
+        )
+    )

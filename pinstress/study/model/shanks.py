@@ -1,0 +1,98 @@
+"""The direction in which the shanks of lugs point, as their links move."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea.lug.in_joint import ShankAngle
+from loads import GROUND, Dynamics, Joint
+from pinstress.study.model.cases import CaseLoads
+from pinstress.study.reading.file import Study
+from pinstress.study.schema.lugs import ShankTable
+from pinstress.study.schema.shown import listed
+
+
+def shank_angles(study: Study, pin: str, case: CaseLoads) -> dict[str, ShankAngle]:
+    """Return the angles of a pin's shanks in a case, by connection; those that neither the study
+    nor the mechanism gives are left out.
+
+    Raises: InputError for a joint that does not exist, and for a body with more than two joints
+    whose shank has no direction.
+    """
+    out = {}
+    for name, lug in study.table.pin[pin].lug.items():
+        if lug.shank is None:
+            continue
+        if lug.shank.angle is not None:
+            out[name] = ShankAngle(np.array([lug.shank.angle]))
+        elif case.dynamics is not None and _turns(case, name, lug.shank):
+            at = f"pin.{pin}.lug.{name}.shank"
+            if others := _others(study, at, case.dynamics, name, lug.shank.toward):
+                out[name] = _toward(study, at, name, others, case)
+    return out
+
+
+def _turns(case: CaseLoads, connection: str, shank: ShankTable) -> bool:
+    """Return whether the mechanism gives a shank's direction: not that of a lug of the ground,
+    unless it is stated.
+    """
+    r = case.reactions
+    if connection not in r.connections:
+        return False
+    return shank.toward is not None or r.bodies[r.connections.index(connection)] != GROUND
+
+
+def _toward(
+    study: Study, at: str, connection: str, others: list[str], case: CaseLoads
+) -> ShankAngle:
+    """Return the angles towards the middle of other joints."""
+    dynamics, times = case.dynamics, None
+    assert dynamics is not None
+    if case.moving is not None and case.solve is not None:
+        times = case.moving.instants
+        dynamics = case.solve(times)
+    here = _joint_of(dynamics, connection)
+    places = [dynamics.motion.joint(name)[0] for name in others]
+    x, y = (np.mean(places, axis=0) - dynamics.motion.joint(here.name)[0]).T
+    if not np.hypot(x, y).all():
+        raise study.error(
+            f"the shank's direction is not known: {listed(others)} lie about {here.name}; give "
+            "toward, the name of a joint, or angle",
+            at,
+            "direction-unknown",
+        )
+    turn = dynamics.reactions.turn[:, dynamics.reactions.connections.index(connection)]
+    assumed = f"shank towards the middle of {listed(others)}" if len(others) > 1 else ""
+    return ShankAngle(np.arctan2(y, x) - turn, times, assumed)
+
+
+def _joint_of(dynamics: Dynamics, connection: str) -> Joint:
+    joints = dynamics.motion.linkage.connections
+    return next(joint for joint, known in joints if known.name == connection)
+
+
+def _others(
+    study: Study, at: str, dynamics: Dynamics, connection: str, toward: str | None
+) -> list[str]:
+    """Return the names of the joints towards which a shank points."""
+    linkage, here = dynamics.motion.linkage, _joint_of(dynamics, connection).name
+    names = [joint.name for joint in linkage.joints if joint.name != here]
+    if toward is not None:
+        if toward not in names:
+            raise study.error(
+                f"there is no other joint {toward!r}; give one of {listed(names)}",
+                f"{at}.toward",
+                "unknown-name",
+            )
+        return [toward]
+    body = next(c.body for _, c in linkage.connections if c.name == connection)
+    sliding = {
+        s.base if s.moving == body else s.moving
+        for s in linkage.sliders
+        if body in (s.base, s.moving)
+    }
+    for bodies in ({body}, sliding):  # a piston points towards where its cylinder is held
+        known = (j.name for j, c in linkage.connections if c.body in bodies and j.name != here)
+        if others := list(dict.fromkeys(known)):
+            return others
+    return []

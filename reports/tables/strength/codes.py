@@ -1,0 +1,64 @@
+"""The codes that a study selects side by side: the least margin by each at every lug."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from assess.margin import Margin
+from reports.data.results import Results
+from reports.format.numbers import DASH, engineering
+from reports.tables.column import Column, Table, read_only, texts
+
+CODES_TITLE = "Least margin of each code (without the checks that all of them have)"
+
+
+@dataclass(frozen=True)
+class CodesRow:
+    """A place of a pin with the governing check of each code, over all cases.
+
+    margins: by code; a check that several codes have counts for each.
+    """
+
+    pin: str
+    at: str
+    margins: dict[str, Margin]
+
+
+def codes_table(results: Results) -> Table[CodesRow]:
+    """Return a row for each place of a pin at which a code has a check that others do not have; no
+    rows for one code.
+    """
+    made = list(_made(results))
+    codes = list(dict.fromkeys(code for _, m in made for code in m.code.split(", ")))
+    rows: dict[tuple[str, str], dict[str, Margin]] = {}
+    for pin, m in made:
+        of = m.code.split(", ")
+        if len(of) == len(codes):
+            continue
+        of_place = rows.setdefault((pin, m.at), {})
+        for code in of:
+            if code not in of_place or m.used > of_place[code].used:
+                of_place[code] = m
+    columns = [*texts("pin at"), *(_column(code) for code in codes)]
+    shown = [CodesRow(pin, at, margins) for (pin, at), margins in rows.items()]
+    return Table("codes", columns, shown if len(codes) > 1 else [])
+
+
+def _made(results: Results) -> Iterator[tuple[str, Margin]]:
+    """Yield the checks of all rows that were made at a named place by a code, with their pins."""
+    for row in results.pins:
+        for m in row.margins:
+            if m.at and m.code and m.governs and m.used >= 0.0:
+                yield row.pin, m
+
+
+def _column(code: str) -> Column[CodesRow]:
+    return read_only(code, lambda row: _cell(row.margins.get(code)), numeric=False)
+
+
+def _cell(m: Margin | None) -> str:
+    if m is None:
+        return DASH
+    sign = "+" if (m.margin or 0.0) > 0.0 else ""
+    return f"{sign}{engineering(m.margin, 3)} ({m.method})"

@@ -1,0 +1,177 @@
+"""The printed example of AFFDL-TR-69-42, table 9-1: a joint in double shear, and the study of it.
+
+Two numbers of its print are not kept. The net tension of the females, 57,898 lbf, is that of both
+legs; one carries 28,949. That of the male, 112,313 lbf, is by equation 9-6b although F_tu is less
+than 1.304 F_ty; by 9-6a it is 100,485. Neither governs. Loads are printed to three digits; those
+here are computed from the printed inputs with all digits.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from assess.checks import SETS, margins_of
+from assess.clauses.affdl_joint import DoubleShear
+from assess.clauses.affdl_lugs import bearing_load, bushing_load, net_section_load
+from assess.clauses.eye import Eye
+from assess.lug_factors import LugFactors
+from assess.margin import Margin
+from assess.situation import Situation
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
+from fea.support.lugs.lug import Bushing, Lug, Shank
+from tests.support.each import each
+from tests.support.pins.plain_pins import double_shear
+
+IN, LBF, KSI = 0.0254, 4.4482216, 6.894757e6
+D, DP, GAP = 1.0 * IN, 0.75 * IN, 0.1 * IN
+FEMALE = Eye(2.5 * IN, D, DP, 0.5 * IN, bushed=True)
+MALE = Eye(3.0 * IN, D, DP, 0.75 * IN, bushed=True)
+FEMALE_STRENGTHS, MALE_STRENGTHS = (40 * KSI, 64 * KSI), (66 * KSI, 77 * KSI)
+FORCE = 20_000.0 * LBF
+
+
+def lbf(value: float) -> float:
+    return value / LBF
+
+
+def metal(name: str, modulus: float, yields: float, ultimate: float) -> Material:
+    return Material(name, modulus * 1e3 * KSI, 0.33, None, yields * KSI, ultimate * KSI)
+
+
+def joint_of_table() -> Situation:
+    """The joint of table 9-1 under 20,000 lbf on the male lug, along the shanks."""
+    bushing = Bushing(0.125 * IN, metal("bushing", 16, 60, 100))
+    female, male = metal("2024-T351", 10.5, 40, 64), metal("7075-T651", 10.3, 66, 77)
+    pin = double_shear(0.5 * IN, GAP, 0.75 * IN, DP)
+    lugs = (
+        Lug("A", 2.5 * IN, female, bushing=bushing),
+        Lug("B", 3.0 * IN, male, bushing=bushing),
+        Lug("C", 2.5 * IN, female, bushing=bushing),
+    )
+    forces = np.array([[[-FORCE / 2, 0, 0], [FORCE, 0, 0], [-FORCE / 2, 0, 0]]])
+    steel = Material("4130", 29e3 * KSI, 0.3, None, 103 * KSI, 125 * KSI, 82 * KSI)
+    outer, middle = LugFactors(K=1.46, K_n=0.74), LugFactors(K=1.33, K_n=0.87)
+    return Situation(
+        pin, steel, PinLoads("pull", ("A", "B", "C"), forces), lugs=lugs, sized=lugs,
+        codes=("aircraft",), bending_factor=1.56,
+        lug_factors={"A": outer, "B": middle, "C": outer},
+    )  # fmt: skip
+
+
+def named(margins: list[Margin]) -> dict[tuple[str, str], Margin]:
+    return {(m.method, m.at): m for m in margins if m.governs}
+
+
+def test_female_bearing() -> None:
+    """28,600 lbf in print, 28,558 by its own K of 1.46: F_tux exceeds 1.304 F_tyx (9-2a, 9-3b)."""
+    load = bearing_load(FEMALE, 1.46, *FEMALE_STRENGTHS).result.value
+    assert lbf(load) == pytest.approx(28_558, rel=2e-5)
+
+
+def test_net_sections() -> None:
+    """One leg 28,949 lbf, half of the printed 57,898; the male by 9-6a, 100,485."""
+    one = net_section_load(FEMALE, 0.74, *FEMALE_STRENGTHS).result.value
+    assert lbf(one) == pytest.approx(57_898 / 2.0, rel=1e-4)
+    male = net_section_load(MALE, 0.87, *MALE_STRENGTHS).result.value
+    assert lbf(male) == pytest.approx(100_485, rel=1e-5)
+
+
+def test_male_bushing() -> None:
+    """44,000 lbf in print (9-9), 44,010 with all digits."""
+    assert lbf(bushing_load(MALE, 60 * KSI).result.value) == pytest.approx(44_010, rel=1e-6)
+
+
+def test_the_load_shifts_to_the_faces() -> None:
+    """37,900 lbf in print instead of 30,100 with even bearing (9-15, 9-16), on 0.331 in of 0.5 and
+    0.645 of 0.75.
+    """
+    moment = 1.56 * 125 * KSI * math.pi / 32.0 * DP**3
+    shear = math.pi / 2.0 * DP**2 * 82 * KSI
+    joint = DoubleShear(28_558 * LBF, 44_010 * LBF, (0.5 * IN, 0.75 * IN), GAP, moment, shear)
+    assert joint.arm / IN == pytest.approx(0.5375)
+    assert lbf(joint.shear) == pytest.approx(72_453, rel=1e-5)
+    assert lbf(joint.even_bending) == pytest.approx(30_052, rel=1e-4)
+    assert joint.line_load / LBF * IN == pytest.approx(28_944, rel=1e-4)
+    assert lbf(joint.shifted_bending) == pytest.approx(37_841, rel=1e-4)
+    widths = [x / IN for x in joint.bearing_widths]
+    assert widths == pytest.approx([0.331, 0.645], abs=5e-4)
+    assert lbf(joint.load) == pytest.approx(37_841, rel=1e-4)
+
+
+@each("moment", [80.0, 200.0, 400.0, 1200.0])
+def test_the_shifted_load_bends_the_pin_as_much(moment: float) -> None:
+    """Statics of 9-16: the load on the widths that are left bends the pin by exactly M_u."""
+    joint = DoubleShear(120e3, 190e3, (0.012, 0.02), 0.002, moment, 1e9)
+    b1, twice_b2 = joint.bearing_widths
+    arm = b1 / 2.0 + twice_b2 / 4.0 + joint.gap
+    assert joint.shifted_bending / 2.0 * arm == pytest.approx(moment)
+
+
+def test_a_study_of_the_table() -> None:
+    """Checks of the code "aircraft" find the loads of the table, for 1.5 x 1.15 of the forces."""
+    margins = named(margins_of(joint_of_table()))
+    for (method, at), load in {
+        ("AFFDL lug bearing", "A"): 28_558,
+        ("AFFDL lug net section", "A"): 28_949,
+        ("AFFDL lug net section", "B"): 100_485,
+        ("AFFDL bushing", "B"): 44_010,
+        ("AFFDL joint in double shear", "B"): 37_841,
+    }.items():
+        m = margins[method, at]
+        assert m.allowable is not None
+        assert lbf(m.allowable) == pytest.approx(load, rel=1e-4), method
+        assert m.factor == pytest.approx(1.5 * 1.15)
+    joint = margins["AFFDL joint in double shear", "B"]
+    assert joint.margin == pytest.approx(37_841 / (1.725 * 20_000) - 1.0, rel=1e-3)
+    (bent,) = (m for m in margins_of(joint_of_table()) if m.method.startswith("pin bending"))
+    assert not bent.governs  # even bearing, as the load shifts
+    assert bent.margin == pytest.approx(30_052 / (1.725 * 20_000) - 1.0, rel=1e-3)
+    (sheared,) = (m for m in margins.values() if m.method == "pin shear, rupture")
+    assert sheared.margin == pytest.approx(72_453 / (1.725 * 20_000) - 1.0, rel=1e-3)
+    assert joint.work[-1].result.value == joint.allowable
+
+
+def test_the_diameter_that_would_pass() -> None:
+    """The pin fails in even bearing, and is loaded to 1 with the diameter that is named."""
+    s = replace(joint_of_table(), lug_factors={})  # without which the load is not shifted
+    (bent,) = (m for m in margins_of(s) if m.method == "pin bending, rupture")
+    assert bent.used > 1.0
+    assert bent.passing is not None
+    thicker = double_shear(0.5 * IN, GAP, 0.75 * IN, bent.passing.value)
+    (passing,) = (
+        m for m in margins_of(replace(s, profile=thicker)) if m.method == "pin bending, rupture"
+    )
+    assert passing.used == pytest.approx(1.0)
+
+
+def test_a_missing_factor_is_named() -> None:
+    bare = replace(joint_of_table(), lug_factors={}, bending_factor=None)
+    lacking = [m for m in margins_of(bare) if m.needs]
+    needs = {m.method: m.needs for m in lacking}
+    assert "pin.P.lug.C.factors.K" in needs["AFFDL lug bearing"]
+    assert "pin.P.lug.C.factors.K_n" in needs["AFFDL lug net section"]
+    assert "pin.P.lug.A.factors.K" in needs["AFFDL joint in double shear"]
+    assert "pin.P.bending_factor" in needs["pin bending, rupture"]
+    assert all(m.utilisation is None for m in lacking)
+
+
+def test_a_transverse_force_is_no_axial_one() -> None:
+    """Across its shank a lug is not checked by the clauses for axial loads."""
+    s = joint_of_table()
+    up = math.pi / 2.0
+    lugs = tuple(
+        replace(x, shank=Shank("round", x.outer_diameter, 0.2, x.outer_diameter / 2.0, up))
+        for x in s.lugs
+    )
+    margins = margins_of(replace(s, lugs=lugs, sized=lugs, codes=tuple(SETS)))
+    made = {m.method for m in margins if not m.needs}
+    assert not made & {"AFFDL lug bearing", "BTH-1 plate, tension", "AISC tensile rupture"}
+    needs = {m.method: m.needs for m in margins if m.needs}
+    assert "force along the shank at lug" in needs["AISC pin-connected member"]
+    assert "k_tru" in needs["Melcon-Hoblit transverse"]
+    assert "Ekvall transverse" in made

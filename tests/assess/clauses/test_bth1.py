@@ -1,0 +1,129 @@
+"""Pin-connected plates of spreadsheets after ASME BTH-1-2005, and one of them that is wrong."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from assess.checks import margins_of
+from assess.clauses.bth1 import (
+    bearing_strength,
+    effective_width,
+    fracture_strength,
+    pin_to_hole,
+    shear_area,
+    shear_strength,
+    tension_strength,
+)
+from assess.clauses.eye import Eye
+from assess.situation import Situation
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
+from fea.support.lugs.lug import Lug
+from tests.support.each import each
+from tests.support.pins.plain_pins import double_shear
+
+IN, KIP, KSI = 0.0254, 4448.2216, 6.894757e6
+FY, FU, ND = 36 * KSI, 58 * KSI, 2.0
+STRENGTHS = tension_strength, fracture_strength, shear_strength, bearing_strength
+
+
+def plate(t: float, a: float, be: float, dp: float, dh: float, *, square: bool = False) -> Eye:
+    """A plate by its dimensions in inches."""
+    width, end = 2.0 * be + dh, a + dh / 2.0
+    return Eye(width * IN, dh * IN, dp * IN, t * IN, end=end * IN, square=square)
+
+
+def kips(eye: Eye, N_d: float = ND) -> list[float]:
+    return [strength(eye, FY, FU, N_d).result.value / KIP for strength in STRENGTHS]
+
+
+B7 = plate(0.75, 3.3125, 1.66, 1.375, 1.6875)
+
+
+@each(("eye", "printed"), [
+    (B7, (49.30, 68.76, 88.41, 23.20)),
+    (plate(0.19685, 0.25591, 0.25591, 0.39370, 0.47244), (2.065, 1.783, 1.964, 1.744)),
+    (plate(0.19685, 0.35433, 0.35433, 0.39370, 0.47244), (2.859, 2.367, 2.643, 1.744)),
+])  # fmt: skip
+def test_curved_plates(eye: Eye, printed: tuple[float, ...]) -> None:
+    """P_t, P_b, P_v, P_p in kips; the prints have two decimals."""
+    assert kips(eye) == pytest.approx(printed, rel=4e-4)
+
+
+def test_intermediate_numbers() -> None:
+    """C_r 0.841 and A_v 5.23 in2 of the first plate."""
+    assert pin_to_hole(B7) == pytest.approx(0.841, abs=5e-4)
+    assert shear_area(B7) / IN**2 == pytest.approx(5.23, abs=8e-3)
+
+
+def test_a_straight_plate() -> None:
+    """175.21, 144.09 and 77.34 kips are printed without C_r. Its shear, 145.46, is not kept: with
+    phi = 55 x 2.75/3 = 50.4 degrees the formula gives 147.97.
+    """
+    eye = plate(1.25, 3.0, 3.0, 2.75, 3.0, square=True)
+    tension, fracture, shear, bearing = kips(eye)
+    C_r = pin_to_hole(eye)
+    assert [tension / C_r, fracture / C_r] == pytest.approx([175.21, 144.09], rel=1e-4)
+    assert shear == pytest.approx(147.97, rel=1e-4)
+    assert bearing == pytest.approx(77.34, rel=1e-4)
+
+
+def test_a_sheet_that_is_wrong() -> None:
+    """A sheet in use prints 15 kips in bearing, which is 1.25 F_y / N_d without D_p t: 8.44 kips.
+    12 kips, which it would pass, must not pass here.
+    """
+    eye = plate(0.75, 1.0625, 1.0625, 0.75, 0.875)
+    tension, fracture, _, bearing = kips(eye, 3.0)
+    assert pin_to_hole(eye) == pytest.approx(0.8583, rel=1e-4)
+    assert effective_width(eye, FU / FY) / IN == pytest.approx(0.9321, rel=1e-4)
+    assert [tension, fracture] == pytest.approx([19.33, 17.03], rel=4e-4)
+    assert bearing == pytest.approx(8.44, abs=5e-3)
+    assert bearing * IN**2 / (0.75 * 0.75) / IN**2 == pytest.approx(15.0)  # what it printed
+    s = clevis(12.0)
+    (row,) = (m for m in margins_of(s) if m.method == "BTH-1 plate, bearing")
+    assert row.used == pytest.approx(12.0 / 8.4375, rel=1e-6)
+    assert row.margin is not None
+    assert row.margin < 0.0
+
+
+def clevis(force: float) -> Situation:
+    """The plate of that sheet as the middle lug of a pin, under a force in kips."""
+    steel = Material("A36", 29e3 * KSI, 0.3, None, FY, FU)
+    pin = double_shear(0.375 * IN, 0.02 * IN, 0.75 * IN, 0.75 * IN)
+    lug = Lug("B", 3.0 * IN, steel, clearance=0.125 * IN)
+    F = force * KIP
+    forces = np.array([[[-F / 2, 0, 0], [F, 0, 0], [-F / 2, 0, 0]]])
+    return Situation(
+        pin, steel, PinLoads("lift", ("A", "B", "C"), forces), lugs=(lug,), sized=(lug,),
+        codes=("lifting",), design_factor=3.0,
+    )  # fmt: skip
+
+
+def test_a_study_of_a_plate() -> None:
+    """At the loads of the study; the thickness that would pass is that of the bearing."""
+    margins = {m.method: m for m in margins_of(clevis(12.0))}
+    bearing = margins["BTH-1 plate, bearing"]
+    assert bearing.factor == 1.0
+    assert bearing.passing is not None
+    assert bearing.passing.symbol == "thickness"
+    assert bearing.passing.value == pytest.approx(0.75 * IN * 12.0 / 8.4375, rel=1e-5)
+    assert margins["BTH-1 plate, tension"].allowable == pytest.approx(19.33 * KIP, rel=4e-4)
+
+
+def test_the_design_factor_is_the_engineers() -> None:
+    bare = replace(clevis(12.0), design_factor=None)
+    lacking = [m for m in margins_of(bare) if m.method.startswith("BTH-1")]
+    assert len(lacking) == 4
+    assert all("analysis.design_factor" in m.needs and m.utilisation is None for m in lacking)
+
+
+def test_a_wide_net_section_is_not_all_used() -> None:
+    """Ten times the width does not carry ten times the load: the limit is 4 t, then a root."""
+    narrow, wide = (plate(0.75, 3.0, be, 1.0, 1.0) for be in (1.0, 10.0))
+    parts = [effective_width(eye, 58.0 / 36.0) / eye.side for eye in (narrow, wide)]
+    assert parts[0] == pytest.approx(0.6 * 58.0 / 36.0)
+    assert parts[1] == pytest.approx(min(0.6 * 58.0 / 36.0 * math.sqrt(0.1), 0.3))

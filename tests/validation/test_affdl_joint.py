@@ -1,0 +1,186 @@
+"""AFFDL-TR-69-42, Stress Analysis Manual (reprint of October 1986), 9.6, table 9-1, as a study.
+
+The example is a joint in double shear with bushings, which carries 37,900 lbf in print (37,841 with
+all digits of its inputs). Its factors K, K_n and k_b are read off figures there, and given here.
+The same joint by three codes shows what a user sees: work, units, what would pass, codes side by
+side. Tolerance 1e-4: the recomputed loads are known to five digits.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+from rich.console import Console
+
+import pinstress
+from pinstress import load_study
+from reports.data.results import Results
+from reports.tables.strength.codes import codes_table
+from reports.tables.strength.margins import margins_table
+from reports.text.safety_factors import print_safety_factors
+from reports.text.work import print_work
+
+STUDY = """
+title = "A joint in double shear by AFFDL-TR-69-42, table 9-1"
+units = "in-lbf-s"
+
+[material."2024-T351"]
+youngs_modulus = "10.5e6 psi"
+poisson_ratio = 0.33
+yield_strength = "40 ksi"
+ultimate_strength = "64 ksi"
+
+[material."7075-T651"]
+youngs_modulus = "10.3e6 psi"
+poisson_ratio = 0.33
+yield_strength = "66 ksi"
+ultimate_strength = "77 ksi"
+
+[material.bushing]
+youngs_modulus = "16e6 psi"
+poisson_ratio = 0.33
+yield_strength = "60 ksi"
+
+[material."AISI 4130"]
+youngs_modulus = "29e6 psi"
+poisson_ratio = 0.3
+yield_strength = "103 ksi"
+ultimate_strength = "125 ksi"
+shear_strength = "82 ksi"
+
+[pin.P]
+material = "AISI 4130"
+bending_factor = 1.56
+profile = [
+  { length = 0.5, diameter = 0.75, connection = "A" },
+  { length = 0.1, diameter = 0.75 },
+  { length = 0.75, diameter = 0.75, connection = "B" },
+  { length = 0.1, diameter = 0.75 },
+  { length = 0.5, diameter = 0.75, connection = "C" },
+]
+
+[lug_defaults]
+outer_diameter = 2.5
+material = "2024-T351"
+bushing = { thickness = 0.125, material = "bushing" }
+factors = { K = 1.46, K_n = 0.74 }
+
+[pin.P.lug.B]
+outer_diameter = 3.0
+material = "7075-T651"
+factors = { K = 1.33, K_n = 0.87 }
+
+[case.pull]
+kind = "given"
+forces = { A = [-10000, 0], B = [20000, 0], C = [-10000, 0] }
+
+[analysis]
+code = ["aircraft", "lifting", "civil"]
+design_factor = 2.0
+joints = "prescribed"
+model = "beam"
+"""
+FACTOR = 1.5 * 1.15  # ultimate, and of fittings
+
+
+@dataclass(frozen=True)
+class Joint:
+    """The results of the study, and the rows of margins.csv by method."""
+
+    results: Results
+    rows: dict[str, dict[str, Any]]
+
+
+def joint(folder: Path, text: str = STUDY) -> Joint:
+    path = folder / "joint.toml"
+    path.write_text(text, encoding="utf-8")
+    results = pinstress.run(load_study(path))
+    return Joint(results, {row["method"]: row for row in margins_table(results).records()})
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory: pytest.TempPathFactory) -> Joint:
+    return joint(tmp_path_factory.mktemp("joint"))
+
+
+def printed(write: object, results: Results) -> str:
+    console = Console(file=io.StringIO(), width=400, force_terminal=False)
+    write(results, console)  # type: ignore[operator]
+    return console.file.getvalue()  # type: ignore[attr-defined,no-any-return]
+
+
+def test_the_loads_of_the_table(found: Joint) -> None:
+    for method, load in {
+        "AFFDL lug bearing": 28_558,
+        "AFFDL lug net section": 28_949,
+        "AFFDL bushing": 44_010,
+        "AFFDL joint in double shear": 37_841,
+    }.items():
+        row = found.rows[method]
+        assert row["allowable"] == pytest.approx(load, rel=1e-4), method
+        assert row["factor"] == pytest.approx(FACTOR)
+        assert row["code"] == "aircraft"
+        assert row["unit"] == "lbf"
+
+
+def test_the_work_has_the_numbers_of_the_study(found: Joint) -> None:
+    """In inches and psi, with what would pass, and what is not covered."""
+    text = printed(print_work, found.results)
+    assert "= 1.304 × 60,000 psi × 0.75 in × 0.75 in = 44,010 lbf" in text
+    assert "P_u = 1.304 × F_cy × D_p × t" in text
+    assert "= min(44,010 lbf, 72,450 lbf, max(30,050 lbf, 37,840 lbf)) = 37,840 lbf" in text
+    assert "ultimate load: 1.725 × 20,000 lbf against 37,840 lbf: margin +0.0969" in text
+    assert "Not covered: loads across the shank" in text
+    assert 'not checked: needs material."AISI 4130".bearing_strength' in text
+    for passing in re.findall(r"(\S+ [\d.]+ \S+) would pass", text):
+        assert passing.endswith(" in")
+
+
+def test_what_would_pass_passes(found: Joint, tmp_path: Path) -> None:
+    """EN 1993 bending misses; with the diameter that is named it is loaded to 1."""
+    before = found.rows["EN 1993 bending"]
+    assert before["utilisation"] > 1.0
+    key, diameter, unit = before["would_pass"].split()
+    assert (key, unit) == ("diameter", "in")
+    after = joint(tmp_path, STUDY.replace("diameter = 0.75", f"diameter = {diameter}"))
+    used = after.rows["EN 1993 bending"]["utilisation"]
+    assert used == pytest.approx(1.0, abs=1e-3)  # four digits of the diameter
+
+
+def test_codes_side_by_side(found: Joint) -> None:
+    """At the outer lugs each code has its own governing clause; what all have is left out."""
+    table = codes_table(found.results)
+    assert [c.heading for c in table.columns] == ["pin", "at", "aircraft", "lifting", "civil"]
+    rows = {row.at: {code: m.method for code, m in row.margins.items()} for row in table.rows}
+    assert rows["A"] == {
+        "aircraft": "AFFDL lug bearing",
+        "lifting": "BTH-1 plate, bearing",
+        "civil": "AISC bearing",
+    }
+    assert "Least margin of each code" in printed(print_safety_factors, found.results)
+
+
+def test_one_code_is_not_compared(tmp_path: Path) -> None:
+    """Nor are those of the general one named, which a study has without a choice."""
+    text = re.sub(r"code = .*\n", "", STUDY)
+    general = joint(tmp_path, text)
+    assert not codes_table(general.results).rows
+    assert {row["code"] for row in general.rows.values()} == {""}
+    assert "lug, net section" in general.rows
+    assert not any("AFFDL" in method for method in general.rows)
+
+
+def test_a_lug_without_a_size_is_named(tmp_path: Path) -> None:
+    """No clause of a lug is made of it, and none is green."""
+    text = STUDY.replace("outer_diameter = 2.5\n", "")
+    bare = joint(tmp_path, text)
+    for name in "AC":
+        row = bare.rows[f"clauses for the lug of {name}"]
+        assert row["not_made"] == f"needs pin.P.lug.{name}.outer_diameter"
+        assert row["utilisation"] is None
+    assert "symmetrical double shear" in bare.rows["AFFDL joint in double shear"]["not_made"]
