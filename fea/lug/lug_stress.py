@@ -104,7 +104,7 @@ class LugInPlane:
         around: int = USUAL_AROUND,
         memo: Memo | None = None,
     ) -> None:
-        self.lug, self.radius, self.outline = lug, radius, outline_of(lug, radius)
+        self.lug, self.radius, self.outline = lug, radius, lug.outline(radius)
         elastic = _elasticity(lug)
         scaled = _scaled(self.outline)
         self.fields: PlaneFields = (memo or Memo()).get(
@@ -122,20 +122,6 @@ class LugInPlane:
         """The amounts (T, K) of the unit loads under pressures (T, M), Pa, and the misfit."""
         misfit = np.full((len(pressures), 1), self.misfit)
         return np.hstack([pressures @ self.contact.waves, misfit])
-
-
-def outline_of(lug: Lug, radius: float) -> LugOutline:
-    """The outline of a lug that has a shank, about a band of some radius, m.
-
-    Raises: ArgumentError where its dimensions contradict each other.
-    """
-    shank = lug.shank
-    assert shank is not None
-    bore = 2.0 * radius
-    hole = None if lug.bushing is None else bore + 2.0 * lug.bushing.thickness
-    return LugOutline(
-        shank.shape, bore, lug.outer_diameter, shank.width, shank.length, shank.end, hole
-    )
 
 
 def _scaled(outline: LugOutline) -> LugOutline:

@@ -48,8 +48,8 @@ class LugOutline:
             wall = min(self.end, self.width / 2.0) - hole
         if wall < MIN_WALL * self.hole:
             raise ArgumentError(
-                f"the head leaves no wall about its hole of {self.hole:.4g} m: its outer diameter, "
-                "width or end is too small",
+                "the head leaves no wall about its hole: its outer diameter, width or end is too "
+                "small",
                 "lug-too-narrow",
             )
         if self.shape != "ring":
@@ -58,8 +58,8 @@ class LugOutline:
     def _require_shank(self, hole: float) -> None:
         if self.width <= self.hole:
             raise ArgumentError(
-                f"the shank is {self.width:.4g} m wide, narrower than the hole of {self.hole:.4g} "
-                "m: give a width larger than that",
+                f"the shank is {self.width / self.hole:.4g} times as wide as the hole of its eye; "
+                "it must be wider",
                 "shank-too-narrow",
             )
         if self.shape == "round" and self.width > self.head * (1.0 + 1e-9):
@@ -71,8 +71,8 @@ class LugOutline:
         least = hole if self.shape == "square" else self.centre + self.head / 2.0
         if self.length <= least:
             raise ArgumentError(
-                f"the shank is held {self.length:.4g} m from the bore's centre, inside of its "
-                f"head: give a length above {least:.4g} m",
+                "the shank is held inside of its head: its length must be larger, by a factor of "
+                f"{least / self.length:.4g} or more",
                 "shank-too-short",
             )
 

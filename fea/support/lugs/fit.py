@@ -67,6 +67,8 @@ def fitted(pin: Pin, material: Material, lugs: Sequence[Lug]) -> tuple[Lug, ...]
         band = pin.band(lug.connection)
         _require_walls(lug, band)
         _require_gap(lug, band)
+        if lug.shank is not None:
+            lug.outline(band.radius)  # raises what is wrong with it
         _require_elastic(lug, band, bores[lug.connection] / 2.0, material)
     return tuple(named[connection] for connection in pin.connections)
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats
 from geometry import ArgumentError
+from geometry.shape.lug_outline import HeadShape, LugOutline
 
 
 @dataclass(frozen=True)
@@ -31,9 +31,6 @@ class Bushing:
             raise ArgumentError("the thickness of a bushing must be positive", "not-positive")
         if not (math.isfinite(self.interference) and self.interference >= 0.0):
             raise ArgumentError("the interference of a bushing must not be negative", "negative")
-
-
-HeadShape = Literal["round", "tapered", "square"]
 
 
 @dataclass(frozen=True)
@@ -136,6 +133,23 @@ class Lug:
     def bearing(self) -> Material:
         """The material on which the pin bears: the bushing's or the lug's."""
         return self.material if self.bushing is None else self.bushing.material
+
+    def outline(self, radius: float) -> LugOutline:
+        """The outline of a lug that has a shank, about a band of some radius, m.
+
+        Raises: ArgumentError where its dimensions contradict each other.
+        """
+        if self.shank is None:
+            raise ArgumentError(f"lug {self.connection} has no shank", "no-shank")
+        bore = 2.0 * radius
+        hole = None if self.bushing is None else bore + 2.0 * self.bushing.thickness
+        shank = self.shank
+        try:
+            return LugOutline(
+                shank.shape, bore, self.outer_diameter, shank.width, shank.length, shank.end, hole
+            )
+        except ArgumentError as error:
+            raise ArgumentError(f"lug {self.connection}: {error}", error.code) from None
 
     def gap(self, ends: Floats) -> Floats:
         """The gap on the radius, (R,) m, on the mean over each ring, before anything moves.

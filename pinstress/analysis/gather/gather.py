@@ -28,6 +28,7 @@ from pinstress.study.model.tasks import Task, assumed_distribution
 from pinstress.study.reading.file import Study, named_materials
 from pinstress.study.reading.inputs import inputs
 from pinstress.study.reading.published_tables import Published, read_published
+from pinstress.study.schema.shown import listed
 from pinstress.study.schema.tables import ReportTable
 from reports.data import results as plain
 from reports.data.changes import Remedy
@@ -53,6 +54,19 @@ def materials_assumption(study: Study) -> tuple[str, ...]:
     """Return a sentence for each material that the study only names."""
     return tuple(
         f"Material {x.name} is that of {x.file}: {x.source}." for x in named_materials(study)
+    )
+
+
+def shanks_assumption(rows: Iterable[plain.PinResult]) -> tuple[str, ...]:
+    """Return a sentence for each way in which directions of shanks are assumed."""
+    lugs: dict[str, dict[str, None]] = {}
+    for row in rows:
+        for lug in row.joint.lugs if row.joint else ():
+            if lug.assumed:
+                lugs.setdefault(lug.assumed, {})[lug.connection] = None
+    return tuple(
+        f"Stress of the lugs at {listed(connections)}: {assumed}."
+        for assumed, connections in lugs.items()
     )
 
 
@@ -179,6 +193,7 @@ def _results(
             *materials_assumption(study),
             *factor_assumption(study, (row for _, row in rows)),
             *filter(None, [assumed_distribution(study, (task for task, _ in rows))]),
+            *shanks_assumption(row for _, row in rows),
             *((WITHOUT_FRICTION_NOTE,) if _in_lugs(study) else ()),
             *(f"Possible mistake: {q}" for q in study.questions),
         ),

@@ -12,10 +12,10 @@ from fea.lug.plane_fields import Elasticity, plane_fields
 from fea.lug.through_thickness import EyeStress, eye_stress
 from fea.support.contact.flexibility import lug_rings
 from fea.support.foundation.plane_contact import half_angle, largest_pressure
-from fea.support.lugs.lug import Bushing, HeadShape, Lug, Shank
+from fea.support.lugs.lug import Bushing, Lug, Shank
 from fea.support.lugs.rings import annulus, graded
 from geometry import Pin, Segment
-from geometry.shape.lug_outline import LugOutline
+from geometry.shape.lug_outline import HeadShape, LugOutline
 from pinbase.arrays import Floats
 
 STEEL = Material("steel", 210e9, 0.3, yield_strength=700e6)
@@ -180,4 +180,3 @@ def test_pressure_on_one_face_stresses_that_face_more() -> None:
     )
     assert b["free"].ring < 4
     assert b["free"].hoop > 1.02 * a["free"].hoop
-    assert b["free"].rings > 0.0

@@ -1,0 +1,155 @@
+"""The stress of lugs in runs: their rows, directions, margins, and what is refused."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import pinstress
+from fea.support.records import LugStress
+from pinstress.analysis.plan import all_loads
+from pinstress.study.model.shanks import shank_angles
+from reports.files import write_reports
+from tests.support.mechanism.machines import STUDIES
+
+CLEVIS = (STUDIES / "clevis.toml").read_text(encoding="utf-8")
+SHANK = "edge_radius = 0.5\nshank = {}"
+
+
+def study(tmp_path: Path, *changes: tuple[str, str], shank: str = SHANK) -> pinstress.Study:
+    text = CLEVIS.replace("edge_radius = 0.5", shank)
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path = tmp_path / "clevis.toml"
+    path.write_text(text, encoding="utf-8")
+    return pinstress.load_study(path)
+
+
+def lugs(results: pinstress.RunResults) -> dict[tuple[str, str], LugStress]:
+    (row,) = results.pins
+    assert row.joint is not None
+    return {(x.connection, x.place): x for x in row.joint.lugs}
+
+
+@pytest.fixture(scope="module")
+def clevis(tmp_path_factory: pytest.TempPathFactory) -> tuple[pinstress.RunResults, Path]:
+    out = tmp_path_factory.mktemp("clevis")
+    results = pinstress.run(study(out))
+    write_reports(results, out / "run")
+    return results, out / "run"
+
+
+def test_the_lugs_of_a_clevis(clevis: tuple[pinstress.RunResults, Path]) -> None:
+    found = lugs(clevis[0])
+    assert set(found) == {(c, p) for c in ("LEFT", "EYE", "RIGHT") for p in ("free", "beneath")}
+    left, right, eye = (found[name, "free"] for name in ("LEFT", "RIGHT", "EYE"))
+    assert left.max_von_mises == pytest.approx(right.max_von_mises, rel=1e-2)
+    bearing = 50_000.0 / (20.0 * 20.0)  # MPa, alike in all three lugs
+    assert eye.max_hoop_stress > 2.0 * bearing  # a pin that bends, and a bore that stretches
+    assert 90.0 < abs(eye.angle) < 130.0  # where contact ends
+    assert eye.safety_factor == pytest.approx(700.0 / eye.max_von_mises)
+    assert eye.error_estimate == pytest.approx(eye.mesh + eye.rings + eye.sampling)
+    assert eye.assumed
+
+
+def test_the_pins_row_is_that_of_its_contact(
+    clevis: tuple[pinstress.RunResults, Path], tmp_path: Path
+) -> None:
+    """The stress of lugs changes nothing of the pin."""
+    contact = ("[analysis]", '[analysis]\njoints = "contact"')
+    bare = study(tmp_path, contact, shank="edge_radius = 0.5")
+    (row,), (with_lugs,) = pinstress.run(bare).pins, clevis[0].pins
+    assert row.max_von_mises == with_lugs.max_von_mises
+    assert row.outcome == with_lugs.outcome
+
+
+def test_files_have_the_rows(clevis: tuple[pinstress.RunResults, Path]) -> None:
+    _, out = clevis
+    assert (out / "lugs.csv").read_text(encoding="utf-8").count("\n") == 7
+    rows = json.loads((out / "results.json").read_text(encoding="utf-8"))["lugs"]
+    assert {row["connection"] for row in rows} == {"LEFT", "EYE", "RIGHT"}
+    assert rows[0]["max_von_mises"] > 0.0
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert "Stress of the lugs" in page
+    assert "Stress of the lugs at LEFT, EYE, RIGHT: shank along the largest force" in page
+
+
+def test_a_lug_is_judged_with_the_factor_of_its_pin(
+    clevis: tuple[pinstress.RunResults, Path],
+) -> None:
+    (row,) = clevis[0].pins
+    margins = [m for m in row.margins if m.method == "lug, von Mises stress at the bore"]
+    limit = {m.at: m for m in margins if m.level == "limit"}
+    assert {m.factor for m in limit.values()} == {1.5}
+    eye = lugs(clevis[0])["EYE", "free"]
+    assert limit["EYE"].demand == pytest.approx(eye.max_von_mises + eye.error_estimate)
+    beneath = [m for m in row.margins if "beneath the pin" in m.method]
+    assert beneath
+    assert not any(m.governs for m in beneath)
+
+
+def test_a_lug_without_a_shank_is_named_among_checks_not_made(tmp_path: Path) -> None:
+    results = pinstress.run(study(tmp_path, shank="edge_radius = 0.5"))
+    (row,) = results.pins
+    assert any("lug.EYE.shank" in m.needs for m in row.margins)
+
+
+def test_turning_forces_and_shanks_together_changes_nothing(
+    clevis: tuple[pinstress.RunResults, Path], tmp_path: Path
+) -> None:
+    turned = study(
+        tmp_path,
+        ("[-25000, 0]", "[0, -25000]"),
+        ("[50000, 0]", "[0, 50000]"),
+        shank=SHANK.replace("{}", '{ angle = "-90 deg" }'),
+    )
+    # The shanks of the fork point along -y, where its sides pull; that of the eye is pushed.
+    text = turned.path.read_text(encoding="utf-8")
+    text = text.replace('tilt = "guided" }', 'tilt = "guided", shank = { angle = "90 deg" } }')
+    turned.path.write_text(text, encoding="utf-8")
+    found = lugs(pinstress.run(pinstress.load_study(turned.path)))
+    for key, lug in lugs(clevis[0]).items():
+        assert found[key].max_von_mises == pytest.approx(lug.max_von_mises, rel=2e-2), key
+        assert not found[key].assumed
+
+
+def test_a_shank_turns_with_its_link(tmp_path: Path) -> None:
+    """The strut of the landing gear: at the start, by the coordinates of its joints as drawn."""
+    text = (STUDIES / "landing_gear.toml").read_text(encoding="utf-8")
+    path = tmp_path / "gear.toml"
+    path.write_text(text.replace("[lug_defaults]\n", "[lug_defaults]\nshank = {}\n"), "utf-8")
+    turned = pinstress.load_study(path)
+    case = all_loads(turned, ["retract"])["retract"]
+    angles = shank_angles(turned, "C", case)
+    at = {j.name: j.at for j in case.dynamics.motion.linkage.joints}  # type: ignore[union-attr]
+    here = np.array(at["C"])
+    middle = (np.array(at["D"]) + np.array(at["G"])) / 2.0
+    x, y = middle - here
+    r = case.reactions
+    first = angles["C2"].angle[0] + r.turn[0, r.connections.index("C2")]
+    assert np.cos(first - np.arctan2(y, x)) == pytest.approx(1.0, abs=1e-6)
+    assert np.ptp(np.unwrap(angles["C2"].angle)) > 0.1 or np.ptp(r.turn) > 0.1
+    assert "D" in angles["C2"].assumed
+
+
+@pytest.mark.parametrize(
+    ("shank", "part"),
+    [
+        ("{ width = 19 }", "times as wide as the hole"),
+        ("{ width = 60 }", "tapered"),
+        ("{ length = 10 }", "held inside of its head"),
+        ("{ end = 9 }", "no wall"),
+        ('{ angle = "0 deg", toward = "X" }', "not both"),
+        ('{ shape = "oval" }', "shape"),
+        ("{ length = -1 }", "must be positive"),
+    ],
+)
+def test_an_impossible_shank_is_refused_before_anything_is_solved(
+    tmp_path: Path, shank: str, part: str
+) -> None:
+    with pytest.raises(pinstress.InputError, match=part):
+        pinstress.run(study(tmp_path, shank=SHANK.replace("{}", shank)))
