@@ -22,6 +22,7 @@ from assess.clauses import (
     melcon_hoblit,
 )
 from assess.clauses.lug_checks import lug_checks
+from assess.clauses.lug_collapse import lug_collapse
 from assess.codes import DEFAULT_CODES, Code
 from assess.margin import Margin, for_comparison
 from assess.situation import Situation
@@ -45,6 +46,7 @@ CHECKS: tuple[Check, ...] = (
     model_rupture,
     lug_stress,
     collapse,
+    lug_collapse,
     mean_shear,
     neutral_axis_shear,
     double_shear,

@@ -13,7 +13,7 @@ from assess.codes import DEFAULT_CODES, FITTING_FACTORS, Code
 from assess.fatigue.records import PointFatigue
 from assess.lug_factors import LugFactors
 from assess.margin import Level
-from assess.plastic.records import LimitLoad
+from assess.plastic.records import LimitLoad, LugCollapse
 from fea.beam.round_section import Circle
 from fea.core.equilibrium import out_of_balance
 from fea.core.material import Material
@@ -201,6 +201,7 @@ class Situation:
     bending_factor: float | None = None
     lug_factors: Mapping[str, LugFactors] = field(default_factory=dict)
     lug_stresses: tuple[LugStress, ...] = ()
+    lug_collapses: tuple[LugCollapse, ...] = ()
     shank_angles: Mapping[str, ShankAngle] = field(default_factory=dict)
 
     def factors_of(self, connection: str) -> LugFactors:

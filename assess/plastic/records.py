@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from pinbase.dimensions import Floats, Length, Lengths, Stresses
+from pinbase.dimensions import Floats, Force, Length, Lengths, Stresses
 
 
 @dataclass(frozen=True)
@@ -89,3 +89,16 @@ class LimitLoad:
     flow: FlowField | None = None
     note: str = ""
     stopped: bool = False
+
+
+@dataclass(frozen=True)
+class LugCollapse:
+    """The limit load of a lug, N, that its pin pulls along the shank, between lower and upper.
+
+    needs: what is missing where there is none.
+    """
+
+    connection: str
+    lower: Force | None = None
+    upper: Force | None = None
+    needs: str = ""

@@ -18,6 +18,7 @@ from fea.core.material import Material
 from fea.support.lugs.lug import Lug
 from fea.support.records import LugStress
 
+CONTACT_NEED = "the contact of the pin with its lugs, solved in full"
 METHOD = "lug, von Mises stress at the bore"
 
 
@@ -33,6 +34,8 @@ def lug_stress(text: CheckText, s: Situation) -> list[Margin]:
     lacking = [f"lug.{lug.connection}.shank" for lug in s.sized if lug.shank is None]
     if lacking and s.joint is not None:
         margins.append(text.lacks(s, *lacking))
+    if not s.lug_stresses and any(lug.shank for lug in s.lugs) and s.across.any():
+        margins.append(text.lacks(s, CONTACT_NEED))
     return margins
 
 

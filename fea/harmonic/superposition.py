@@ -406,7 +406,7 @@ class Circumference:
 
     def crests(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
         """As `round` at points that are read all round; to the last bit the same whichever other
-        pairs are asked for.
+        pairs are requested.
         """
         n = self._n[[wave.start for wave in self._waves]]
         back, forth = self._waves_apart(points, instants)

@@ -150,7 +150,7 @@ class SectionField:
 
     def place_of_each(self, loads: Loads) -> list[AtSection]:
         """The same at every instant by itself, without its course; each to the last bit the same
-        whichever others are asked for.
+        whichever others are requested.
         """
         top = crest_of_each(self.around(loads), self.all)
         amounts = shares(self.forces.loads, self._felt(loads))

@@ -36,7 +36,7 @@ def superposable(problem: PinProblem, requirement: Requirement) -> bool:
     """Whether the single case of a pin can be solved with others that differ by their loads.
 
     The harmonic model is sure to answer it, and what it depends on is known beforehand: an instant
-    of prescribed loads, on few fillets, where stress itself is asked for.
+    of prescribed loads, on few fillets, where stress itself is requested.
     """
     (loads,) = problem.cases
     pin = problem.pin

@@ -18,7 +18,7 @@ from pinbase.memo import Memo
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
 from pinbase.records import Unit, in_units
 from pinstress.analysis import checks
-from pinstress.analysis.assessed.limits import limit_loads, limit_seconds
+from pinstress.analysis.assessed.limits import limit_loads, limit_seconds, lug_collapses
 from pinstress.analysis.assessed.situations import assessed
 from pinstress.analysis.cache import OutcomeStore
 from pinstress.analysis.plan import Plan
@@ -260,11 +260,15 @@ def _rows(
     landing = [None if ratio else landing_range(plan.loads, task, s) for s in solved]
     joints = _in_lugs(task, solved, tell) if task.lugs else _around(plan, task, solved)
     limits = limit_loads(plan, task, solved, tell)
+    of_lugs = lug_collapses(plan, task, tell)
     parts = zip(solved, joints, limits, landing, strict=True)
     return tuple(
-        PinResult(_with_notes(task, s.peak), joint=joint, limit_load=limit, landing=over)
+        PinResult(
+            _with_notes(task, s.peak), joint=joint, limit_load=limit, landing=over,
+            lug_collapses=of_lugs,
+        )
         for s, joint, limit, over in parts
-    )
+    )  # fmt: skip
 
 
 def _in_lugs(

@@ -9,7 +9,7 @@ from assess.diameter_law import BENDING_EXPONENT
 from assess.judgement import BELOW_YIELD, DEPENDS, SAFE, Judgement
 from assess.margin import Margin
 from assess.opinion.opinions import Opinion
-from assess.plastic.records import LimitLoad
+from assess.plastic.records import LimitLoad, LugCollapse
 from assess.strength.bending_arms import BendingArms
 from fea.core.peak import Maximum, Refinement, SingularZone
 from fea.core.places import Places
@@ -116,7 +116,7 @@ class PinResult:
     maximum: the maximum stress, with its error and verdict.
     judgement: of that maximum against yield.
     joint: contact with the lugs at the governing instant, if lugs support the pin.
-    limit_load: past yield, if requested.
+    limit_load: past yield, if requested; lug_collapses: of lugs, if requested.
     landing: the results over the ranges of a landing's impulse, if it has any.
     margins: of every check at every place and level; worst: the worst place of each that counts.
     arms: of the bending moment, None where the formulas do not apply.
@@ -136,6 +136,7 @@ class PinResult:
     judgement: Judgement = field(default_factory=Judgement)
     joint: JointResult | None = None
     limit_load: LimitLoad | None = None
+    lug_collapses: tuple[LugCollapse, ...] = ()
     landing: LandingRange | None = None
     margins: tuple[Margin, ...] = ()
     worst: tuple[Margin, ...] = ()

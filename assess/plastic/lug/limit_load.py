@@ -28,7 +28,7 @@ ForcePerLength = Annotated[float, "force per length"]
 
 FIRST_SIZE = 0.08  # radii, of triangles at the bore on the first mesh
 TRIANGLE_COUNTS = 1200, 2400, 4000  # wanted of the meshes after that: 1, 3 and 5 s
-MAX_BRACKET = 0.03  # width of a bracket over its middle, unless another is asked for
+MAX_BRACKET = 0.03  # width of a bracket over its middle, by default
 # Triangles are as large as (work of flow per area)^-SIZE_EXPONENT; of 1/4, 1/3 and 1/2 the last
 # gave the narrowest bracket on a round lug 3 bores wide.
 SIZE_EXPONENT = 0.5

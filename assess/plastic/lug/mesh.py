@@ -55,7 +55,7 @@ def lug_mesh(lug: LugOutline, size: float, refinement: SizeField | None = None) 
 
     Its edges are "bore" (where the pin may press), "axis", "held" and "free".
 
-    Raises: ArgumentError for a ring, which nothing holds; MeshError.
+    Raises: ArgumentError for a ring, which has no shank; MeshError.
     """
     if lug.shape == "ring":
         raise ArgumentError("a lug without a shank has no limit load", "no-shank")

@@ -1,5 +1,5 @@
-"""The ultimate load of a lug: the largest force of a pin that is pushed until it falls, or the
-metal breaks.
+"""The ultimate load of a lug: the largest force of a pin that moves until it falls, or the metal
+breaks.
 
 Plane strain, finite strain, the true stress-strain curve, a rigid pin without friction. Two things
 end the rise of the load: the shape of the lug, whose metal behind the pin thins and bulges faster

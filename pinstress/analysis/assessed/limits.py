@@ -1,5 +1,7 @@
 """Limit loads of the rows of a task that the study or `--limit-load` requests.
 
+Those of its lugs are computed where they are requested by more than "auto".
+
 A requirement on it is a request, too, unless the elastic stress meets that already. The limit load
 of a row that yields is also computed without a request if that takes seconds of processor time.
 Whether it is computed may depend on the computer; its value never does.
@@ -11,9 +13,14 @@ from collections.abc import Iterable
 from math import inf
 from typing import TYPE_CHECKING
 
-from assess.plastic.records import LimitLoad
+from assess.margin import strength_key
+from assess.plastic.records import LimitLoad, LugCollapse
 from assess.requirement import LEVELS_OF_CHECK
 from fea.core.peak import Maximum, meets_limit
+from fea.support.lugs.fit import on_structure
+from fea.support.lugs.lug import Lug
+from geometry import ArgumentError, Pin
+from pinbase.memo import Memo
 from pinbase.processes.pool import Tell
 from pinstress.analysis.plan import Plan
 from pinstress.study.model.requirements import stated_factor
@@ -107,3 +114,36 @@ def limit_asked(peak: Maximum, task: Task, rung: Rung) -> bool:
     if factor is None or peak.governing is None:
         return False
     return rung == "solid" or factor < 1.0
+
+
+def lug_collapses(plan: Plan, task: Task, tell: Tell) -> tuple[LugCollapse, ...]:
+    """Return the limit loads of the lugs that the study gives for a pin, along their shanks, where
+    the study or the run requests limit loads of more than the rows that yield.
+    """
+    profile, rung = task.pin.profile, rung_of(plan, task.pin.name)
+    if profile is None or not task.given or not (rung == "solid" or (rung and plan.limit_load)):
+        return ()
+    tell(f"pin {task.pin.name}, limit loads of lugs")
+    pin, same = on_structure(profile, task.given), Memo()
+    return tuple(_lug_collapse(pin, lug, same) for lug in task.given)
+
+
+def _lug_collapse(pin: Pin, lug: Lug, same: Memo) -> LugCollapse:
+    """Return the limit load of a lug as thick as its band of the pin is long.
+
+    same: the limit loads of outlines that were solved already.
+    """
+    strength = lug.material.yield_strength
+    if lug.shank is None:
+        return LugCollapse(lug.connection, needs=f"pin.{pin.name}.lug.{lug.connection}.shank")
+    if strength is None:
+        return LugCollapse(lug.connection, needs=strength_key(lug.material.name, "yield"))
+    from assess.plastic.lug.limit_load import lug_limit_load  # imports solvers
+
+    band = pin.band(lug.connection)
+    try:
+        outline = lug.outline(band.radius)
+        limit = same.get((outline, strength), lambda: lug_limit_load(outline, strength))
+    except (ArgumentError, ArithmeticError) as error:  # the margin says why
+        return LugCollapse(lug.connection, needs=f"a limit load: {error}")
+    return LugCollapse(lug.connection, band.length * limit.lower, band.length * limit.upper)

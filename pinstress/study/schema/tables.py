@@ -53,7 +53,7 @@ class AnalysisTable(StrictTable):
     where that decides whether they carry their loads, otherwise by an elastic-plastic solid
     ("auto", where each has 20 s of processor time, but with `run --limit-load` as long as it
     takes); all rows ("always") or those of some pins, by the solid, however long it takes; none
-    ("never")."""
+    ("never"). Where more than "auto" is requested, lugs with a `shank` have theirs, too."""
     required_safety_factor: Annotated[Number, Field(gt=0.0)] | None = None
     """Safety factor that every pin must reach: yield strength over stress under the loads of the
     study, without the factors below. A [[require]] on yield at limit load replaces it for its pins

@@ -98,6 +98,15 @@ def test_a_lug_without_a_shank_is_named_among_checks_not_made(tmp_path: Path) ->
     assert any("lug.EYE.shank" in m.needs for m in row.margins)
 
 
+def test_prescribed_loads_leave_the_stress_of_lugs_open(tmp_path: Path) -> None:
+    """It is named, not forgotten."""
+    loads = ("[analysis]", '[analysis]\njoints = "prescribed"')
+    (row,) = pinstress.run(study(tmp_path, loads)).pins
+    lug = [m for m in row.margins if m.method.startswith("lug, von Mises")]
+    assert [m.needs for m in lug] == ["the contact of the pin with its lugs, solved in full"]
+    assert all(m.margin is None for m in lug)
+
+
 def test_turning_forces_and_shanks_together_changes_nothing(
     clevis: tuple[pinstress.RunResults, Path], tmp_path: Path
 ) -> None:
