@@ -31,13 +31,19 @@ class MatrixRow:
 
 
 def matrix_rows(rows: Sequence[RequirementRow]) -> list[MatrixRow]:
-    """Return stated requirements, then all other checks in one row, and what was not checked."""
+    """Return stated requirements, then the other checks that are not met, all others in one row,
+    and what was not checked.
+    """
     checked = [row for row in rows if row.outcome != NOT_CHECKED]
     stated = _by_case(row for row in checked if row.stated)
     derived = [r for r in checked if not r.stated]
-    levels = " and ".join(dict.fromkeys(r.level for r in derived))
-    count = len({r.check for r in derived})
-    others = [_together(f"other checks ({count})", levels, "", derived)] if derived else []
+    by_check = _grouped(derived, lambda r: (r.check, r.level))
+    missed = [x for x in by_check if any(r.outcome != MET for r in x[1])]
+    unmet = [_together(check, level, _case(some), some) for (check, level), some in missed]
+    rest = [r for _, some in by_check if all(r.outcome == MET for r in some) for r in some]
+    levels = " and ".join(dict.fromkeys(r.level for r in rest))
+    count = len({r.check for r in rest})
+    others = [_together(f"other checks ({count})", levels, "", rest)] if rest else []
     open_ = [
         _together(
             ", ".join(dict.fromkeys(r.check for r in some)), level, "", some,
@@ -46,7 +52,13 @@ def matrix_rows(rows: Sequence[RequirementRow]) -> list[MatrixRow]:
         for level, some in _grouped((r for r in rows if r.outcome == NOT_CHECKED),
                                     lambda r: r.level)
     ]  # fmt: skip
-    return [*stated, *others, *open_]
+    return [*stated, *unmet, *others, *open_]
+
+
+def _case(rows: Sequence[RequirementRow]) -> str:
+    """Return the only case in which a check is not met; empty where there are several."""
+    cases = {row.case for row in rows if row.outcome != MET}
+    return cases.pop() if len(cases) == 1 else ""
 
 
 def _by_case(rows: Iterable[RequirementRow]) -> list[MatrixRow]:

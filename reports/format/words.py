@@ -114,7 +114,7 @@ def depends_words(depends_on: Sequence[Dependence], units: Units) -> str:
     """Return the dependences of an outcome, with the values at which it changes.
 
     Examples: "the range of the joint (clearance above 0.0031 in, tilt guided)", "stress beneath
-    contact (FoS 1.08, too low to a depth of 0.31 in)".
+    contact (factor 1.08, too low to a depth of 0.31 in)".
     """
     below = [_beneath(d, units) for d in depends_on if d.over == BENEATH_CONTACT]
     ranges = _ranges(depends_on, units)
@@ -154,7 +154,7 @@ def _ranges(depends_on: Sequence[Dependence], units: Units) -> list[str]:
 
 def _beneath(d: Dependence, units: Units) -> str:
     """Return the words for stress beneath contact: its factor, and the depth of excess stress."""
-    factor = f"FoS {engineering(d.factor, 3)}"
+    factor = f"factor {engineering(d.factor, 3)}"
     if d.value:
         return f"{factor} {d.value}"
     return f"{factor}, too low to a depth of {engineering(d.reach, 2)} {units.length}"
@@ -233,7 +233,7 @@ def _factor_words(row: PinResult) -> tuple[str, str]:
     """Return the safety factor and the required one as text."""
     required = row.required
     needed = "1 at yield" if required is None else f"{short(required)} required"
-    return f"FoS {factor_range(row)}", needed
+    return f"factor {factor_range(row)}", needed
 
 
 def _all_safe(results: Results, least: JudgedCheck, pins: int) -> str:

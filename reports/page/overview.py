@@ -211,8 +211,8 @@ def _unknown(unknown: Unknown, results: Results) -> dict[str, str]:
 
 
 def _curve(line: PinLine, results: Results) -> dict[str, Any] | None:
-    """Return the factor against the diameter of the worst pin, by the law of its section, in the
-    unit of the drawing; None where no diameter is estimated.
+    """Return the factor, with its error and beneath contact, against the diameter of the worst pin,
+    by the law of its section, in the unit of the drawing; None where no diameter is estimated.
     """
     d, row = line.diameter, line.row
     if d is None or d.needed is None:
@@ -234,7 +234,7 @@ def _curve(line: PinLine, results: Results) -> dict[str, Any] | None:
         "height": CURVE_HEIGHT,
         "required": CURVE_HEIGHT * (1.0 - axis.at(required)),
         "needed": _across(d.needed / d.given, most),
-        "label": f"Pin {line.pin}: factor against diameter, estimated",
+        "label": f"Pin {line.pin}: lowest factor against diameter, estimated",
         "start": CURVE_HEIGHT * (1.0 - axis.at(factors[0])),
         "lug": _across(MAX_LUG_SHARE * (d.eye or 0.0) / d.given, most)
         if d.too_large(d.needed)

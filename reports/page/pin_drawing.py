@@ -68,7 +68,8 @@ class _Piece:
 class _Layout:
     """Where a pin is drawn.
 
-    left, scale, length: of the pin. radius: the largest. tops: rows of the labels.
+    left, scale, length: of the pin. radius: the largest. tops: rows of the labels, of segments
+    that have words.
     lines: of a label. axis: its y. foot: y below the section and the arrows there.
     """
 
@@ -93,7 +94,8 @@ class _Layout:
     @staticmethod
     def of(pieces: list[_Piece], along: StressAlong | None, around: float = 0.0) -> _Layout:
         """Return the layout of a pin; around: diameter of the largest lug about it."""
-        tops = rows([p.middle for p in pieces], [max(map(wide, p.words)) for p in pieces])
+        labelled = [p for p in pieces if any(p.words)]
+        tops = rows([p.middle for p in labelled], [max(map(wide, p.words)) for p in labelled])
         lines = 3 if any(p.force for p in pieces) else 2
         radius = max(p.radius for p in pieces)
         ups = [load.up for load in along.loads] if along else []
@@ -175,6 +177,7 @@ def _title(shape: PinShape, along: StressAlong | None) -> str:
 def _body(shape: PinShape, pieces: list[_Piece], at: _Layout, marks: ZoneMarks) -> list[str]:
     """Return the section with its cuts, excluded zones, axis and labels."""
     axis = at.axis
+    labelled = [p for p in pieces if any(p.words)]
     return [
         *(_section(p, axis) for p in pieces),
         *(part for p in pieces for wall in _walls(p, axis) for part in marks.stripes(axis, wall)),
@@ -184,8 +187,8 @@ def _body(shape: PinShape, pieces: list[_Piece], at: _Layout, marks: ZoneMarks) 
             for z0, z1 in shape.solids
         ),
         line(at.left - 14, axis, at.right + 14, axis, 'stroke-dasharray="12 3 2 3"'),
-        *(_leader(p, at, row) for p, row in zip(pieces, at.tops, strict=True)),
-        *(_label(p, at, row) for p, row in zip(pieces, at.tops, strict=True)),
+        *(_leader(p, at, row) for p, row in zip(labelled, at.tops, strict=True)),
+        *(_label(p, at, row) for p, row in zip(labelled, at.tops, strict=True)),
     ]
 
 
@@ -230,7 +233,8 @@ def _pieces(
         return []
     scale = min((across - 2 * DRAWING_MARGIN) / length, MAX_HEIGHT_RATIO * across / widest)
     start = x = 0.5 * (across - scale * length)
-    pieces = []
+    pieces: list[_Piece] = []
+    last_size = ""
     near_ends = [(diameter, bore) for _, diameter, bore, _, _ in shape.segments]
     far_ends = shape.far_ends or near_ends
     for (long, _, _, label, kind), near, far in zip(
@@ -240,7 +244,10 @@ def _pieces(
         size = f"⌀{_from_to(diameters)}" + (f" / {_from_to(bores)}" if any(bores) else "")
         radii, holes = ((scale * a / 2, scale * b / 2) for a, b in (diameters, bores))
         force = _force(along, units, (x - start) / scale, (x - start) / scale + long)
-        words = (label, size, short(long), kind, force)
+        # A gap as thick as the segment before needs no words
+        shown = "" if not label and size == last_size else size
+        last_size = size
+        words = (label, shown, short(long), kind, force)
         pieces.append(_Piece(x, scale * long, long, radii, holes, *words))
         x += scale * long
     return pieces

@@ -39,7 +39,7 @@ def _columns(curve: FactorCurve) -> list[Column[CurvePoint]]:
         Column("max_von_mises", lambda p: p.max_von_mises, "",
                f"max von\nMises [{curve.stress_unit}]"),
         Column("error_estimate", lambda p: p.error_estimate, "", "±", error),
-        Column("safety_factor", lambda p: p.safety_factor, "", "FoS"),
+        Column("safety_factor", lambda p: p.safety_factor, "", "factor"),
         Column("outcome", lambda p: p.outcome, "", "result", numeric=False),
         Column("depends_on", lambda p: p.depends_on),
         Column("verdict", lambda p: p.verdict, "", "verdict", numeric=False, rank=1),

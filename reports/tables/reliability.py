@@ -171,12 +171,12 @@ def risks_table(reliability: Reliability) -> Table[Risk]:
     columns: list[Column[Risk]] = [
         *texts("pin case"),
         read_only("result", lambda risk: risk.result(reliability.probability), numeric=False),
-        read_only("FoS", lambda risk: risk.factor, rank=1),
+        read_only("factor", lambda risk: risk.factor, rank=1),
         read_only(
-            f"FoS at probability {p} ({per_cent})",
+            f"factor at p = {p} ({per_cent})",
             lambda risk: factor_interval(risk.quantile), rank=2
         ),
-        read_only(f"P(FoS < {limit}) ({per_cent})", lambda risk: chance_range(risk.probability)),
+        read_only(f"P(factor < {limit}) ({per_cent})", lambda risk: chance_range(risk.probability)),
         *beneath * reliability.deep,
         read_only("by mesh error", lambda risk: _by_errors(risk.mesh), rank=3),
         read_only("over joint", lambda risk: _by_errors(risk.joint), rank=4),
@@ -199,11 +199,13 @@ def ways_table(reliability: Reliability) -> Table[Risk]:
         read_only("FORM", form("probability", chance)),
         read_only("reliability index", form("index", engineering), rank=1),
         read_only(
-            f"FoS at {p}, plain", lambda risk: factor_interval(risk.quantile_sampled), rank=4
+            f"factor at {p}, plain", lambda risk: factor_interval(risk.quantile_sampled), rank=4
         ),
-        read_only("FoS, importance", lambda risk: factor_interval(risk.quantile_weighted), rank=3),
         read_only(
-            "FoS, FORM", form("quantile", lambda x: engineering(x, PROBABILITY_DIGITS)), rank=2
+            "factor, importance", lambda risk: factor_interval(risk.quantile_weighted), rank=3
+        ),
+        read_only(
+            "factor, FORM", form("quantile", lambda x: engineering(x, PROBABILITY_DIGITS)), rank=2
         ),
     ]
     return Table("ways", columns, reliability.risks)

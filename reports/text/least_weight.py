@@ -95,15 +95,15 @@ def light_table(rows: Sequence[LightRow], weight: str) -> Table[LightRow]:
     """
     columns: list[Column[LightRow]] = [
         *texts("Pin=pin Result=result"),
-        read_only("FoS", lambda row: row.factor),
-        read_only("FoS at p", lambda row: row.at, drop_if_empty=True),
+        read_only("factor", lambda row: row.factor),
+        read_only("factor at p", lambda row: row.at, drop_if_empty=True),
         read_only(weight, lambda row: _heavy(row.weights[0]), rank=1),
         read_only("scaled", lambda row: _heavy(row.weights[1])),
         read_only("least", lambda row: _heavy(row.weights[2])),
         read_only("saved", lambda row: _saved(row.saved)),
         read_only("residual", lambda row: _residual(row.residual)),
         read_only("governs", lambda row: row.governs, rank=2, numeric=False),
-        read_only("FoS before", lambda row: row.factor_before, rank=3),
+        read_only("factor before", lambda row: row.factor_before, rank=3),
         read_only("designs", lambda row: str(row.solved), rank=4),
     ]
     return Table("least_weight", columns, rows)

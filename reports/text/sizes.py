@@ -98,10 +98,10 @@ def sizes_table(rows: Sequence[SizeRow]) -> Table[SizeRow]:
     """Return a row per pin."""
     columns: list[Column[SizeRow]] = [
         *texts("Pin=pin Result=result"),
-        read_only("FoS", lambda row: row.factor),
+        read_only("factor", lambda row: row.factor),
         read_only("new", lambda row: _joined(row.after) or "unchanged", "length", numeric=False),
         read_only("before", lambda row: _joined(row.before), "length", rank=4, numeric=False),
-        read_only("FoS before", lambda row: engineering(row.factor_before, 2), rank=5),
+        read_only("factor before", lambda row: engineering(row.factor_before, 2), rank=5),
         read_only("weight", lambda row: " → ".join(map(_heavy, row.weights)), "force", rank=2),
         read_only("L/d", lambda row: engineering(row.slenderness, 2), rank=1),
         read_only("governs", lambda row: row.governs, rank=3, numeric=False),

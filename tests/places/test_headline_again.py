@@ -169,7 +169,7 @@ def near(text: str, value: float) -> bool:
     return same(float(text.replace(",", "")), value, 5.1e-3)
 
 
-FACTOR = r"FoS ([\d.,]+)(?: to ([\d.,–]+))?"
+FACTOR = r"(?<!required )factor ([\d.,]+)(?: to ([\d.,–]+))?"
 NEEDED = r"(?:([\d.,]+) required|1 at yield)"
 
 
@@ -344,7 +344,7 @@ def test_a_pin_that_is_safe_but_not_beneath_contact(tmp_path: Path) -> None:
     assert [(d["what"], d["over"]) for d in row["depends_on"]] == [("beneath", "beneath")]
     assert 2.0 <= row["depends_on"][0]["reach"] <= 10.0  # farther than 0.1 d, within the pin
     assert row["depends_on"][0]["reach"] > row["contact"]["reach"]  # which is that of yield
-    assert "but not beneath contact (FoS 2." in found["headline"]["sentence"]
+    assert "but not beneath contact (factor 2." in found["headline"]["sentence"]
     assert found["headline"]["depends"] == ["P"]
 
 
@@ -359,7 +359,7 @@ def test_a_reader_finds_what_is_wrong(shipped: Shipped) -> None:
         ((P, 0, "governs"), "section", "surface has more"),
         ((P, 0, "section", "max_von_mises"), 460.0, "exceeds its upper end"),
         (("headline", "failing"), ["P"], "headline.failing"),
-        (("headline", "sentence"), top.replace("FoS 2", "FoS 3"), "a factor of"),
+        (("headline", "sentence"), top.replace("factor 2", "factor 3"), "a factor of"),
     ):
         made = json.loads(json.dumps(found))
         part = made

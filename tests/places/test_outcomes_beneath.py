@@ -94,9 +94,9 @@ def test_the_depth_is_that_of_what_is_permitted() -> None:
 def test_it_is_said_wherever_an_outcome_is(capsys: pytest.CaptureFixture[str]) -> None:
     made = pin(85000.0)
     results = only(made)
-    clause = "but not beneath contact (FoS 1.39, too low to a depth of 0.30 in)"
+    clause = "but not beneath contact (factor 1.39, too low to a depth of 0.30 in)"
     assert headline(results) == (
-        f"Pin A is safe as described (FoS 2.00 ≥ 1.5 required; x), {clause}."
+        f"Pin A is safe as described (factor 2.00 ≥ 1.5 required; x), {clause}."
     )
     assert result_words(made) == "depends: beneath contact"
     assert "0 of 1 pin is safe in all cases" in summary(results)
@@ -104,7 +104,9 @@ def test_it_is_said_wherever_an_outcome_is(capsys: pytest.CaptureFixture[str]) -
     assert clause in pin_sentence(made, results.units)
     (cells,) = safety_factors_table(results).records()
     assert (cells["outcome"], cells["meets_required"]) == ("depends", False)
-    assert cells["depends_on"] == "stress beneath contact (FoS 1.39, too low to a depth of 0.30 in)"
+    assert (
+        cells["depends_on"] == "stress beneath contact (factor 1.39, too low to a depth of 0.30 in)"
+    )
     assert {row["outcome"] for row in envelope_table(results).records()} <= {"depends"}
     assert report_violations(results) == EXIT_REQUIREMENT_MISSED
     assert f"Safe as described, {clause}: A (x)." in capsys.readouterr().err
@@ -112,7 +114,7 @@ def test_it_is_said_wherever_an_outcome_is(capsys: pytest.CaptureFixture[str]) -
 
 def test_what_exceeds_only_with_its_error_has_no_depth_in_words() -> None:
     made = pin(78000.0, 1000.0)
-    assert "(FoS 1.49 with its error)" in headline(only(made))
+    assert "(factor 1.49 with its error)" in headline(only(made))
     (entry,) = to_json(only(made))["pins"][0]["depends_on"]
     assert (entry["what"], entry["reach"]) == ("beneath", 0.3)
     assert entry["safety_factor"] == pytest.approx(118.0 / 79.0)

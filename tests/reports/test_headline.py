@@ -27,7 +27,7 @@ def test_a_row_that_was_not_solved_is_no_worse_than_one_that_fails(results: Resu
     assert text.startswith("5 of 9 pins miss the required factor 1.5: ")
     assert text.partition(": ")[2].startswith(f"{least.pin} ({least.case}), ")
     of_one = replace(results, pins=(least,))
-    assert headline(of_one).startswith(f"Pin {least.pin} fails: FoS ")
+    assert headline(of_one).startswith(f"Pin {least.pin} fails: factor ")
     assert f"< 1.5 required ({least.case})" in headline(of_one)
     order = [pin.outcome for pin in worst_first(results)]
     assert order == sorted(order, key=["fails", "not decided", "safe"].index)
@@ -36,11 +36,11 @@ def test_a_row_that_was_not_solved_is_no_worse_than_one_that_fails(results: Resu
 @pytest.mark.parametrize(
     ("verdict", "factor", "meets", "required", "words"),
     [
-        ("converged", 3.0, True, 2.0, "Pin A is safe: FoS 3.00 ≥ 2 required (retract)."),
-        ("singular", 3.0, None, 2.0, "not decided: singular (retract); FoS 3.00, 2 required."),
-        ("singular", 1.5, False, 2.0, "Pin A fails: FoS 1.50 < 2 required (retract)."),
+        ("converged", 3.0, True, 2.0, "Pin A is safe: factor 3.00 ≥ 2 required (retract)."),
+        ("singular", 3.0, None, 2.0, "not decided: singular (retract); factor 3.00, 2 required."),
+        ("singular", 1.5, False, 2.0, "Pin A fails: factor 1.50 < 2 required (retract)."),
         ("unconverged", 3.0, None, 2.0, "Whether pin A is safe is not decided: not converged"),
-        ("converged", 3.0, True, None, "Pin A stays below yield: FoS 3.00 ≥ 1 at yield"),
+        ("converged", 3.0, True, None, "Pin A stays below yield: factor 3.00 ≥ 1 at yield"),
         ("failed", None, None, 2.0, "pin A is safe is not decided: solution failed (retract)."),
     ],
 )

@@ -143,15 +143,18 @@ def test_the_matrix_hides_nothing_that_is_not_met() -> None:
     rows += [requirement("A", "c0", "missed", "shear", stated=False)]
     rows += [requirement("B", "c0", "met", "shear", stated=False)]
     rows += [requirement("A", "c0", "not checked", "rupture", "material.x.ultimate_strength")]
+    rows += [requirement(pin, "c0", "met", "bending", stated=False) for pin in "AB"]
     matrix = matrix_rows(rows)
     assert [(m.check, m.case) for m in matrix] == [
-        ("yield", "c3"), ("yield", "8 other cases"), ("other checks (1)", ""), ("rupture", ""),
+        ("yield", "c3"), ("yield", "8 other cases"), ("shear", "c0"), ("other checks (1)", ""),
+        ("rupture", ""),
     ]  # fmt: skip
     assert matrix[0].cells == {"A": "missed", "B": "met"}
     assert matrix[1].cells == {"A": "met", "B": "met"}
     assert matrix[2].cells == {"A": "missed", "B": "met"}
-    assert matrix[3].needs == ("material.x.ultimate_strength",)
-    assert "met" not in matrix[3].cells.values()
+    assert matrix[3].cells == {"A": "met", "B": "met"}
+    assert matrix[4].needs == ("material.x.ultimate_strength",)
+    assert "met" not in matrix[4].cells.values()
     worst = {p: min(r.outcome == "met" for r in rows if r.pin == p) for p in "AB"}
     shown = {p: min(m.cells.get(p, "met") == "met" for m in matrix) for p in "AB"}
     assert shown == worst

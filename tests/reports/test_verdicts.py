@@ -130,7 +130,9 @@ def test_the_terminal_fits_and_says_what_each_factor_is_worth(found: Results, wi
     lines = out.getvalue().splitlines()
     assert max(map(len, lines)) <= width
     assert "…" not in out.getvalue()
-    assert lines[0].startswith("Pin A fails: FoS 0.800 < 1.5 required (flows).")  # one pin: a line
+    assert lines[0].startswith(
+        "Pin A fails: factor 0.800 < 1.5 required (flows)."
+    )  # one pin: a line
     table = lines[: next(k for k, line in enumerate(lines) if line.startswith("# factor"))]
     cases = [line.split()[1] for line in table if line.startswith("A ")]  # for each of its rows
     assert cases == ["flows", "beyond", "weak", "loose", "sharp", "fine"]

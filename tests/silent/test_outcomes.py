@@ -59,7 +59,9 @@ def test_safe_as_described_but_not_within_the_range_of_the_joint(clevis: Results
     assert pin.outcome == "depends"
     assert pin.meets_required is False
     assert all(d.over == "joint" and d.factor < 1.5 for d in pin.depends_on)
-    assert headline(clevis).startswith("Pin P is safe as described (FoS 1.93 ≥ 1.5 required; pull)")
+    assert headline(clevis).startswith(
+        "Pin P is safe as described (factor 1.93 ≥ 1.5 required; pull)"
+    )
     assert "fails within the range of the joint (clearance 0.1 mm" in headline(clevis)
     assert summary(clevis).startswith("0 of 1 pin is safe in all cases")
     found = json.loads(json.dumps(to_json(clevis)))
@@ -207,7 +209,7 @@ def made_safe() -> PinResult:
 
 
 def test_the_headline_is_the_worst_of_all_checks() -> None:
-    """FoS 4.462 of 1.5 beside 4.525 times the allowable fatigue damage: 1 / 4.525 - 1 = -0.779."""
+    """4.462 of 1.5 beside 4.525 times the allowable fatigue damage: 1 / 4.525 - 1 = -0.779."""
     fatigue = Margin("fatigue life", "critical plane", "fatigue", "limit", 1.0, 4.525e-6, 1e-6, "1")
     results = replace(only(made_safe()), spectrum_margins=(PinMargin("A", "", fatigue),))
     assert headline(results) == "Pin A fails: fatigue life, margin of safety −0.779."
@@ -229,7 +231,7 @@ def test_comparisons_and_checks_without_data_do_not_count() -> None:
     results = replace(
         only(made_safe()), spectrum_margins=(PinMargin("A", "x", weak), PinMargin("A", "x", open_))
     )
-    assert headline(results).startswith("Pin A is safe: FoS 4.46 ≥ 1.5")
+    assert headline(results).startswith("Pin A is safe: factor 4.46 ≥ 1.5")
 
 
 def test_rupture_within_the_error_is_not_decided() -> None:

@@ -154,18 +154,31 @@ def not_made_words(results: Results) -> list[str]:
 
 
 def not_made_briefly(results: Results) -> str:
-    """Return the missing data as a clause without the checks; empty if all were made.
+    """Return the missing data as clauses without the checks; empty if all were made.
 
-    If a single material lacks strengths, it is named.
+    Materials are named with what they lack, lugs are counted.
     """
-    every = skipped(results)
-    alone = [x for x in every if x.count(", ") == 0 or not all(p in every for p in x.split(", "))]
-    owners = {x.rpartition(".")[0] for x in alone}
-    owner = owners.pop() if len(owners) == 1 else ""
-    if owner.startswith("material."):
-        lacks = ", ".join(x.rpartition(".")[2] for x in alone)
-        return f"{owner.removeprefix('material.').strip(chr(34))} lacks {lacks}"
-    return f"missing {', '.join(alone)}" if alone else ""
+    materials: dict[str, dict[str, None]] = {}
+    lugs: dict[str, dict[tuple[str, str], None]] = {}
+    others: list[str] = []
+    for needs, margins in skipped(results).items():
+        keys = needs.split(", ")
+        if not all(key.startswith(("material.", "lug.")) for key in keys):
+            others.append(needs)
+            continue
+        for key in keys:
+            kind, _, rest = key.partition(".")
+            owner, _, name = rest.rpartition(".")
+            if kind == "material":
+                materials.setdefault(owner.strip('"'), {})[name] = None
+            else:
+                lugs.setdefault(name, {}).update({(m.pin, owner): None for m in margins})
+    clauses = [f"{owner} lacks {', '.join(lacking)}" for owner, lacking in materials.items()]
+    for name, owners in lugs.items():
+        (_, first), *more = owners
+        who = f"{len(owners)} lugs lack" if more else f"lug {first} lacks"
+        clauses.append(f"{who} {name}")
+    return "; ".join([*clauses, *([f"missing {', '.join(others)}"] if others else [])])
 
 
 def arms_table(results: Results) -> Table[ArmsRow]:

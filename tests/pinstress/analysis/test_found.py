@@ -61,7 +61,7 @@ def test_a_notebook_shows_the_factor_with_its_verdict(found: RunResults) -> None
     factor = cells[len(cells) // 2 :]
     shown = factor_range(found.pins[0])
     assert {"B", "landing", shown, "converged"} <= set(factor)
-    assert f"FoS {shown} ≥ 10 required" in repr(found)
+    assert f"factor {shown} ≥ 10 required" in repr(found)
 
 
 def test_names_in_html_are_texts(found: RunResults) -> None:

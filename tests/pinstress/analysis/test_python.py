@@ -72,7 +72,7 @@ def test_results_and_study_are_one_line(results: RunResults) -> None:
     study = pinstress.study_from(QUICK)
     assert repr(study) == "<Study 'One pin' (study): pins: 1, cases: 1, in-lbf-s>"
     assert "<td>B</td>" in study._repr_html_()
-    assert repr(results).startswith("<One pin: pins: 1, rows: 1. Pin B is safe: FoS")
+    assert repr(results).startswith("<One pin: pins: 1, rows: 1. Pin B is safe: factor")
     assert len(repr(results).splitlines()) == 1
 
 

@@ -142,7 +142,7 @@ def test_what_is_asked_decides_how_far_it_goes(tmp_path: Path) -> None:
     assert pin["safety_factor"] > 100.0
     assert done.returncode == 0
     assert "converged" not in done.stderr
-    assert done.stdout.startswith("Pin B is safe: FoS 120 ≥ 10 required (landing).")
+    assert done.stdout.startswith("Pin B is safe: factor 120 ≥ 10 required (landing).")
 
 
 def test_millimetres_and_inches_give_the_same_pin(

@@ -222,6 +222,16 @@ def test_drawing_has_dimensions_and_labels(results: Results) -> None:
         assert text in svg
 
 
+def test_a_gap_as_thick_as_its_neighbour_has_no_label(results: Results) -> None:
+    """It has its length alone; a collar has its diameter."""
+    bands = (1.0, 2.0, 0.0, "A", "band"), (1.0, 2.0, 0.0, "B", "band")
+    gap, collar = (0.05, 2.0, 0.0, "", "plain"), (0.25, 3.0, 0.0, "", "plain")
+    svg = draw_pin(PinShape("P", (bands[0], gap, bands[1], collar), "steel", None), results.units)
+    assert svg.count(">⌀2<") == 2
+    assert svg.count(">⌀3<") == 1
+    assert ">0.05<" in svg
+
+
 def test_drawing_of_nothing_is_empty(results: Results) -> None:
     assert draw_pin(PinShape("A", (), "steel", None), results.units) == ""
 

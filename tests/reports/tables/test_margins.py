@@ -12,7 +12,12 @@ from assess.margin import RATIO_DIMENSION, Margin, PinMargin, skipped
 from reports.data.results import Results, Units
 from reports.page.paper import document
 from reports.tables.json_results import to_json
-from reports.tables.strength.margins import governing_table, margins_table, not_made_words
+from reports.tables.strength.margins import (
+    governing_table,
+    margins_table,
+    not_made_briefly,
+    not_made_words,
+)
 from reports.text.safety_factors import print_safety_factors
 from tests.support.results.rows import with_values
 
@@ -93,3 +98,22 @@ def test_the_worst_check_of_each_pin_is_first(results: Results) -> None:
     (line,) = not_made_words(made)
     assert "(pin B), material.steel.ultimate_strength missing: rupture" in line
     assert "least margin" not in terminal(replace(made, spectrum_margins=margins[-1:]))
+
+
+def test_what_checks_lack_is_told_in_brief(results: Results) -> None:
+    """Materials by name, lugs by their number, and what is neither as it is."""
+    missing = {
+        "A": ("material.steel.ultimate_strength", "lug.left.shank, lug.right.shank"),
+        "B": ("lug.left.shank", 'material.steel.ultimate_strength, material."Al 7".shear_strength'),
+        "C": ("a maximum of the model, which is failed",),
+    }
+    margins = tuple(
+        PinMargin(pin, "c", skipped("check", "", "model", "ultimate", 1.5, need))
+        for pin, needs in missing.items()
+        for need in needs
+    )
+    assert not_made_briefly(replace(results, spectrum_margins=margins)) == (
+        "steel lacks ultimate_strength; Al 7 lacks shear_strength; 3 lugs lack shank; "
+        "missing a maximum of the model, which is failed"
+    )
+    assert not_made_briefly(replace(results, spectrum_margins=())) == ""

@@ -32,7 +32,7 @@ def test_a_factor_at_a_probability(
     command = ["size", "study.toml", "--least-weight", "--fos", "4", "--probability", "1e-3"]
     assert run_command_line([*command, "--jobs", "1"]) == 0
     said = capsys.readouterr()
-    assert "FoS at p" in said.out
+    assert "factor at p" in said.out
     (row,) = pinstress.run(load_study("study_sized.toml")).pins
     assert row.safety_factor is not None
     at = row.safety_factor * (1.0 - 3.0902 * 15.0 / 225.0)
