@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
-from assess.work import Quantity, Work
+from assess.work import Work, WorkQuantity
 from pinbase.dimensions import Length, Time
 
 Kind = Literal["hand", "clause", "model", "collapse", "fatigue", "contact"]
@@ -59,7 +59,7 @@ class Margin:
     governs: bool = True
     code: str = ""
     work: tuple[Work, ...] = ()
-    passing: Quantity | None = None
+    passing: WorkQuantity | None = None
     scatter: str = ""
     omits: str = ""
 

@@ -12,7 +12,7 @@ PASSING_TOLERANCE = 1e-6  # relative, of the value that just passes
 
 
 @dataclass(frozen=True)
-class Quantity:
+class WorkQuantity:
     """A number of a formula: its symbol, its value in SI and its dimension ("1" for a ratio)."""
 
     symbol: str
@@ -33,9 +33,9 @@ class Work:
     it has the same dimension in any system of units.
     """
 
-    result: Quantity
+    result: WorkQuantity
     formula: str
-    quantities: tuple[Quantity, ...]
+    quantities: tuple[WorkQuantity, ...]
 
 
 def work(
@@ -43,13 +43,13 @@ def work(
 ) -> Work:
     """Return the work of a result; each quantity is a value in SI with its dimension."""
     return Work(
-        Quantity(symbol, float(value), dimension),
+        WorkQuantity(symbol, float(value), dimension),
         formula,
-        tuple(Quantity(name, float(x), kind) for name, (x, kind) in quantities.items()),
+        tuple(WorkQuantity(name, float(x), kind) for name, (x, kind) in quantities.items()),
     )
 
 
-def scaled(symbol: str, now: float, utilisation: float, power: float) -> Quantity | None:
+def scaled(symbol: str, now: float, utilisation: float, power: float) -> WorkQuantity | None:
     """Return the length that would just pass where what a check carries grows with a power of it;
     None without a load.
 
@@ -57,7 +57,7 @@ def scaled(symbol: str, now: float, utilisation: float, power: float) -> Quantit
     """
     if not 0.0 < utilisation < float("inf"):
         return None
-    return Quantity(symbol, now * utilisation ** (1.0 / power), "length")
+    return WorkQuantity(symbol, now * utilisation ** (1.0 / power), "length")
 
 
 def would_pass(utilisation: Callable[[float], float], now: float) -> float | None:

@@ -21,7 +21,7 @@ from collections.abc import Callable
 from functools import partial
 
 from assess.check import CheckText, check
-from assess.clauses.eye import Eye, LoadedEye, loaded_eyes
+from assess.clauses.eye import LoadedEye, PlateEye, loaded_eyes
 from assess.clauses.eye_margin import (
     EyeCapacity,
     Strengths,
@@ -47,7 +47,7 @@ def lug_strength(yields: float, ultimate: float) -> float:
     return min(ultimate, ULTIMATE_OVER_YIELD * yields)
 
 
-def bearing_load(eye: Eye, K: float, yields: float, ultimate: float) -> Work:
+def bearing_load(eye: PlateEye, K: float, yields: float, ultimate: float) -> Work:
     """The ultimate load of the lug in bearing, shear-out and hoop tension, N (9-1 to 9-3).
 
     K: of figure 9-2. yields, ultimate: strengths across the grain, Pa.
@@ -62,7 +62,7 @@ def bearing_load(eye: Eye, K: float, yields: float, ultimate: float) -> Work:
     )  # fmt: skip
 
 
-def net_section_load(eye: Eye, K_n: float, yields: float, ultimate: float) -> Work:
+def net_section_load(eye: PlateEye, K_n: float, yields: float, ultimate: float) -> Work:
     """The ultimate load of the net section, N (9-4 to 9-6).
 
     K_n: of figure 9-4. yields, ultimate: strengths, Pa.
@@ -76,7 +76,7 @@ def net_section_load(eye: Eye, K_n: float, yields: float, ultimate: float) -> Wo
     )  # fmt: skip
 
 
-def bushing_load(eye: Eye, crushes: float) -> Work:
+def bushing_load(eye: PlateEye, crushes: float) -> Work:
     """The ultimate load of a bushing, N (9-8, 9-9).
 
     crushes: its yield strength in compression, Pa.

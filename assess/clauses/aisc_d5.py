@@ -17,7 +17,7 @@ from dataclasses import replace
 from functools import partial
 
 from assess.check import CheckText, check
-from assess.clauses.eye import Eye, loaded_eyes
+from assess.clauses.eye import PlateEye, loaded_eyes
 from assess.clauses.eye_margin import eye_margin, not_axial, strengths_of
 from assess.margin import Margin
 from assess.situation import Situation
@@ -31,12 +31,12 @@ OMITS = (
 )
 
 
-def effective_width(eye: Eye) -> float:
+def effective_width(eye: PlateEye) -> float:
     """b_e, m (D5.1a)."""
     return min(2.0 * eye.thickness + WIDTH_BEYOND_THICKNESS, eye.side)
 
 
-def tensile_rupture(eye: Eye, yields: float, ultimate: float) -> Work:
+def tensile_rupture(eye: PlateEye, yields: float, ultimate: float) -> Work:
     """The design strength phi P_n, N (D5-1). yields, ultimate: F_y and F_u, Pa."""
     b_e = effective_width(eye)
     return work(
@@ -46,7 +46,7 @@ def tensile_rupture(eye: Eye, yields: float, ultimate: float) -> Work:
     )  # fmt: skip
 
 
-def shear_rupture(eye: Eye, yields: float, ultimate: float) -> Work:
+def shear_rupture(eye: PlateEye, yields: float, ultimate: float) -> Work:
     """The design strength phi P_n, N (D5-2); arguments as `tensile_rupture`."""
     area = 2.0 * eye.thickness * (eye.a + eye.bearer / 2.0)
     return work(
@@ -57,7 +57,7 @@ def shear_rupture(eye: Eye, yields: float, ultimate: float) -> Work:
     )  # fmt: skip
 
 
-def bearing(eye: Eye, yields: float, ultimate: float) -> Work:
+def bearing(eye: PlateEye, yields: float, ultimate: float) -> Work:
     """The design strength phi R_n, N (J7-1); arguments as `tensile_rupture`."""
     return work(
         "φR_n", RUPTURE_PHI * 1.8 * yields * eye.bearer * eye.thickness, "force",
@@ -66,7 +66,7 @@ def bearing(eye: Eye, yields: float, ultimate: float) -> Work:
     )  # fmt: skip
 
 
-def gross_yielding(eye: Eye, yields: float, ultimate: float) -> Work:
+def gross_yielding(eye: PlateEye, yields: float, ultimate: float) -> Work:
     """The design strength phi P_n, N (D2-1); arguments as `tensile_rupture`."""
     return work(
         "φP_n", YIELD_PHI * yields * eye.width * eye.thickness, "force", "0.90 × {F_y} × {w} × {t}",

@@ -27,7 +27,7 @@ from collections.abc import Callable
 from functools import partial
 
 from assess.check import CheckText, check
-from assess.clauses.eye import Eye, loaded_eyes
+from assess.clauses.eye import PlateEye, loaded_eyes
 from assess.clauses.eye_margin import eye_margin, not_axial, strengths_of
 from assess.margin import Margin
 from assess.situation import Situation
@@ -44,19 +44,19 @@ OMITS = (
 )
 
 
-def pin_to_hole(eye: Eye) -> float:
+def pin_to_hole(eye: PlateEye) -> float:
     """C_r, which a pin smaller than its hole reduces (C3-2)."""
     return 1.0 - 0.275 * math.sqrt(max(1.0 - (eye.bearer / eye.hole) ** 2, 0.0))
 
 
-def effective_width(eye: Eye, ultimate_over_yield: float) -> float:
+def effective_width(eye: PlateEye, ultimate_over_yield: float) -> float:
     """b_eff, m, of the net section on each side of the hole (3-46, 3-47)."""
     b = eye.side
     wide = 0.6 * b * ultimate_over_yield * math.sqrt(eye.hole / b)
     return min(b, MAX_WIDTH_OVER_THICKNESS * eye.thickness, wide)
 
 
-def tension_strength(eye: Eye, yields: float, ultimate: float, design_factor: float) -> Work:
+def tension_strength(eye: PlateEye, yields: float, ultimate: float, design_factor: float) -> Work:
     """P_t, N (3-45). yields, ultimate: F_y and F_u, Pa. design_factor: N_d."""
     C_r, b_eff = pin_to_hole(eye), effective_width(eye, ultimate / yields)
     value = C_r * ultimate * 2.0 * eye.thickness * b_eff / (FRACTURE_FACTOR * design_factor)
@@ -67,7 +67,7 @@ def tension_strength(eye: Eye, yields: float, ultimate: float, design_factor: fl
     )  # fmt: skip
 
 
-def fracture_strength(eye: Eye, yields: float, ultimate: float, design_factor: float) -> Work:
+def fracture_strength(eye: PlateEye, yields: float, ultimate: float, design_factor: float) -> Work:
     """P_b, N (3-48); arguments as `tension_strength`."""
     C_r, b = pin_to_hole(eye), eye.side
     length = 1.13 * (eye.e - eye.hole / 2.0) + 0.92 * b / (1.0 + b / eye.hole)
@@ -81,7 +81,7 @@ def fracture_strength(eye: Eye, yields: float, ultimate: float, design_factor: f
     )  # fmt: skip
 
 
-def shear_area(eye: Eye) -> float:
+def shear_area(eye: PlateEye) -> float:
     """A_v, m^2, of both planes of shear beyond the pin (3-50, C3-2)."""
     phi = math.radians(SHEAR_PLANE_DEGREES * eye.bearer / eye.hole)
     beyond = eye.a + eye.bearer / 2.0 * (1.0 - math.cos(phi))
@@ -90,7 +90,7 @@ def shear_area(eye: Eye) -> float:
     return 2.0 * beyond * eye.thickness
 
 
-def shear_strength(eye: Eye, yields: float, ultimate: float, design_factor: float) -> Work:
+def shear_strength(eye: PlateEye, yields: float, ultimate: float, design_factor: float) -> Work:
     """P_v, N (3-49); arguments as `tension_strength`."""
     A_v = shear_area(eye)
     value = 0.70 * ultimate * A_v / (FRACTURE_FACTOR * design_factor)
@@ -100,7 +100,7 @@ def shear_strength(eye: Eye, yields: float, ultimate: float, design_factor: floa
     )  # fmt: skip
 
 
-def bearing_strength(eye: Eye, yields: float, ultimate: float, design_factor: float) -> Work:
+def bearing_strength(eye: PlateEye, yields: float, ultimate: float, design_factor: float) -> Work:
     """P_p, N (3-51); arguments as `tension_strength`."""
     value = 1.25 * yields * eye.bearer * eye.thickness / design_factor
     return work(
@@ -111,7 +111,7 @@ def bearing_strength(eye: Eye, yields: float, ultimate: float, design_factor: fl
 
 
 _of_plates = partial(check, kind="clause", takes="loads", dimension="force", omits=OMITS)
-Strength = Callable[[Eye, float, float, float], Work]  # arguments as `tension_strength`
+Strength = Callable[[PlateEye, float, float, float], Work]  # arguments as `tension_strength`
 
 
 @_of_plates("BTH-1 plate, tension", f"{STANDARD}, eq. 3-45 to 3-47")
@@ -149,8 +149,12 @@ def _margins(text: CheckText, s: Situation, strength: Strength, dimension: str) 
             margins.append(text.lacks(s, *lacking, *strengths.missing))
         elif x.axial.any():
 
-            def capacity(eye: Eye, fy: float = strengths.yields, fu: float = strengths.ultimate,
-                         N_d: float = N_d) -> Work:  # fmt: skip
+            def capacity(
+                eye: PlateEye,
+                fy: float = strengths.yields,
+                fu: float = strengths.ultimate,
+                N_d: float = N_d,
+            ) -> Work:
                 return strength(eye, fy, fu, N_d)
 
             margins.append(eye_margin(text, s, x, x.axial, capacity, dimension))

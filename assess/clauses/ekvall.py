@@ -15,7 +15,7 @@ from __future__ import annotations
 from functools import partial
 
 from assess.check import CheckText, check
-from assess.clauses.eye import Eye, LoadedEye, loaded_eyes, place_of
+from assess.clauses.eye import LoadedEye, PlateEye, loaded_eyes, place_of
 from assess.clauses.eye_margin import eye_margin
 from assess.margin import Margin, for_comparison, strength_key
 from assess.situation import Situation
@@ -34,12 +34,12 @@ OMITS = (
 )
 
 
-def transverse_efficiency(eye: Eye) -> float:
+def transverse_efficiency(eye: PlateEye) -> float:
     """K_BR of a straight symmetric lug under a load across its shank."""
     return -0.463 + 0.580 * eye.width / eye.hole
 
 
-def transverse_load(eye: Eye, ultimate: float) -> Work:
+def transverse_load(eye: PlateEye, ultimate: float) -> Work:
     """The ultimate load across the shank, N. ultimate: strength, Pa."""
     value = transverse_efficiency(eye) * ultimate * eye.hole * eye.thickness
     return work(
@@ -49,12 +49,12 @@ def transverse_load(eye: Eye, ultimate: float) -> Work:
     )  # fmt: skip
 
 
-def bore_factor(eye: Eye) -> float:
+def bore_factor(eye: PlateEye) -> float:
     """K_tb, the elastic stress at the bore over F / (D t), of a straight lug pulled axially."""
     return float(2.75 * (eye.width / eye.hole - 1.0) ** -0.675)
 
 
-def bore_stress(eye: Eye, force: float) -> Work:
+def bore_stress(eye: PlateEye, force: float) -> Work:
     """The largest elastic stress at the bore, Pa, of an axial force, N."""
     value = bore_factor(eye) * force / (eye.hole * eye.thickness)
     return work(

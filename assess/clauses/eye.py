@@ -15,14 +15,14 @@ from fea.support.lugs.lug import Lug
 from geometry import ArgumentError
 from pinbase.arrays import Floats
 
-EyeUtilisation = Callable[["Eye"], float]
+EyeUtilisation = Callable[["PlateEye"], float]
 MAX_UTILISATION = 1e9  # that of an eye that cannot be, so that roots can be sought
 ROUND_OFF = 1e-9  # of a force, up to which its component along a direction is none
 AXIAL_BASIS = "the force taken along the shank, whose direction is not given"
 
 
 @dataclass(frozen=True)
-class Eye:
+class PlateEye:
     """The head of a lug, m.
 
     width: W. hole: D, in the lug itself, around a bushing if there is one. pin: Dp. thickness: t.
@@ -75,7 +75,7 @@ class Eye:
 
         def used(x: float) -> float:
             try:
-                changed: Eye = replace(self, **{dimension: x})  # type: ignore[arg-type]
+                changed: PlateEye = replace(self, **{dimension: x})  # type: ignore[arg-type]
                 return min(utilisation(changed), MAX_UTILISATION)
             except ArgumentError:
                 return MAX_UTILISATION
@@ -93,7 +93,7 @@ class LoadedEye:
     """
 
     connection: str
-    eye: Eye
+    eye: PlateEye
     lug: Material
     bushing: Material | None
     size: Floats
@@ -102,7 +102,7 @@ class LoadedEye:
     basis: str = ""
 
 
-def eye_of(s: Situation, lug: Lug) -> Eye:
+def eye_of(s: Situation, lug: Lug) -> PlateEye:
     """The eye of a lug on its band of the pin, as thick as the band is long.
 
     Without a shank the head is round, and its end half of its width from the centre. The clearance
@@ -112,11 +112,11 @@ def eye_of(s: Situation, lug: Lug) -> Eye:
     pin = 2.0 * band.radius
     ring = 2.0 * lug.bushing.thickness if lug.bushing else max(lug.clearance, 0.0)
     if shank is None:
-        return Eye(lug.outer_diameter, pin + ring, pin, band.length, bushed)
+        return PlateEye(lug.outer_diameter, pin + ring, pin, band.length, bushed)
     square = shank.shape == "square"
     width = shank.width if square else lug.outer_diameter
     end = None if shank.end == width / 2.0 else shank.end
-    return Eye(width, pin + ring, pin, band.length, bushed, end, square)
+    return PlateEye(width, pin + ring, pin, band.length, bushed, end, square)
 
 
 def loaded_eyes(s: Situation) -> list[LoadedEye]:

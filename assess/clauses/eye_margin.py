@@ -7,14 +7,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from assess.check import CheckText
-from assess.clauses.eye import Eye, LoadedEye, place_of
+from assess.clauses.eye import LoadedEye, PlateEye, place_of
 from assess.margin import Margin, strength_key
 from assess.situation import Situation
-from assess.work import Quantity, Work
+from assess.work import Work, WorkQuantity
 from fea.core.material import Material
 from pinbase.arrays import Floats
 
-EyeCapacity = Callable[[Eye], Work]  # the force that an eye carries, N
+EyeCapacity = Callable[[PlateEye], Work]  # the force that an eye carries, N
 MAX_TRANSVERSE_RATIO = 0.05  # of the force, up to which a clause for axial loads is applied
 DIMENSION_NAMES = {"width": "outer_diameter", "thickness": "thickness", "pin": "diameter"}
 
@@ -68,7 +68,7 @@ def eye_margin(
     largest, factor = float(force[instant]), s.factors.at(text.level)
     allowed, place = capacity(loaded.eye), place_of(s, loaded, instant)
 
-    def utilisation(eye: Eye) -> float:
+    def utilisation(eye: PlateEye) -> float:
         value = capacity(eye).result.value
         return factor * largest / value if value > 0.0 else math.inf
 
@@ -78,5 +78,5 @@ def eye_margin(
         "force", loaded.connection, place.z, place.time, loaded.lug.name, loaded.basis,
         work=(allowed,), scatter=text.scatter, omits=text.omits,
         passing=None if passing is None
-        else Quantity(DIMENSION_NAMES[dimension], passing, "length"),
+        else WorkQuantity(DIMENSION_NAMES[dimension], passing, "length"),
     )  # fmt: skip

@@ -33,12 +33,12 @@ from functools import partial
 
 from assess.check import CheckText, Rupture, check
 from assess.clauses.bth1 import effective_width, pin_to_hole
-from assess.clauses.eye import Eye, LoadedEye, loaded_eyes, place_of
+from assess.clauses.eye import LoadedEye, PlateEye, loaded_eyes, place_of
 from assess.clauses.eye_margin import DIMENSION_NAMES
 from assess.margin import Margin
 from assess.situation import Situation
 from assess.strength.hand_checks import BEARING_SOURCE, SHIGLEY_JOINTS, shear_yield
-from assess.work import Quantity, Work, scaled, work
+from assess.work import Work, WorkQuantity, scaled, work
 
 BTH1 = "ASME BTH-1, 3-3.3; Duerr 2006"
 BRUHN = "Bruhn, Analysis and Design of Flight Vehicle Structures, D1"
@@ -51,10 +51,10 @@ OMITS = "Not covered: stress concentration at the bore, forces across the shank,
 NET_SECTION = CheckText("lug, net section", BTH1, "hand", omits=OMITS)
 SHEAR_OUT = CheckText("lug, shear-out", BRUHN, "hand", omits=OMITS)
 BEARING = CheckText("lug, bearing", BEARING_SOURCE, "hand", omits=OMITS)
-_LugCheck = tuple[CheckText, Callable[[Eye], Work], float | None, Rupture, str, str]
+_LugCheck = tuple[CheckText, Callable[[PlateEye], Work], float | None, Rupture, str, str]
 
 
-def net_section_stress(force: float, ultimate_over_yield: float, eye: Eye) -> Work:
+def net_section_stress(force: float, ultimate_over_yield: float, eye: PlateEye) -> Work:
     """The tension on the part of the net section that carries, Pa.
 
     force: N. ultimate_over_yield: F_u / F_y of the lug.
@@ -69,7 +69,7 @@ def net_section_stress(force: float, ultimate_over_yield: float, eye: Eye) -> Wo
     )  # fmt: skip
 
 
-def shear_out_stress(force: float, eye: Eye) -> Work:
+def shear_out_stress(force: float, eye: PlateEye) -> Work:
     """The shear stress on the two planes by which the pin would push out a piece of the eye, Pa.
 
     Arguments and source as `net_section_stress`.
@@ -83,7 +83,7 @@ def shear_out_stress(force: float, eye: Eye) -> Work:
     )  # fmt: skip
 
 
-def bearing_stress(force: float, eye: Eye) -> Work:
+def bearing_stress(force: float, eye: PlateEye) -> Work:
     """The bearing stress on the projected area in the bore, Pa; as `net_section_stress`."""
     return work(
         "σ", force / (eye.bearer * eye.thickness), "stress", "{F} / ({d} × {t})",
@@ -127,8 +127,8 @@ def _of_lug(s: Situation, loaded: LoadedEye) -> list[Margin]:
 
 
 def _passing(
-    eye: Eye, dimension: str, stress: Callable[[Eye], Work], margin: Margin
-) -> Quantity | None:
+    eye: PlateEye, dimension: str, stress: Callable[[PlateEye], Work], margin: Margin
+) -> WorkQuantity | None:
     """The dimension of an eye that would just pass a margin."""
     allowable, factor, name = margin.allowable, margin.factor, DIMENSION_NAMES[dimension]
     if not allowable:
@@ -136,4 +136,4 @@ def _passing(
     if dimension == "thickness":
         return scaled(name, eye.thickness, margin.used, 1.0)
     value = eye.would_pass(dimension, lambda e: factor * stress(e).result.value / allowable)
-    return value if value is None else Quantity(name, value, "length")
+    return value if value is None else WorkQuantity(name, value, "length")

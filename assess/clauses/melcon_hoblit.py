@@ -24,7 +24,7 @@ from functools import partial
 import numpy as np
 
 from assess.check import CheckText, check
-from assess.clauses.eye import Eye, LoadedEye, loaded_eyes, place_of
+from assess.clauses.eye import LoadedEye, PlateEye, loaded_eyes, place_of
 from assess.clauses.eye_margin import eye_margin, lug_key, strengths_of
 from assess.margin import RATIO_DIMENSION, Margin, strength_key
 from assess.situation import Situation
@@ -40,12 +40,12 @@ OMITS = (
 AXIAL_KEYS, TRANSVERSE_KEYS = ("k_br", "k_t"), ("k_tru",)
 
 
-def shear_bearing_load(eye: Eye, k_br: float, ultimate: float) -> Work:
+def shear_bearing_load(eye: PlateEye, k_br: float, ultimate: float) -> Work:
     """P_bru, N. ultimate: strength across the grain, Pa."""
     return _on_bearing_area("P_bru", "k_br", eye, k_br, "F_tu", ultimate)
 
 
-def tension_load(eye: Eye, k_t: float, ultimate: float) -> Work:
+def tension_load(eye: PlateEye, k_t: float, ultimate: float) -> Work:
     """P_tu, N. ultimate: strength along the grain, Pa."""
     area = (eye.width - eye.hole) * eye.thickness
     return work(
@@ -64,12 +64,12 @@ def yield_load(ultimate_load: float, C: float, yields: float, ultimate: float) -
     )  # fmt: skip
 
 
-def transverse_load(k_tru: float, ultimate: float, eye: Eye) -> Work:
+def transverse_load(k_tru: float, ultimate: float, eye: PlateEye) -> Work:
     """P_tru, N. ultimate: strength across the grain, Pa."""
     return _on_bearing_area("P_tru", "k_tru", eye, k_tru, "F_tu", ultimate)
 
 
-def transverse_yield_load(k_try: float, yields: float, eye: Eye) -> Work:
+def transverse_yield_load(k_try: float, yields: float, eye: PlateEye) -> Work:
     """P_try, N. yields: yield strength across the grain, Pa."""
     return _on_bearing_area("P_try", "k_try", eye, k_try, "F_ty", yields)
 
@@ -132,7 +132,7 @@ def lug_yield(text: CheckText, s: Situation) -> list[Margin]:
             continue
 
         def capacity(
-            eye: Eye, k_br: float = k.k_br, k_t: float = k.k_t, C: float = k.C,
+            eye: PlateEye, k_br: float = k.k_br, k_t: float = k.k_t, C: float = k.C,
             fy: float = strengths.yields, fu: float = strengths.ultimate,
         ) -> Work:  # fmt: skip
             loads = shear_bearing_load(eye, k_br, fu), tension_load(eye, k_t, fu)
@@ -220,7 +220,12 @@ def _lacking(s: Situation, x: LoadedEye, *keys: str) -> list[str]:
 
 
 def _on_bearing_area(
-    symbol: str, factor_symbol: str, eye: Eye, factor: float, strength_symbol: str, strength: float
+    symbol: str,
+    factor_symbol: str,
+    eye: PlateEye,
+    factor: float,
+    strength_symbol: str,
+    strength: float,
 ) -> Work:
     return work(
         symbol, factor * strength * eye.hole * eye.thickness, "force",

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from fea.lug.lug_stress import BandLoad, BoreStress, LugInPlane, bore_stresses
+from fea.lug.lug_stress import BoreStress, LugInPlane, LugLoad, bore_stresses
 from fea.lug.through_thickness import EyeStress, eye_stress
 from fea.support.contact.pressed_cases import PressedCases
 from fea.support.lugs.lug import Lug
@@ -68,7 +68,7 @@ def _of_lugs(
             continue
         given = angles.get(lug.connection)
         angle = _along(force, count) if given is None else given.at(links.times, count)
-        load = BandLoad(force, pressure, length, angle, links.times)
+        load = LugLoad(force, pressure, length, angle, links.times)
         inner = max(max(s.bores) for s in model.whole.segments if s.connection == lug.connection)
 
         of = lug, model.material, inner / 2.0, band.radius

@@ -36,7 +36,7 @@ USUAL_AROUND = 96  # elements and sectors around the bore
 
 
 @dataclass(frozen=True)
-class BandLoad:
+class LugLoad:
     """What the joint does to one lug in one case, at T instants.
 
     force: of the pin on the lug, (T, 2) N in the pin's axes.
@@ -52,11 +52,11 @@ class BandLoad:
     angle: Floats
     times: Floats | None = None
 
-    def at(self, instant: int) -> BandLoad:
+    def at(self, instant: int) -> LugLoad:
         """The load at one instant."""
         one = slice(instant, instant + 1)
         times = None if self.times is None else self.times[one]
-        return BandLoad(self.force[one], self.pressure[:, one], self.length, self.angle[one], times)
+        return LugLoad(self.force[one], self.pressure[:, one], self.length, self.angle[one], times)
 
 
 @dataclass(frozen=True)
@@ -140,7 +140,7 @@ def _elasticity(lug: Lug) -> Elasticity:
 
 
 def bore_stresses(
-    make: Callable[..., LugInPlane], eye: EyeStress, load: BandLoad
+    make: Callable[..., LugInPlane], eye: EyeStress, load: LugLoad
 ) -> tuple[BoreStress, ...]:
     """The largest stress at the walls of a lug over the instants of a load.
 
@@ -209,7 +209,7 @@ def _beyond(times: Floats, values: Floats) -> float:
     return float(-0.25 * slope * slope / bend) if bend < 0.0 else 0.0
 
 
-def _walls(plane: LugInPlane, eye: EyeStress, load: BandLoad) -> list[BoreStress]:
+def _walls(plane: LugInPlane, eye: EyeStress, load: LugLoad) -> list[BoreStress]:
     """The largest stress at each wall, without the parts of its error but that of sampling."""
     lug, bushing = plane.lug, plane.lug.bushing
     pressure = plane.contact.pressures(_along_shank(load))
@@ -226,14 +226,14 @@ def _walls(plane: LugInPlane, eye: EyeStress, load: BandLoad) -> list[BoreStress
     return out
 
 
-def _along_shank(load: BandLoad) -> Floats:
+def _along_shank(load: LugLoad) -> Floats:
     """The force per thickness along the shank and across it, (T, 2) N/m."""
     c, s = np.cos(load.angle), np.sin(load.angle)
     x, y = load.force.T / load.length.sum()
     return np.stack([c * x + s * y, c * y - s * x], axis=1)
 
 
-def _added(eye: EyeStress, load: BandLoad, angles: Floats, hole: bool = False) -> Floats:
+def _added(eye: EyeStress, load: LugLoad, angles: Floats, hole: bool = False) -> Floats:
     """What uneven pressure through the thickness adds, (T, R, P) Pa, at angles (P,) from the
     shank.
     """
@@ -246,7 +246,7 @@ def _added(eye: EyeStress, load: BandLoad, angles: Floats, hole: bool = False) -
 
 
 def _bore(
-    plane: LugInPlane, eye: EyeStress, load: BandLoad, pressure: Floats, amounts: Floats
+    plane: LugInPlane, eye: EyeStress, load: LugLoad, pressure: Floats, amounts: Floats
 ) -> tuple[_Around, _Around]:
     """The stress of the wall on which the pin bears, where it is free and beneath the pin."""
     wall = plane.fields.bore
@@ -274,7 +274,7 @@ def _bore(
     )
 
 
-def _shares(load: BandLoad) -> Floats:
+def _shares(load: LugLoad) -> Floats:
     """The load per length of each ring over the mean, (T, R), in the direction of the force."""
     first = load.pressure[1] if len(load.pressure) > 1 else np.zeros((1, len(load.length), 2))
     mean = np.einsum("trp,r->tp", first, load.length / load.length.sum())
@@ -317,7 +317,7 @@ def _between(values: Floats, at: Floats) -> Floats:
     return np.asarray((1.0 - part) * first + part * second)
 
 
-def _hole(plane: LugInPlane, eye: EyeStress, load: BandLoad, amounts: Floats) -> _Around:
+def _hole(plane: LugInPlane, eye: EyeStress, load: LugLoad, amounts: Floats) -> _Around:
     """The stress of the lug about its bushing."""
     assert plane.fields.hole is not None
     wall = plane.fields.hole.at(amounts)
@@ -327,7 +327,7 @@ def _hole(plane: LugInPlane, eye: EyeStress, load: BandLoad, amounts: Floats) ->
     return _Around(np.broadcast_to(wall.angles, wall.hoop.shape), hoop, von_mises)
 
 
-def _on_pairs(load: BandLoad) -> BandLoad:
+def _on_pairs(load: LugLoad) -> LugLoad:
     """The load with the pressure even over each pair of rings."""
     pressure, length = load.pressure.copy(), load.length
     for first in range(0, len(length) - 1, 2):

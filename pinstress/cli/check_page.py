@@ -15,7 +15,7 @@ from pinstress.cli.check import Examination, support_of
 from pinstress.study.model.balance import given_warnings
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
-from reports.data.check import CheckedPin, CheckedStudy, LugOutline, PlannedRow
+from reports.data.check import CheckedPin, CheckedStudy, LugSketch, PlannedRow
 from reports.data.results import Units
 from reports.page.check import write_check
 
@@ -59,14 +59,14 @@ def write_check_page(study: Study, examination: Examination, path: Path) -> None
     write_check(in_units(in_si, s.factor), path)
 
 
-def _lugs(task: Task) -> list[LugOutline]:
+def _lugs(task: Task) -> list[LugSketch]:
     lugs = sorted(task.lugs, key=lambda lug: task.pin.band(lug.connection).z0)
     return [_outline(task.pin, lug) for lug in lugs]
 
 
-def _outline(pin: PinLike, lug: Lug) -> LugOutline:
+def _outline(pin: PinLike, lug: Lug) -> LugSketch:
     band = pin.band(lug.connection)
-    return LugOutline(
+    return LugSketch(
         lug.connection, (band.z0, band.z1), lug.outer_diameter, lug.clearance, lug.material.name
     )
 

@@ -10,7 +10,7 @@ from reports.data.results import PinShape, Units
 
 
 @dataclass(frozen=True)
-class LugOutline:
+class LugSketch:
     """A lug about a band of a pin, as it is drawn: from z to z, with its outer diameter.
 
     clearance: of the diameters.
@@ -29,7 +29,7 @@ class CheckedPin:
 
     shape: PinShape
     support: str
-    lugs: tuple[LugOutline, ...]
+    lugs: tuple[LugSketch, ...]
 
 
 @dataclass(frozen=True)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from assess.margin import Margin
-from assess.work import Quantity, Work
+from assess.work import Work, WorkQuantity
 from reports.data.results import Units
 from reports.format.numbers import engineering, ten_to
 from reports.format.units import unit_name
 
 
-def quantity_text(quantity: Quantity, units: Units) -> str:
+def quantity_text(quantity: WorkQuantity, units: Units) -> str:
     """Return a number with its unit; of a dimension such as "length^2", too."""
     names = []
     for part in quantity.dimension.split():

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 
-from reports.data.check import LugOutline
+from reports.data.check import LugSketch
 from reports.data.results import PinShape, Units
 from reports.format.drawing.cuts import draw_cut, words
 from reports.format.drawing.spread import rows
@@ -117,7 +117,7 @@ def draw_pin(
     width: float = DRAWING_WIDTH,
     places: list[PlaceMark] | None = None,
     along: StressAlong | None = None,
-    lugs: Sequence[LugOutline] = (),
+    lugs: Sequence[LugSketch] = (),
 ) -> str:
     """Return the drawing as an <svg> element, in which all text is escaped.
 
@@ -192,7 +192,7 @@ def _body(shape: PinShape, pieces: list[_Piece], at: _Layout, marks: ZoneMarks) 
     ]
 
 
-def _lug(lug: LugOutline, pieces: list[_Piece], at: _Layout) -> Iterator[str]:
+def _lug(lug: LugSketch, pieces: list[_Piece], at: _Layout) -> Iterator[str]:
     """Yield the section of a lug above and below the pin."""
     left, right = (at.left + at.scale * z for z in lug.z)
     inner = max((p.radius for p in pieces if p.x < right and left < p.x + p.width), default=0.0)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from assess.margin import RATIO_DIMENSION, Margin, PinMargin
-from assess.work import Quantity
+from assess.work import WorkQuantity
 from reports.data.results import Results, Units
 from reports.format.numbers import engineering, short
 from reports.format.work_words import passing_text, quantity_text, work_lines
@@ -44,7 +44,8 @@ def _body(m: Margin, units: Units) -> Iterator[str]:
     if m.demand is None or m.allowable is None:
         return
     demand, allowable = (
-        quantity_text(Quantity("", value, m.dimension), units) for value in (m.demand, m.allowable)
+        quantity_text(WorkQuantity("", value, m.dimension), units)
+        for value in (m.demand, m.allowable)
     )
     loads = f"{m.level} load: {short(m.factor)} × {demand}"
     sign = "+" if (m.margin or 0.0) > 0.0 else ""

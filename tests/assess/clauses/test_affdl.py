@@ -17,7 +17,7 @@ import pytest
 from assess.checks import SETS, margins_of
 from assess.clauses.affdl_joint import DoubleShear
 from assess.clauses.affdl_lugs import bearing_load, bushing_load, net_section_load
-from assess.clauses.eye import Eye
+from assess.clauses.eye import PlateEye
 from assess.lug_factors import LugFactors
 from assess.margin import Margin
 from assess.situation import Situation
@@ -29,8 +29,8 @@ from tests.support.pins.plain_pins import double_shear
 
 IN, LBF, KSI = 0.0254, 4.4482216, 6.894757e6
 D, DP, GAP = 1.0 * IN, 0.75 * IN, 0.1 * IN
-FEMALE = Eye(2.5 * IN, D, DP, 0.5 * IN, bushed=True)
-MALE = Eye(3.0 * IN, D, DP, 0.75 * IN, bushed=True)
+FEMALE = PlateEye(2.5 * IN, D, DP, 0.5 * IN, bushed=True)
+MALE = PlateEye(3.0 * IN, D, DP, 0.75 * IN, bushed=True)
 FEMALE_STRENGTHS, MALE_STRENGTHS = (40 * KSI, 64 * KSI), (66 * KSI, 77 * KSI)
 FORCE = 20_000.0 * LBF
 

@@ -15,7 +15,7 @@ from assess.clauses.aisc_d5 import (
     shear_rupture,
     tensile_rupture,
 )
-from assess.clauses.eye import Eye
+from assess.clauses.eye import PlateEye
 from assess.situation import Situation
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
@@ -23,7 +23,7 @@ from fea.support.lugs.lug import Lug, Shank
 from tests.support.pins.plain_pins import double_shear
 
 IN, KIP, KSI = 0.0254, 4448.2216, 6.894757e6
-PLATE = Eye(4.25 * IN, 1.03 * IN, 1.0 * IN, 0.5 * IN, end=(2.25 + 0.515) * IN)
+PLATE = PlateEye(4.25 * IN, 1.03 * IN, 1.0 * IN, 0.5 * IN, end=(2.25 + 0.515) * IN)
 STRENGTHS = 36 * KSI, 58 * KSI
 
 
@@ -43,7 +43,7 @@ def test_printed_strengths() -> None:
 
 def test_thickness_limits_the_width() -> None:
     """Version 13 has 2 t + 0.63 = 1.63 in, 94.5 kips: here the edge is further."""
-    wide = Eye(6.0 * IN, 1.03 * IN, 1.0 * IN, 0.5 * IN)
+    wide = PlateEye(6.0 * IN, 1.03 * IN, 1.0 * IN, 0.5 * IN)
     assert effective_width(wide) / IN == pytest.approx(1.63)
     assert tensile_rupture(wide, *STRENGTHS).result.value / KIP / RUPTURE_PHI == pytest.approx(
         94.5, abs=0.05

@@ -18,7 +18,7 @@ from assess.clauses.bth1 import (
     shear_strength,
     tension_strength,
 )
-from assess.clauses.eye import Eye
+from assess.clauses.eye import PlateEye
 from assess.situation import Situation
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
@@ -31,13 +31,13 @@ FY, FU, ND = 36 * KSI, 58 * KSI, 2.0
 STRENGTHS = tension_strength, fracture_strength, shear_strength, bearing_strength
 
 
-def plate(t: float, a: float, be: float, dp: float, dh: float, *, square: bool = False) -> Eye:
+def plate(t: float, a: float, be: float, dp: float, dh: float, *, square: bool = False) -> PlateEye:
     """A plate by its dimensions in inches."""
     width, end = 2.0 * be + dh, a + dh / 2.0
-    return Eye(width * IN, dh * IN, dp * IN, t * IN, end=end * IN, square=square)
+    return PlateEye(width * IN, dh * IN, dp * IN, t * IN, end=end * IN, square=square)
 
 
-def kips(eye: Eye, N_d: float = ND) -> list[float]:
+def kips(eye: PlateEye, N_d: float = ND) -> list[float]:
     return [strength(eye, FY, FU, N_d).result.value / KIP for strength in STRENGTHS]
 
 
@@ -49,7 +49,7 @@ B7 = plate(0.75, 3.3125, 1.66, 1.375, 1.6875)
     (plate(0.19685, 0.25591, 0.25591, 0.39370, 0.47244), (2.065, 1.783, 1.964, 1.744)),
     (plate(0.19685, 0.35433, 0.35433, 0.39370, 0.47244), (2.859, 2.367, 2.643, 1.744)),
 ])  # fmt: skip
-def test_curved_plates(eye: Eye, printed: tuple[float, ...]) -> None:
+def test_curved_plates(eye: PlateEye, printed: tuple[float, ...]) -> None:
     """P_t, P_b, P_v, P_p in kips; the prints have two decimals."""
     assert kips(eye) == pytest.approx(printed, rel=4e-4)
 

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from assess.clauses import lug_checks as of_lugs
-from assess.clauses.eye import Eye
+from assess.clauses.eye import PlateEye
 from assess.clauses.lug_checks import (
     bearing_stress,
     net_section_stress,
@@ -42,8 +42,8 @@ def lug_checks(pin: Pin, lugs: list[Lug], loads: PinLoads) -> list[Margin]:
     return [m for m in of_lugs.lug_checks(s) if m.listed_by_hand]
 
 
-def eye(outer: float, bore: float, thickness: float, pin: float | None = None) -> Eye:
-    return Eye(outer, bore, pin or bore, thickness)
+def eye(outer: float, bore: float, thickness: float, pin: float | None = None) -> PlateEye:
+    return PlateEye(outer, bore, pin or bore, thickness)
 
 
 def stress(work: Work) -> float:

@@ -16,7 +16,7 @@ import pytest
 
 from assess.checks import margins_of
 from assess.clauses.affdl_lugs import ULTIMATE_OVER_YIELD
-from assess.clauses.eye import Eye
+from assess.clauses.eye import PlateEye
 from assess.clauses.melcon_hoblit import (
     average_area,
     oblique_ratio,
@@ -38,7 +38,7 @@ from tests.support.errors import raises
 from tests.support.pins.plain_pins import double_shear
 
 IN, KIP, KSI = 0.0254, 4448.2216, 6.894757e6
-LUG = Eye(1.5 * IN, 0.65 * IN, 0.5 * IN, 0.5 * IN, bushed=True)
+LUG = PlateEye(1.5 * IN, 0.65 * IN, 0.5 * IN, 0.5 * IN, bushed=True)
 FITTING, P = 1.15, 15.0
 FACTORS = LugFactors(k_br=0.97, k_t=0.95, C=1.1, k_tru=0.51, k_try=0.86)
 
@@ -172,7 +172,7 @@ def test_the_pin_of_the_example() -> None:
 
 def test_an_eye_needs_material_around_its_bore() -> None:
     with raises(ArgumentError, "out-of-range", "wider than its bore"):
-        Eye(0.02, 0.02, 0.02, 0.01)
+        PlateEye(0.02, 0.02, 0.02, 0.01)
     with raises(ArgumentError, "out-of-range", "reach further"):
-        Eye(0.05, 0.02, 0.02, 0.01, end=0.01)
+        PlateEye(0.05, 0.02, 0.02, 0.01, end=0.01)
     assert pytest.approx(1.5 / 1.15, rel=1e-3) == ULTIMATE_OVER_YIELD

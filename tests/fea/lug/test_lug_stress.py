@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fea.core.material import Material
-from fea.lug.lug_stress import BandLoad, BoreStress, LugInPlane, bore_stresses
+from fea.lug.lug_stress import BoreStress, LugInPlane, LugLoad, bore_stresses
 from fea.lug.plane_fields import Elasticity, plane_fields
 from fea.lug.through_thickness import EyeStress, eye_stress
 from fea.support.contact.flexibility import lug_rings
@@ -31,16 +31,16 @@ def lug(
     return Lug("A", outer, STEEL, clearance, shank=shank)
 
 
-def load(force: Floats, angle: float = 0.0, times: Floats | None = None) -> BandLoad:
+def load(force: Floats, angle: float = 0.0, times: Floats | None = None) -> LugLoad:
     """Even pressure through the thickness, of the force's harmonic alone."""
     force = np.atleast_2d(force)
     pressure = np.zeros((2, len(force), 1, 2))
     pressure[1, :, 0] = force / (math.pi * RADIUS * THICKNESS)
     angles = np.full(len(force), angle)
-    return BandLoad(force, pressure, np.array([THICKNESS]), angles, times)
+    return LugLoad(force, pressure, np.array([THICKNESS]), angles, times)
 
 
-def largest(of: Lug, given: BandLoad, inner: float = 0.0) -> dict[str, BoreStress]:
+def largest(of: Lug, given: LugLoad, inner: float = 0.0) -> dict[str, BoreStress]:
     make = partial(LugInPlane, of, STEEL, inner, RADIUS)
     return {x.place: x for x in bore_stresses(make, NO_EYE, given)}
 
@@ -175,7 +175,7 @@ def test_pressure_on_one_face_stresses_that_face_more() -> None:
     uneven[:, :, 4:] *= 0.5
     make = partial(LugInPlane, lug(), STEEL, 0.0, RADIUS)
     a, b = (
-        {x.place: x for x in bore_stresses(make, eye, BandLoad(force, x, length, np.zeros(1)))}
+        {x.place: x for x in bore_stresses(make, eye, LugLoad(force, x, length, np.zeros(1)))}
         for x in (even, uneven)
     )
     assert b["free"].ring < 4

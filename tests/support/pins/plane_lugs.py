@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from fea.core.material import Material
-from fea.lug.lug_stress import BandLoad, LugInPlane, bore_stresses
+from fea.lug.lug_stress import LugInPlane, LugLoad, bore_stresses
 from fea.lug.through_thickness import EyeStress
 from fea.support.lugs.lug import Bushing, Lug, Shank
 from pinbase.arrays import Floats
@@ -108,7 +108,7 @@ def figures_of_ours(eye: PlaneEye) -> BoreFigures:
     first = np.zeros((2, 1, 1, 2))
     first[1, 0] = force / (math.pi * eye.radius)
     none = EyeStress(np.zeros((2, 1, 1)), np.zeros((2, 1, 1)))
-    walls = bore_stresses(make, none, BandLoad(force, first, np.ones(1), np.zeros(1)))
+    walls = bore_stresses(make, none, LugLoad(force, first, np.ones(1), np.zeros(1)))
     free = next(x for x in walls if x.wall != "hole" and x.place == "free")
     hole = next((x.hoop for x in walls if x.wall == "hole"), math.nan)
     return BoreFigures(free.hoop, math.degrees(free.angle), float(pressure.max()), hole)
