@@ -7,7 +7,7 @@ mm of thickness, steel, a bushing of bronze; the name of an eye has its width ov
 CalculiX has 96 quadrilaterals with 8 nodes around the bore, and a penalty of 300 to 1000 E / d; its
 pressures are in balance with the force within 0.3 %. Hoop stress has a cusp where contact ends,
 between nodes, which `figures_of_ccx` reads and which is the least accurate; elsewhere around the
-bore hoop stress plus pressure agrees within 0.3 % of the largest.
+bore hoop stress plus pressure was the same within 0.3 % of the largest. A press fit is not stored.
 """
 
 from __future__ import annotations

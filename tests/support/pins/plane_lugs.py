@@ -48,6 +48,11 @@ CASES: list[Case] = [
     ("tapered 2.5 to 4", 0.0, 0.0),
     ("eccentric 2.5", 0.0, 0.0),
     ("bushed 2.5", 0.0, 0.0),
+    ("round 2.5", 0.0, TIGHT),
+    ("round 2.5", 90.0, TIGHT),
+    ("round 1.8", 45.0, TIGHT),
+    ("tapered 2.5 to 4", 45.0, TIGHT),
+    ("tapered 2.5 to 4", 90.0, 0.0),
 ]
 
 
