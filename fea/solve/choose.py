@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -22,7 +21,6 @@ from fea.beam.model import BeamField
 from fea.core.linear_solver import SolveError
 from fea.core.model import Model
 from fea.core.peak import Reason
-from fea.core.pin_loads import PinLoads
 from fea.core.requirement import DECIDED_TEXT, Requirement, decided
 from fea.core.zone import Zone
 from fea.harmonic.evaluate import Harmonic
@@ -35,7 +33,6 @@ from geometry import ArgumentError, CutPin, Pin
 
 if TYPE_CHECKING:  # the steps import the supports and models that they use
     from fea.cut.evaluate import LocalSolids
-    from fea.support.contact.solve_joint import Resolution
 
 CONTACT_REASON = Reason("contact, harmonic: the pin is held by its lugs", ("contact",))
 CUT_CONTACT_REASON = Reason(
@@ -78,14 +75,11 @@ class Rung:
 
     solve: returns the cases that this step answers well enough.
     trial: whether a failure goes on to the next step.
-    in_vain: whether the step before, by its held pin, shows that this one answers none of the cases
-    that are left.
     """
 
     support: Support
     solve: Callable[[Attempt], dict[str, Solution]]
     trial: bool = False
-    in_vain: Callable[[HeldPin, tuple[PinLoads, ...]], bool] | None = None
 
 
 class Refused(SolveError):
@@ -139,18 +133,7 @@ def _in_lugs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
         resolutions = (ROUGH, *RESOLUTIONS)
     for cells, finer in pairwise((*resolutions, None)):
         assert cells is not None
-        in_vain = partial(_in_vain, cells, finer) if requirement.goal == "value" else None
-        yield Rung(ContactSupport(cells, finer), _contact, in_vain=in_vain)
-
-
-def _in_vain(
-    cells: Resolution, finer: Resolution | None, held: HeldPin, cases: tuple[PinLoads, ...]
-) -> bool:
-    """Return whether cells of contact are surely too large for the cases."""
-    from fea.support.contact.held import HeldContact
-
-    names = [case.case for case in cases]
-    return isinstance(held, HeldContact) and held.rules_out(cells, finer, names)
+        yield Rung(ContactSupport(cells, finer), _contact)
 
 
 def _beam(at: Attempt) -> dict[str, Solution]:

@@ -35,8 +35,6 @@ def solve(
         left = tuple(case for case in problem.cases if case.case not in done)
         if not left:
             break
-        if held is not None and rung.in_vain is not None and rung.in_vain(held, left):
-            continue
         here = replace(problem, cases=left)
         try:
             held = rung.support.hold(here, requirement, held, progress)

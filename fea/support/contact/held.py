@@ -11,7 +11,7 @@ and are enough if they decide it with their error, also for what lies beneath th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
@@ -107,9 +107,8 @@ class ContactSupport:
         finest = self.finer is None or _count(model, self.finer) > MAX_CELLS
         starts = {case: contact.press(links) for case, links in contact.instants.items()}
         held = HeldContact(
-            problem, contact, starts, near, compared, finest, refused,
-            alone=self.alone is not None, tolerance=requirement.tolerance,
-        )  # fmt: skip
+            problem, contact, starts, near, compared, finest, refused, alone=self.alone is not None
+        )
         if self.finer is None or self.cells is not ROUGH:  # rough ones are a trial only
             failed = {case: _failed(problem, case, why) for case, why in contact.failed.items()}
             held = replace(held, failures=held.failures | failed)
@@ -168,7 +167,6 @@ class HeldContact:
     candidates: by case, the instants that may govern.
     compared: by case, contact on these cells against that on larger ones.
     alone: whether nothing is compared with other cells or meshes.
-    tolerance: of a row.
     """
 
     problem: PinProblem
@@ -181,7 +179,6 @@ class HeldContact:
     notes: Mapping[str, Reason] = field(default_factory=dict)
     clamps: tuple[str, ...] = ()
     alone: bool = False
-    tolerance: float = 0.0
 
     @property
     def model(self) -> ContactModel:
@@ -219,18 +216,6 @@ class HeldContact:
         if known is None:
             return False
         return self.finest or known.fine(self.problem.material, requirement.of_case(case))
-
-    def rules_out(self, cells: Resolution, finer: Resolution | None, cases: Sequence[str]) -> bool:
-        """Return whether other cells would surely not be fine enough for any of the cases, by the
-        error of these, and finer ones than those are possible.
-        """
-        if self.finest or finer is None or _count(self.model, finer) > MAX_CELLS:
-            return False
-        ratio = self.model.cells.rings / cells.rings
-        return all(
-            case in self.compared and self.compared[case].rules_out(ratio, self.tolerance)
-            for case in cases
-        )
 
     def of_meshes(self, requirement: Requirement) -> Requirement:
         """The requirement on the meshes, with a smaller tolerance since cells use a part of it.

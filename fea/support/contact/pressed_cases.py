@@ -40,9 +40,6 @@ from fea.support.contact.variations import (
 # Of the largest stress on the first mesh: an instant above it may govern on finer meshes. Chosen by
 # judgement, with room for the error of the first mesh.
 CANDIDATE_FRACTION = 0.8
-# Larger than the orders of the error in the length of cells that were seen, up to 2.3 on pins E and
-# J of the landing gear with the diameters for the factor 10. Chosen by judgement.
-MAX_CELL_ORDER = 3.0
 # Of the largest load: how far an instant that is left out at first may be off the chord between its
 # neighbours. Chosen by judgement; instants are added later where the maximum may lie between two.
 CHORD_TOLERANCE = 0.01
@@ -79,31 +76,21 @@ class Compared:
         """The comparison at the place with the larger stress, for which the joint was varied."""
         return max(self.surface, self.section, key=lambda x: (bool(x.over), x.stress.row))
 
-    @property
-    def _stress(self) -> dict[str, float]:
-        return {"surface": self.surface.stress.surface, "section": self.section.stress.section}
-
-    @property
-    def error(self) -> float:
-        """The relative error of the row from the cells.
-
-        It counts on the larger of surface and section: the place that governs now, or the other
-        one if the error of its cells lifts it above.
-        """
-        stress = self._stress
-        cells = {"surface": self.surface.cells.surface, "section": self.section.cells.section}
-        largest = max(stress.values()) or 1.0
-        row_error = cells[max(stress, key=lambda name: stress[name])]
-        worst_growth = max(stress[name] * (1.0 + cells[name]) for name in stress) / largest - 1.0
-        return max(row_error, worst_growth)
-
     def fine(self, material: Material, requirement: Requirement) -> bool:
         """Return whether finer cells would not help.
 
         They would not if the error of the cells is a small part of the tolerance, or if the
         required factor is decided whatever the cells, also for the stress beneath the contact.
         """
-        largest, error = max(self._stress.values()) or 1.0, self.error
+        # The error counts on the row, the larger of surface and section: the place that governs
+        # now, or the other one if the error of its cells lifts it above.
+        both = (self.surface, "surface"), (self.section, "section")
+        stress = {name: float(getattr(x.stress, name)) for x, name in both}
+        cells = {name: float(getattr(x.cells, name)) for x, name in both}
+        largest = max(stress.values()) or 1.0
+        row_error = cells[max(stress, key=lambda name: stress[name])]
+        worst_growth = max(stress[name] * (1.0 + cells[name]) for name in stress) / largest - 1.0
+        error = max(row_error, worst_growth)
         if error <= CELL_ERROR_SHARE * requirement.tolerance:
             return True
         # Otherwise a decision is enough: for the row, and for the stress beneath contact, unless
@@ -114,13 +101,6 @@ class Compared:
             decided(requirement, material, below / beneath_factor, below * beneath_factor)
             or decided(requirement, material, low, math.inf)
         )
-
-    def rules_out(self, ratio: float, tolerance: float) -> bool:
-        """Return whether cells that are `ratio` times as large would surely not be fine enough for
-        the tolerance of a row.
-        """
-        least: float = ratio**MAX_CELL_ORDER * self.error
-        return least > CELL_ERROR_SHARE * tolerance
 
     def near(
         self,

@@ -118,22 +118,6 @@ def test_when_cells_are_fine_enough(
     assert found.fine(STEEL, DECIDE) is decide
 
 
-@each(
-    ("cells", "skipped"),
-    [
-        (0.011, False),  # fine enough
-        (0.03, False),  # by the third power of 8 rings over 12, 0.9 %: these may be
-        (0.05, True),  # 1.5 %, of which the tolerance leaves 1.2 %
-    ],
-)
-def test_cells_that_are_surely_too_large_are_skipped(cells: float, skipped: bool) -> None:
-    """From 8 rings to 16, for a tolerance of 2 %."""
-    known = compared(150.0, 100.0, 90.0, AtPlaces(cells, 0.001, 0.2))
-    assert known.rules_out(8 / 12, 0.02) is skipped
-    sections = compared(100.0, 150.0, 90.0, AtPlaces(0.001, cells, 0.2))
-    assert sections.rules_out(8 / 12, 0.02) is skipped
-
-
 def test_two_meshes_may_be_too_few() -> None:
     last = mesh(100.0, 90.0)
     peak = judge(evidence_of(seen(last, last), (CLAMP,)), 0.02)
