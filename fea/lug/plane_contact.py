@@ -39,9 +39,8 @@ class PlaneContact:
 
     fields: of the lug. modulus: of the lug, Pa. bearing: the material on which the pin bears.
     inner, radius: of the pin's bore, 0 if solid, and of the surface, m.
-    clearance: of the diameters, m.
-    grown: by how much a bushing's misfit moves its bore outwards, m, at the sectors' middles; it
-    is part of the clearance that the study states, except where it is not even.
+    clearance: of the diameters, m, of a bushing's bore when it is in the lug: what a misfit changes
+    of the shape of that bore is left out.
     """
 
     fields: PlaneFields
