@@ -31,6 +31,9 @@ from pinbase.arrays import Floats
 from pinbase.memo import Memo
 
 COARSER = 2  # times as long: elements and sectors with which the result is compared
+# Of the largest force on a lug: less cannot govern, as stress differs by 4 between directions, and
+# in a clearance touches less than a sector. A press fit alone is with every force alike.
+MIN_FORCE_SHARE = 0.05
 MIN_RINGS_OF_SHARP_BORE = 2  # of which the outermost are not read beneath the pin
 USUAL_AROUND = 96  # elements and sectors around the bore
 
@@ -212,7 +215,11 @@ def _beyond(times: Floats, values: Floats) -> float:
 def _walls(plane: LugInPlane, eye: EyeStress, load: LugLoad) -> list[BoreStress]:
     """The largest stress at each wall, without the parts of its error but that of sampling."""
     lug, bushing = plane.lug, plane.lug.bushing
-    pressure = plane.contact.pressures(_along_shank(load))
+    forces = _along_shank(load)
+    size = np.hypot(*forces.T)
+    strong = size > MIN_FORCE_SHARE * size.max()
+    pressure = np.zeros((len(forces), plane.contact.sectors))
+    pressure[strong] = plane.contact.pressures(forces[strong])
     amounts = plane.amounts(pressure)
     wall, material = ("bushing", bushing.material) if bushing else ("bore", lug.material)
     free, beneath = _bore(plane, eye, load, pressure, amounts)

@@ -285,8 +285,12 @@ def _in_lugs(
         joint, case = s.joint, s.peak.case
         if joint is not None and isinstance(s.held, HeldContact) and not s.held.alone:
             tell(f"pin {task.pin.name}, stress of its lugs")
-            stress = lug_stresses(s.held.contact, case, task.shanks.get(case, {}), memo)
-            joint = replace(joint, lugs=stress)
+            try:
+                stress = lug_stresses(s.held.contact, case, task.shanks.get(case, {}), memo)
+                joint = replace(joint, lugs=stress)
+            except ArithmeticError as error:  # the pin's stress stands without that of its lugs
+                remark = f"no stress of the lugs: {error}"
+                joint = replace(joint, remark="; ".join(filter(None, (joint.remark, remark))))
         out.append(joint)
     return tuple(out)
 

@@ -123,6 +123,16 @@ def test_the_worst_instant_is_found_and_between_instants_too() -> None:
     assert stress.von_mises + stress.sampling == pytest.approx(top, rel=1e-9)
 
 
+def test_instants_of_next_to_no_force_do_no_harm() -> None:
+    """In a large clearance they touch less than a sector."""
+    of = lug(clearance=1e-3)
+    force = np.array([[-1e-6, 0.0], [-5e4, 0.0], [1e-3, 1e-3]])
+    alone = largest(of, load(force[1]))["free"]
+    every = largest(of, load(force))["free"]
+    assert every.instant == 1
+    assert every.von_mises == pytest.approx(alone.von_mises, rel=1e-12)
+
+
 def test_an_eccentric_bore_is_stressed_more_at_the_thin_side() -> None:
     """Of a head whose end is nearer to the bore."""
     middle, near = (

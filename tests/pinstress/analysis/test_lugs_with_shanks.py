@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import pinstress
+from fea.core.linear_solver import SolveError
 from fea.support.records import LugStress
 from pinstress.analysis.plan import all_loads
 from pinstress.study.model.shanks import shank_angles
@@ -105,6 +106,20 @@ def test_prescribed_loads_leave_the_stress_of_lugs_open(tmp_path: Path) -> None:
     lug = [m for m in row.margins if m.method.startswith("lug, von Mises")]
     assert [m.needs for m in lug] == ["the contact of the pin with its lugs, solved in full"]
     assert all(m.margin is None for m in lug)
+
+
+def test_a_failure_at_a_lug_leaves_the_pin_its_stress(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*_: object) -> None:
+        raise SolveError("contact does not settle", "contact-unsettled")
+
+    monkeypatch.setattr("fea.lug.in_joint.lug_stresses", fails)
+    (row,) = pinstress.run(study(tmp_path)).pins
+    assert row.outcome == "safe"
+    assert row.joint is not None
+    assert "no stress of the lugs: contact does not settle" in row.joint.remark
+    assert any("solved in full" in m.needs for m in row.margins)
 
 
 def test_turning_forces_and_shanks_together_changes_nothing(
