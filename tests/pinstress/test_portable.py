@@ -29,6 +29,7 @@ ALL = """
 import pkgutil, importlib
 CLUSTER = (
     "pinstress.explore.reliability.on_cluster",
+    "pinstress.explore.size.on_cluster",
     "pinstress.explore.sweep.cluster",
     "pinstress.explore.sweep.scheduler",
 )

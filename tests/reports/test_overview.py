@@ -175,6 +175,6 @@ def test_the_main_job_in_twenty_lines(shipped: Callable[[str], Path]) -> None:
         "pinstress size ",
         " --pins E,J,A,D,G",
         "Measure first: force over time at landing",
-        "lacks ultimate_strength, shear_strength, bearing_strength",
+        "lacks ultimate, shear, bearing strength",
     ):
         assert words in text

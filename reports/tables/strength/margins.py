@@ -19,6 +19,7 @@ MARGIN_COLUMN_ORDER = (
     "pin", "case", "method", "margin", "utilisation", "level", "at", "time", "demand", "allowable",
     "clause",
 )  # fmt: skip
+STRENGTH_SUFFIX = "_strength"  # of keys of materials
 MARGINS_NOTE = (
     "Margin of safety = allowable / (factor × demand) − 1, of the check that governs each pin in "
     "each case beside the von Mises stress against yield, which the safety factors above judge. "
@@ -173,12 +174,21 @@ def not_made_briefly(results: Results) -> str:
                 materials.setdefault(owner.strip('"'), {})[name] = None
             else:
                 lugs.setdefault(name, {}).update({(m.pin, owner): None for m in margins})
-    clauses = [f"{owner} lacks {', '.join(lacking)}" for owner, lacking in materials.items()]
+    clauses = [f"{owner} lacks {_joined(lacking)}" for owner, lacking in materials.items()]
     for name, owners in lugs.items():
         (_, first), *more = owners
         who = f"{len(owners)} lugs lack" if more else f"lug {first} lacks"
         clauses.append(f"{who} {name}")
     return "; ".join([*clauses, *([f"missing {', '.join(others)}"] if others else [])])
+
+
+def _joined(keys: Collection[str]) -> str:
+    """Return keys one after the other, several strengths with that word once."""
+    strengths = [key.removesuffix(STRENGTH_SUFFIX) for key in keys if key.endswith(STRENGTH_SUFFIX)]
+    if len(strengths) < 2:
+        return ", ".join(keys)
+    others = [key for key in keys if not key.endswith(STRENGTH_SUFFIX)]
+    return ", ".join([*others, *strengths]) + " strength"
 
 
 def arms_table(results: Results) -> Table[ArmsRow]:
