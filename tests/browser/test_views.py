@@ -27,6 +27,8 @@ from tests.support.results.browser_page import (
 pytestmark = pytest.mark.browser
 
 # Largest stress of all vertices that are not excluded, at some instants of every case of a view.
+# A view sums harmonics of all points at once, a run those of the largest by themselves.
+ROUND_OFF = 1e-12
 VERTICES = """
 const found = unpacked(JSON.parse(arguments[0].querySelector("script").textContent));
 return found.then((data) => data.cases.map(caseOf).map((c) => {
@@ -100,7 +102,8 @@ def test_the_maximum_told_is_the_computed_one(page: Any, gear_run: Path) -> None
     found = result(gear_run, "B", "retract")
     surface = found["surface"]
     assert found["governs"] == "section"
-    assert maximum(root) == surface["max_von_mises"] < found["max_von_mises"]
+    assert maximum(root) == pytest.approx(surface["max_von_mises"], rel=ROUND_OFF)
+    assert surface["max_von_mises"] < found["max_von_mises"]
     told = part(root, "told").text
     error = engineering(surface["error_estimate"], 2)
     assert f"{engineering(surface['max_von_mises'])} psi (± {error})" in told
@@ -117,7 +120,7 @@ def test_the_maximum_told_is_the_computed_one(page: Any, gear_run: Path) -> None
     assert "govern" not in part(root, "told").text
     wait(page, lambda: pixels(page, root) != before)
     part(root, "governs").click()
-    assert maximum(root) == surface["max_von_mises"]
+    assert maximum(root) == pytest.approx(surface["max_von_mises"], rel=ROUND_OFF)
 
 
 def test_cases_colours_and_deformation_can_be_chosen(page: Any, gear_run: Path) -> None:
@@ -125,7 +128,7 @@ def test_cases_colours_and_deformation_can_be_chosen(page: Any, gear_run: Path) 
 
     root = view(page, "J")
     found = result(gear_run, "J", "landing")
-    assert maximum(root) == found["max_von_mises"]
+    assert maximum(root) == pytest.approx(found["max_von_mises"], rel=ROUND_OFF)
     factor = " to ".join(engineering(end, 3) for end in found["safety_factor_interval"])
     assert f"{factor} (singular, beyond yield)" in part(root, "told").text
     assert not part(root, "when").is_displayed()
@@ -167,7 +170,7 @@ def test_it_opens_on_the_case_that_governs_with_the_probe_at_its_maximum(
     )
     assert Select(part(root, "case")).first_selected_option.text == found["case"]
     found = found["surface"]
-    assert maximum(root) == found["max_von_mises"]
+    assert maximum(root) == pytest.approx(found["max_von_mises"], rel=ROUND_OFF)
     at = [float(part(root, "z").get_property("value"))]
     assert at[0] == pytest.approx(found["location"][2], rel=1e-4, abs=1e-4)
     if not part(root, "beneath").is_displayed():
