@@ -19,6 +19,7 @@ Engineering, June 1953; M. C. Y. Niu, Airframe Stress Analysis and Sizing, 9.8.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -97,25 +98,36 @@ _of_lugs = partial(
 @_of_lugs("Melcon-Hoblit shear-bearing", NIU)
 def shear_bearing(text: CheckText, s: Situation) -> list[Margin]:
     """The axial force on every eye whose k_br is given against shear-out and bearing."""
-    return [
-        eye_margin(text, s, x, x.axial, partial(shear_bearing_load, k_br=k, ultimate=fu), "width")
-        if (fu := x.lug.ultimate_strength)
-        else text.lacks(s, *strengths_of(x.lug).missing)
-        for x in _pulled(s)
-        if (k := s.factors_of(x.connection).k_br) is not None
-    ]
+    return _along(text, s, "k_br", shear_bearing_load)
 
 
 @_of_lugs("Melcon-Hoblit tension", NIU)
 def tension(text: CheckText, s: Situation) -> list[Margin]:
     """The axial force on every eye whose k_t is given against the net section."""
-    return [
-        eye_margin(text, s, x, x.axial, partial(tension_load, k_t=k, ultimate=fu), "width")
-        if (fu := x.lug.ultimate_strength)
-        else text.lacks(s, *strengths_of(x.lug).missing)
-        for x in _pulled(s)
-        if (k := s.factors_of(x.connection).k_t) is not None
-    ]
+    return _along(text, s, "k_t", tension_load)
+
+
+def _along(
+    text: CheckText, s: Situation, factor: str, load: Callable[[PlateEye, float, float], Work]
+) -> list[Margin]:
+    """The axial force on every eye of which an efficiency factor, by name, is given."""
+    margins = []
+    for x in _pulled(s):
+        k, ultimate = getattr(s.factors_of(x.connection), factor), x.lug.ultimate_strength
+        if k is None:
+            continue
+        if not ultimate:
+            margins.append(text.lacks(s, *strengths_of(x.lug).missing))
+            continue
+        capacity = partial(_with_factor, load, k, ultimate)
+        margins.append(eye_margin(text, s, x, x.axial, capacity, "width"))
+    return margins
+
+
+def _with_factor(
+    load: Callable[[PlateEye, float, float], Work], k: float, ultimate: float, eye: PlateEye
+) -> Work:
+    return load(eye, k, ultimate)
 
 
 @check("Melcon-Hoblit yield", NIU, kind="clause", takes="loads", dimension="force", omits=OMITS)
