@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 
@@ -48,15 +48,9 @@ def lug_stresses(
 
     Raises: ArgumentError for an impossible outline; MeshError, SolveError.
     """
-    return tuple(_of_lugs(contact, case, angles, memo))
-
-
-def _of_lugs(
-    contact: PressedCases, case: str, angles: Mapping[str, ShankAngle], memo: Memo
-) -> Iterator[LugStress]:
     model, links = contact.model, contact.instants[case]
     waves = model.waves(contact.states(links))
-    count = waves.shape[1]
+    count, out = waves.shape[1], list[LugStress]()
     for rows, lug, ends in model.by_lug():
         if lug.shank is None:
             continue
@@ -70,13 +64,15 @@ def _of_lugs(
         angle = _along(force, count) if given is None else given.at(links.times, count)
         load = LugLoad(force, pressure, length, angle, links.times)
         inner = max(max(s.bores) for s in model.whole.segments if s.connection == lug.connection)
-
         of = lug, model.material, inner / 2.0, band.radius
         eye = _eye(contact, lug, ends, memo)
         assumed = ALONG_FORCE if given is None else given.assumed
         middles = band.z0 + 0.5 * (ends[1:] + ends[:-1])
-        for stress in bore_stresses(partial(LugInPlane, *of, memo=memo), eye, load):
-            yield _record(lug, stress, float(middles[stress.ring]), assumed)
+        out += [
+            _record(lug, stress, float(middles[stress.ring]), assumed)
+            for stress in bore_stresses(partial(LugInPlane, *of, memo=memo), eye, load)
+        ]
+    return tuple(out)
 
 
 def _along(force: Floats, count: int) -> Floats:

@@ -26,7 +26,6 @@ from fea.lug.plane_contact import PlaneContact
 from fea.lug.plane_fields import Elasticity, PlaneFields, plane_fields, waves
 from fea.lug.through_thickness import EyeStress
 from fea.support.lugs.lug import Lug
-from geometry.shape.lug_outline import LugOutline
 from pinbase.arrays import Floats
 from pinbase.memo import Memo
 
@@ -107,9 +106,8 @@ class LugInPlane:
         around: int = USUAL_AROUND,
         memo: Memo | None = None,
     ) -> None:
-        self.lug, self.radius, self.outline = lug, radius, lug.outline(radius)
-        elastic = _elasticity(lug)
-        scaled = _scaled(self.outline)
+        self.lug, outline, elastic = lug, lug.outline(radius), _elasticity(lug)
+        scaled = outline.in_radii()
         self.fields: PlaneFields = (memo or Memo()).get(
             ("plane lug", scaled, elastic, around), lambda: plane_fields(scaled, elastic, around)
         )
@@ -119,20 +117,12 @@ class LugInPlane:
         )
         bushing = lug.bushing
         interference = 0.0 if bushing is None else bushing.interference
-        self.misfit = interference / self.outline.hole * E
+        self.misfit = interference / outline.hole * E
 
     def amounts(self, pressures: Floats) -> Floats:
         """The amounts (T, K) of the unit loads under pressures (T, M), Pa, and the misfit."""
         misfit = np.full((len(pressures), 1), self.misfit)
         return np.hstack([pressures @ self.contact.waves, misfit])
-
-
-def _scaled(outline: LugOutline) -> LugOutline:
-    """The outline of a bore of radius 1, alike for similar lugs."""
-    one = outline.bore / 2.0
-    lengths = "bore", "head", "width", "length", "end", "interface"
-    sizes = {name: getattr(outline, name) for name in lengths}
-    return replace(outline, **{name: x and round(x / one, 9) for name, x in sizes.items()})
 
 
 def _elasticity(lug: Lug) -> Elasticity:

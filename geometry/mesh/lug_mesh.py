@@ -38,25 +38,25 @@ def lug_mesh(outline: LugOutline, around: int) -> LugMesh:
 
     Raises: MeshError.
     """
-    one = outline.bore / 2.0
+    outline = outline.in_radii()
     with gmsh_model("lug") as gmsh:
-        _draw(gmsh, outline, one)
-        _size(gmsh, outline, one, around)
+        _draw(gmsh, outline)
+        _size(gmsh, outline, around)
         gmsh.model.mesh.generate(2)
         gmsh.model.mesh.setOrder(2)
-        return _collect(gmsh, outline, one)
+        return _collect(gmsh, outline)
 
 
-def _draw(gmsh: Any, outline: LugOutline, one: float) -> None:
+def _draw(gmsh: Any, outline: LugOutline) -> None:
     geo = gmsh.model.geo
     middle = geo.addPoint(0.0, 0.0, 0.0)
     bore = _circle(geo, middle, 0.0, 1.0)
     holes = [geo.addCurveLoop(bore)]
     if outline.interface is not None:
-        wall = geo.addCurveLoop(_circle(geo, middle, 0.0, outline.interface / 2.0 / one))
+        wall = geo.addCurveLoop(_circle(geo, middle, 0.0, outline.interface / 2.0))
         geo.addPlaneSurface([wall, *holes])
         holes = [wall]
-    geo.addPlaneSurface([geo.addCurveLoop(_outside(geo, outline, one)), *holes])
+    geo.addPlaneSurface([geo.addCurveLoop(_outside(geo, outline)), *holes])
     geo.synchronize()
 
 
@@ -67,46 +67,46 @@ def _circle(geo: Any, middle: int, x: float, radius: float) -> list[int]:
     return [geo.addCircleArc(at[k], middle, at[(k + 1) % 4]) for k in range(4)]
 
 
-def _outside(geo: Any, outline: LugOutline, one: float) -> list[int]:
+def _outside(geo: Any, outline: LugOutline) -> list[int]:
     """The outer curves, counter-clockwise from the lower end of the shank on."""
-    half, length = outline.width / 2.0 / one, outline.length / one
+    half, length = outline.width / 2.0, outline.length
     if outline.shape == "square":
-        end = -outline.end / one
+        end = -outline.end
         corners = [(length, -half), (length, half), (end, half), (end, -half)]
         at = [geo.addPoint(x, y, 0.0) for x, y in corners]
         return [geo.addLine(at[k], at[(k + 1) % 4]) for k in range(4)]
-    x, R = outline.centre / one, outline.head / 2.0 / one
+    x, R = outline.centre, outline.head / 2.0
     middle = geo.addPoint(x, 0.0, 0.0)
     if outline.shape == "ring":
         return _circle(geo, middle, x, R)
     (x1, y1), (x2, y2) = outline.joints
     corners = [(x2, -y2), (x2, y2), (x1, y1)]
-    lower, upper, first = (geo.addPoint(u / one, v / one, 0.0) for u, v in corners)
-    far, last = geo.addPoint(x - R, 0.0, 0.0), geo.addPoint(x1 / one, -y1 / one, 0.0)
+    lower, upper, first = (geo.addPoint(u, v, 0.0) for u, v in corners)
+    far, last = geo.addPoint(x - R, 0.0, 0.0), geo.addPoint(x1, -y1, 0.0)
     arcs = [geo.addCircleArc(first, middle, far), geo.addCircleArc(far, middle, last)]
     return [geo.addLine(lower, upper), geo.addLine(upper, first), *arcs, geo.addLine(last, lower)]
 
 
-def _size(gmsh: Any, outline: LugOutline, one: float, around: int) -> None:
+def _size(gmsh: Any, outline: LugOutline, around: int) -> None:
     """Set equal elements around the bore and an interface, growing away from these."""
-    holes = [1.0] if outline.interface is None else [1.0, outline.interface / 2.0 / one]
+    holes = [1.0] if outline.interface is None else [1.0, outline.interface / 2.0]
     for _, curve in gmsh.model.getEntities(1)[: 4 * len(holes)]:  # quarters, drawn first
         gmsh.model.mesh.setTransfiniteCurve(curve, around // 4 + 1)
     away = ",".join(f"Fabs(Sqrt(x*x+y*y)-{r!r})" for r in holes)
     nearest = f"Min({away})" if len(holes) > 1 else away
     size = f"{2.0 * math.pi / around!r}+{GROWTH!r}*{nearest}"
-    set_size(gmsh, [formula_size(gmsh, f"Min({size},{_largest(outline, one)!r})")])
+    set_size(gmsh, [formula_size(gmsh, f"Min({size},{_largest(outline)!r})")])
 
 
-def _largest(outline: LugOutline, one: float) -> float:
+def _largest(outline: LugOutline) -> float:
     """The largest size of an element, so that several fit in the thinnest wall of the lug."""
     outside = outline.head / 2.0 - abs(outline.centre)
     if outline.shape == "square":
         outside = min(outline.end, outline.width / 2.0)
-    return (outside - outline.hole / 2.0) / one / MIN_WALL_ELEMENTS
+    return (outside - outline.hole / 2.0) / MIN_WALL_ELEMENTS
 
 
-def _collect(gmsh: Any, outline: LugOutline, one: float) -> LugMesh:
+def _collect(gmsh: Any, outline: LugOutline) -> LugMesh:
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     row = np.full(int(tags.max()) + 1, -1)
     row[tags.astype(np.int64)] = np.arange(len(tags))

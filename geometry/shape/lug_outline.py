@@ -6,13 +6,14 @@ The bore's centre is the origin and the shank leaves along x.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from pinbase.errors import ArgumentError
 
 HeadShape = Literal["round", "tapered", "square"]
 OutlineShape = Literal["round", "tapered", "square", "ring"]
+DIGITS = 9  # of lengths in radii: similar lugs that differ by round-off are one
 MIN_WALL = 1e-3  # of a head, of its bore's diameter
 
 
@@ -75,6 +76,13 @@ class LugOutline:
                 f"{least / self.length:.4g} or more",
                 "shank-too-short",
             )
+
+    def in_radii(self) -> LugOutline:
+        """The outline with its bore's radius as the unit of length, alike for similar lugs."""
+        one = self.bore / 2.0
+        lengths = "bore", "head", "width", "length", "end", "interface"
+        sizes = {name: getattr(self, name) for name in lengths}
+        return replace(self, **{name: x and round(x / one, DIGITS) for name, x in sizes.items()})
 
     @property
     def hole(self) -> float:

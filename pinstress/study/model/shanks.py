@@ -16,8 +16,8 @@ def shank_angles(study: Study, pin: str, case: CaseLoads) -> dict[str, ShankAngl
     """Return the angles of a pin's shanks in a case, by connection; those that neither the study
     nor the mechanism gives are left out.
 
-    Raises: InputError for a joint that does not exist, and for a body with more than two joints
-    whose shank has no direction.
+    Raises: InputError for a joint that does not exist, and where the other joints of a body lie
+    about the lug.
     """
     out = {}
     for name, lug in study.table.pin[pin].lug.items():
