@@ -19,7 +19,7 @@ import numpy as np
 
 from assess.plastic.lug.bounds import lower_program, upper_program
 from assess.plastic.lug.cone_program import ConeSolution, solve_cone_program
-from assess.plastic.lug.mesh import PlaneMesh, SizeField, lug_mesh
+from assess.plastic.lug.mesh import PlaneMesh, SizeField, half_lug_mesh
 from geometry import ArgumentError
 from geometry.shape.lug_outline import LugOutline
 from pinbase.arrays import Floats
@@ -87,7 +87,7 @@ def lug_limit_load(
     # Two halves; lengths of the programs are radii, stresses the shear strength.
     unit = 2.0 * yield_strength / math.sqrt(3.0) * lug.hole / 2.0
     meshes: list[LugMeshBounds] = []
-    mesh = lug_mesh(lug, FIRST_SIZE)
+    mesh = half_lug_mesh(lug, FIRST_SIZE)
     polygon = 0.0
     for count in (*TRIANGLE_COUNTS, 0):
         below = solve_cone_program(lower_program(mesh, PULL))
@@ -97,7 +97,7 @@ def lug_limit_load(
         polygon = _polygon_share(lug, mesh)
         if not count or _width(meshes) <= max_bracket:
             break
-        mesh = lug_mesh(lug, FIRST_SIZE, SizeField(mesh, _sizes(mesh, (below, above), count)))
+        mesh = half_lug_mesh(lug, FIRST_SIZE, SizeField(mesh, _sizes(mesh, (below, above), count)))
     lower, upper = _best(meshes)
     return LugLimitLoad(lower * (1.0 - polygon), upper * (1.0 + polygon), polygon, tuple(meshes))
 

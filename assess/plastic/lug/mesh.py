@@ -46,7 +46,7 @@ class PlaneMesh:
         return turned / double[:, None, None], double / 2.0
 
 
-def lug_mesh(lug: LugOutline, size: float, refinement: SizeField | None = None) -> PlaneMesh:
+def half_lug_mesh(lug: LugOutline, size: float, refinement: SizeField | None = None) -> PlaneMesh:
     """The half of a lug above its axis, in radii of its hole, the direction of the pull along x.
 
     lug: its x axis is turned round: the shank lies along -x. A bushing counts as part of the pin.

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.sparse.linalg import splu
 
 from assess.plastic.flow import FlowRule
-from assess.plastic.lug.mesh import lug_mesh
+from assess.plastic.lug.mesh import half_lug_mesh
 from assess.plastic.lug.pulled_body import PulledBody, PulledState
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
@@ -115,7 +115,7 @@ def pull(
 
     Raises: ArgumentError; MeshError; SolveError where equilibrium is lost before the load falls.
     """
-    body = PulledBody(lug_mesh(lug, size), FlowRule(material), finite)
+    body = PulledBody(half_lug_mesh(lug, size), FlowRule(material), finite)
     states = [body.at_rest()]
     step, rate = FIRST_STEP, np.zeros_like(body.start)
     while states[-1].pin < max_travel and not _fallen(states):
