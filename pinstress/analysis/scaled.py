@@ -19,7 +19,7 @@ from fea.core.peak import ErrorParts, Maximum
 from fea.core.places import BandPressure, ContactPlace, Place, Places
 from fea.core.requirement import Requirement
 from fea.support.contact.contact_place import reached
-from fea.support.lugs.lug import Lug, LugRange
+from fea.support.lugs.lug import LugRange
 from fea.support.records import JointRange, JointResult
 from geometry import Pin
 from pinbase.arrays import Floats
@@ -65,17 +65,13 @@ def _shape(task: Task) -> object:
 
 def elastic_task(task: Task) -> Task:
     """Return a task whose coarse solution serves for any strengths and names of its materials."""
-    return replace(task, material=_elastic(task.material), lugs=tuple(map(_elastic_lug, task.lugs)))
+    lugs = tuple(lug.with_materials(_elastic) for lug in task.lugs)
+    return replace(task, material=_elastic(task.material), lugs=lugs)
 
 
 def _elastic(material: Material) -> Material:
     elastic = material.youngs_modulus, material.poisson_ratio, material.density
     return Material("", *elastic, yield_strength=NOMINAL_STRENGTH)
-
-
-def _elastic_lug(lug: Lug) -> Lug:
-    bushing = lug.bushing and replace(lug.bushing, material=_elastic(lug.bushing.material))
-    return replace(lug, material=_elastic(lug.material), bushing=bushing)
 
 
 def scaled_row(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -133,6 +134,11 @@ class Lug:
     def bearing(self) -> Material:
         """The material on which the pin bears: the bushing's or the lug's."""
         return self.material if self.bushing is None else self.bushing.material
+
+    def with_materials(self, change: Callable[[Material], Material]) -> Lug:
+        """The same lug with its materials, and its bushing's, changed."""
+        bushing = self.bushing and replace(self.bushing, material=change(self.bushing.material))
+        return replace(self, material=change(self.material), bushing=bushing)
 
     def outline(self, radius: float) -> LugOutline:
         """The outline of a lug that has a shank, about a band of some radius, m.

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 from fea.core.material import Material
 from fea.core.requirement import Requirement
-from fea.support.lugs.lug import Lug
 from geometry import ArgumentError
 from pinbase.memo import Memo
 from pinbase.records import digest
@@ -105,20 +104,13 @@ def elastic(material: Material) -> Material:
     )
 
 
-def _elastic_lug(lug: Lug) -> Lug:
-    """Return a lug without strengths, by which only its own share is judged (bare_row drops
-    that).
-    """
-    bushing = lug.bushing and replace(lug.bushing, material=elastic(lug.bushing.material))
-    return replace(lug, material=elastic(lug.material), bushing=bushing)
-
-
 def _alike(study: Study, task: Task, requirement: Requirement) -> str:
     decides = requirement.goal == "decide"
     return digest(
         (
             shape_of(task.pin),
-            task.lugs if decides else tuple(map(_elastic_lug, task.lugs)),
+            # Strengths of lugs judge only their own share, which `bare_row` drops.
+            task.lugs if decides else tuple(lug.with_materials(elastic) for lug in task.lugs),
             study.table.analysis.joints,
             study.table.fatigue is not None,
             task.material if decides else elastic(task.material),
