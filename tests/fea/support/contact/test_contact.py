@@ -229,3 +229,46 @@ def test_forces_out_of_balance_cannot_be_answered() -> None:
     )  # fmt: skip
     with pytest.raises(SolveError):
         contact.solve(np.array([[1.0, 0.0], [-1.0, 0.0]]))
+
+
+def small_and_loose(sectors: int = 48, rings: int = 12) -> ContactProblem:
+    """Two lugs 50 mm thick on a pin of 50 mm of steel, in metres, loose by 60 um: half-planes, with
+    bending and the tilt of the lugs.
+    """
+    ends = np.linspace(0.0, 0.05, rings + 1)
+    z = np.concatenate([0.5 * (ends[1:] + ends[:-1]) + start for start in (0.0, 0.052)])
+    length = np.full(2 * rings, 0.05 / rings)
+    per_force, E = 4.0 * E_STAR**-1 * 0.025 / 200e9, 200e9
+    flexible = np.zeros((17, len(z), len(z)))
+    for n in range(17):
+        flexible[n] = per_force / max(n, 1) * np.eye(len(z))
+    near, far = np.minimum(z[:, None], z), np.maximum(z[:, None], z)
+    bending = near**2 * (3.0 * far - near) / (6.0 * E * math.pi * 0.025**4 / 4.0)
+    flexible[1] += math.pi * 0.025 * length * bending
+    band = np.repeat([0, 1], rings)
+    bands = Bands(z, length, np.full(len(z), 0.025), band, np.full(len(z), 30e-6))
+    tail = np.full(len(z), per_force)
+    return ContactProblem(bands, flexible, tail, [2e6, 2e6], sectors)
+
+
+@pytest.mark.parametrize("load", [1e6, 1e4, 300.0, 10.0, 1.0])
+@pytest.mark.parametrize("across", [0.0, 0.02, 0.3])
+def test_light_loads_in_loose_lugs_touch_few_cells(load: float, across: float) -> None:
+    """A pin in single shear turns until it touches both lugs at their ends, on a few cells of a
+    thousand; conditions and balance hold there, from any start.
+    """
+    contact = small_and_loose()
+    forces = load * np.array([[1.0, across], [-1.0, -across]])
+    found = contact.solve(forces)
+    touching = np.count_nonzero(found.pressure)
+    assert found.pressure.min() >= 0.0
+    assert found.gap.min() >= 0.0
+    assert not (found.pressure * found.gap).any()
+    ring = resultants(contact, found)
+    assert np.add.reduceat(ring, [0, 12]) == pytest.approx(forces, abs=1e-9 * load)
+    assert np.abs((contact.bands.z - 0.051) @ ring).max() < 1e-9 * load
+    loaded = np.ones((24, 48), dtype=bool)
+    again = contact.solve(forces, start=loaded)
+    assert again.pressure == pytest.approx(found.pressure, abs=1e-7 * found.pressure.max())
+    if load <= 300.0:
+        assert touching < 24
