@@ -27,6 +27,7 @@ from assess.codes import DEFAULT_CODES, Code
 from assess.margin import Margin, for_comparison
 from assess.situation import Situation
 from assess.strength import eurocode_pins
+from assess.strength.case_crushing import crushed_case
 from assess.strength.collapse import collapse
 from assess.strength.fatigue_life import fatigue_life
 from assess.strength.hand_checks import (
@@ -44,6 +45,7 @@ from assess.strength.section_forces import with_section_forces
 CHECKS: tuple[Check, ...] = (
     model_yield,
     model_rupture,
+    crushed_case,
     lug_stress,
     collapse,
     lug_collapse,

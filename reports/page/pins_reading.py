@@ -6,7 +6,7 @@ from reports.data.results import Results
 from reports.format.drawing.svg import INK_COLOUR, text
 from reports.format.words import BEYOND_YIELD, VERDICT_MEANINGS
 from reports.page.joint import BANDS_NOTE, FOUNDATION_NOTE, LUGS_NOTE, RANGE_NOTE
-from reports.page.places import CONTACT_EDGES_NOTE, PLACES_NOTE, SECTION_NOTE
+from reports.page.places import CONTACT_EDGES_NOTE, HARDENED_NOTE, PLACES_NOTE, SECTION_NOTE
 from reports.page.stress_panel import LOAD_COLOUR
 from reports.tables.strength.hand_checks import HAND_CHECKS_NOTE
 
@@ -71,6 +71,7 @@ def reading_parts(results: Results) -> dict[str, str]:
         "Places": [
             (PLACES_NOTE if contacts else SECTION_NOTE) * bool(sections or contacts),
             CONTACT_EDGES_NOTE * any(c.edges for c in contacts),
+            HARDENED_NOTE * any(row.places and row.places.hardened for row in rows),
         ],
         "Lugs": [
             BANDS_NOTE * any(joint.bands for joint in joints),

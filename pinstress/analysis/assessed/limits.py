@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from assess.plastic.solve import Rung
     from fea.support.support import Solution
 
+NOT_HARDENED_NOTE = "not for a pin with a hardened surface, which has two yield strengths"
 NOT_ON_FOUNDATIONS_NOTE = 'not for a pin on elastic foundations: use joints = "contact"'
 
 
@@ -87,11 +88,13 @@ def _limit_load(
 ) -> LimitLoad | None:
     peak, seconds = solved.peak, limit_seconds(plan)
     required = collapse_factors(plan.study, task).get(peak.case)
-    strength = task.material.yield_strength
+    strength = peak.yield_strength(task.material.yield_strength)
     if rung and required and strength and not meets_limit(peak, strength / required):
         rung, seconds = "solid", inf  # it decides, and is required
     if rung is None or not limit_asked(peak, task, rung):
         return None
+    if task.material.hardened:
+        return LimitLoad("none", note=NOT_HARDENED_NOTE)
     from assess.plastic.solve import limit_load  # imports a model
 
     tell(f"pin {task.pin.name}, limit load in {peak.case}")

@@ -16,9 +16,9 @@ from fea.support.lugs.lug import Lug
 from geometry import PinLike
 from loads import Reactions
 from pinstress.study.model.cases import CaseLoads
+from pinstress.study.model.hardened import pin_material
 from pinstress.study.model.lugs import AssumedLugs, assumed_lugs, given_lugs, lugs
 from pinstress.study.model.moving_loads import MovingLoads
-from pinstress.study.model.pins import material
 from pinstress.study.reading.errors import Errors
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.shown import listed
@@ -95,7 +95,7 @@ def tasks(study: Study, pins: list[PinLike], loads: dict[str, CaseLoads]) -> lis
 
 def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, CaseLoads]) -> Task:
     constrained = {pin.surface(c) for c in clamps}
-    made_of = material(study, study.table.pin[pin.name].material)
+    made_of = pin_material(study, pin)
     cases: list[PinLoads] = []
     left_out: dict[str, tuple[str, ...]] = {}
     ranges: dict[str, PinLoads] = {}
