@@ -160,9 +160,11 @@ def _margins(
     """instead: the factor by which another check covers the same, where only that is given."""
     margins = []
     for x in loaded_eyes(s):
+        if not x.axial.any():
+            continue
         capacity = capacity_of(s, x)
         if not isinstance(capacity, list):
-            margins += [eye_margin(text, s, x, x.axial, capacity, "width")] * bool(x.axial.any())
+            margins.append(eye_margin(text, s, x, x.axial, capacity, "width"))
         elif getattr(s.factors_of(x.connection), instead) is None:
             margins.append(text.lacks(s, *capacity))
     return margins

@@ -175,3 +175,5 @@ def test_a_transverse_force_is_no_axial_one() -> None:
     assert "force along the shank at lug" in needs["AISC pin-connected member"]
     assert "k_tru" in needs["Melcon-Hoblit transverse"]
     assert "Ekvall transverse" in made
+    bare = margins_of(replace(s, lugs=lugs, sized=lugs, lug_factors={}))
+    assert "AFFDL lug bearing" not in {m.method for m in bare}  # nor does it ask for K
