@@ -18,6 +18,7 @@ class Material:
     youngs_modulus, strengths: Pa; shear_strength and bearing_strength are ultimate ones.
     density: kg/m^3.
     ultimate_strain: total strain at the ultimate strength.
+    failure_strain: equivalent plastic strain at which a lug breaks.
     hardening: equivalent plastic strains and yield stresses (Pa) there, linear between them from
     the yield strength on and constant after the last.
 
@@ -35,6 +36,7 @@ class Material:
     bearing_strength: float | None = None
     hardening: tuple[tuple[float, float], ...] = ()
     ultimate_strain: float | None = None
+    failure_strain: float | None = None
 
     def __post_init__(self) -> None:
         if not 0.0 < self.youngs_modulus < np.inf:

@@ -107,7 +107,8 @@ def _require_gap(lug: Lug, band: Band, in_contact: bool) -> None:
     if in_contact and lug.clearance > MAX_CLEARANCE * d:
         raise ArgumentError(
             f"{what}: its clearance is {lug.clearance / d:.3g} of the pin's diameter; at most "
-            f'{MAX_CLEARANCE:g} is a joint whose contact can be solved (joints = "prescribed": any)',
+            f"{MAX_CLEARANCE:g} is a joint whose contact can be solved; with joints = "
+            '"prescribed", formulas take any',
             "clearance-too-large",
         )
     if lug.edge_radius > band.length / 2.0:

@@ -114,6 +114,10 @@ def test_a_study_at_45_degrees() -> None:
     R = (R_a**1.6 + R_tr**1.6) ** 0.625
     oblique = margins["Melcon-Hoblit oblique"]
     assert oblique.margin == pytest.approx(1.0 / (FITTING * R) - 1.0, rel=1e-3)
+    R_a, R_tr = (part / 1.5 / x for x in (1.1 * 72.0 / 81.0 * 25.537, 0.86 * 72.0 * 0.325))
+    R = (R_a**1.6 + R_tr**1.6) ** 0.625
+    yields = margins["Melcon-Hoblit oblique yield"]
+    assert yields.margin == pytest.approx(1.0 / (FITTING * R) - 1.0, rel=1e-3)
     for method, load in {
         "Melcon-Hoblit shear-bearing": 25.537,
         "Melcon-Hoblit tension": 32.70,

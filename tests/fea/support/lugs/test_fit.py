@@ -100,7 +100,7 @@ def test_what_just_fits() -> None:
 
 
 def test_formulas_alone_take_any_clearance() -> None:
-    """A hook's pin may be loose: then contact with its plate cannot be solved, but checked it is."""
+    """A hook's pin may be loose: contact with its plate cannot be solved, but it is checked."""
     loose = replace(A, clearance=0.005)
     assert fitted(PIN, STEEL, [loose, B], in_contact=False) == (loose, B)
 
