@@ -13,6 +13,7 @@ from benchmarks import ROOT
 
 STUDIES = ROOT / "studies" / "evidence"
 Fault = Literal["", "print", "model"]
+FAULTS: dict[str, Fault] = {"": "", "print": "print", "model": "model"}
 # In the order of the page.
 KINDS = {
     "limit": "Metal that broke: limit load at yield",
@@ -111,8 +112,8 @@ def printed_numbers() -> list[Printed]:
     """The rows of printed.csv."""
     return [
         Printed(
-            *(row[key] for key in ("source", "study", "quantity", "check", "at", "read")),
-            float(row["times"]), row["printed"], row["unit"], row["fault"], row["remark"],
+            row["source"], row["study"], row["quantity"], row["check"], row["at"], row["read"],
+            float(row["times"]), row["printed"], row["unit"], FAULTS[row["fault"]], row["remark"],
         )
         for row in records("printed.csv")
     ]  # fmt: skip

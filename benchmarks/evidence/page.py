@@ -22,7 +22,7 @@ from benchmarks.timing import table
 PAGE = ROOT / "docs" / "evidence.md"
 WIDTH = 120  # of a line of text
 TEMPLATE = Path(__file__).parent / "template.md"
-FAULTS: dict[Fault, str] = {"": "", "print": "error in print: ", "model": "miss: "}
+REASONS: dict[Fault, str] = {"": "", "print": "error in print: ", "model": "miss: "}
 BARS_NOTE = """The limit load is the lower end of its bracket ("lug, limit load" of the margins),
 the ultimate load the largest up to a plastic strain at the bore of ln(1 + A), in finite strain
 ("lug, ultimate load"). The first is below the test in {safe} of {all} bars, because metal hardens;
@@ -66,6 +66,7 @@ def source_table(name: str, comparisons: list[Comparison]) -> str:
     if name == "moore":
         return _bars(comparisons)
     rows = source_rows(comparisons)
+    head: tuple[str, ...]
     head = ("quantity", "study", "check", "printed", "unit", "ours", "ratio", "remark")
     if not comparisons[0].printed.study:
         rows = [(row[0], *row[3:]) for row in rows]
@@ -79,7 +80,7 @@ def source_rows(comparisons: Iterable[Comparison]) -> list[tuple[object, ...]]:
         (
             c.printed.quantity, f"`{c.printed.study}`", c.printed.check, c.printed.text,
             "" if c.printed.unit == "1" else c.printed.unit, f"{c.predicted:.4g}",
-            f"{c.ratio:.3f}", FAULTS[c.printed.fault] + c.printed.remark,
+            f"{c.ratio:.3f}", REASONS[c.printed.fault] + c.printed.remark,
         )
         for c in comparisons
     ]  # fmt: skip
@@ -87,7 +88,7 @@ def source_rows(comparisons: Iterable[Comparison]) -> list[tuple[object, ...]]:
 
 def bar_rows(comparisons: Iterable[Comparison]) -> list[tuple[object, ...]]:
     """Cells of the bars that broke, both loads of a bar in one row."""
-    out = []
+    out: list[tuple[object, ...]] = []
     for quantity, of_bar in groupby(comparisons, lambda c: c.printed.quantity):
         limit, ultimate = of_bar
         bar, _, ratio = quantity.rpartition(", e/D ")

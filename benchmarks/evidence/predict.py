@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from functools import cache
 
 import pinstress
@@ -108,5 +108,5 @@ def _read(results: Results, printed: Printed) -> float:
 
 def _of_work(margin: Margin, symbol: str) -> float:
     """A quantity of the printed work of a check, by its symbol."""
-    quantities: Iterable[object] = (q for w in margin.work for q in (w.result, *w.quantities))
-    return next(q.value for q in quantities if q.symbol == symbol)  # type: ignore[attr-defined]
+    quantities = (q for w in margin.work for q in (w.result, *w.quantities))
+    return next(q.value for q in quantities if q.symbol == symbol)
