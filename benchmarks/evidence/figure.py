@@ -46,10 +46,8 @@ def draw(comparisons: Sequence[Comparison]) -> list[Path]:
         )  # fmt: skip
         axes.set_yticks([])
         axes.grid(visible=False, axis="y")
-        axes.annotate(
-            "safe", (0.985, -0.5), ha="right", fontsize=8, color=GREY, annotation_clip=False
-        )
-        axes.annotate("unsafe", (1.015, -0.5), fontsize=8, color=GREY, annotation_clip=False)
+        for ratio, side, word in ((0.99, "right", "safe"), (1.01, "left", "unsafe")):
+            axes.text(ratio, len(KINDS) - 0.67, word, ha=side, fontsize=8.5, color=GREY)
         axes.set_title("Evidence: a dot is a number; open where the print is wrong")
         return save(figure, FOLDER, NAME)
 
