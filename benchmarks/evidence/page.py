@@ -79,11 +79,16 @@ def source_rows(comparisons: Iterable[Comparison]) -> list[tuple[object, ...]]:
     return [
         (
             c.printed.quantity, f"`{c.printed.study}`", c.printed.check, c.printed.text,
-            "" if c.printed.unit == "1" else c.printed.unit, f"{c.predicted:.4g}",
+            "" if c.printed.unit == "1" else c.printed.unit, _shown(c.predicted),
             f"{c.ratio:.3f}", REASONS[c.printed.fault] + c.printed.remark,
         )
         for c in comparisons
     ]  # fmt: skip
+
+
+def _shown(value: float) -> str:
+    """A prediction to four digits, or all before the point."""
+    return f"{value:.0f}" if abs(value) >= 1e4 else f"{value:.4g}"
 
 
 def bar_rows(comparisons: Iterable[Comparison]) -> list[tuple[object, ...]]:
