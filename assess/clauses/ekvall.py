@@ -64,7 +64,7 @@ def bore_stress(eye: PlateEye, force: float) -> Work:
     )  # fmt: skip
 
 
-@check("Ekvall transverse", f"{EKVALL}, figure 4", kind="clause", takes="loads", level="ultimate",
+@check("Ekvall transverse", f"{EKVALL}, K_BR", kind="clause", takes="loads", level="ultimate",
        dimension="force", scatter=SCATTER, omits=OMITS)  # fmt: skip
 def ekvall_transverse(text: CheckText, s: Situation) -> list[Margin]:
     """The force across the shank of every symmetric lug against K_BR F_tu D t."""

@@ -63,14 +63,14 @@ def given_lugs(study: Study, pin: PinLike, holding: tuple[Lug, ...]) -> tuple[Lu
     profile = pin.profile
     if not given or profile is None:
         return ()
-    every = holding or _fitting(study, profile, f"pin.{pin.name}.lug")
+    every = holding or _fitting(study, profile, f"pin.{pin.name}.lug", in_contact=False)
     return tuple(lug for lug in every if lug.connection in given)
 
 
-def _fitting(study: Study, pin: Pin, at: str) -> tuple[Lug, ...]:
+def _fitting(study: Study, pin: Pin, at: str, in_contact: bool = True) -> tuple[Lug, ...]:
     """Return one lug for every connection, and those of the structure.
 
-    at: their key.
+    at: their key. in_contact: as of `fitted`.
 
     Raises: InputError for impossible lugs.
     """
@@ -84,7 +84,7 @@ def _fitting(study: Study, pin: Pin, at: str) -> tuple[Lug, ...]:
             raise study.error(str(error), f"{at}.{connection}", error.code) from None
     try:
         for tried in (out, *_ends_of_clearance(out)):
-            fitted(on_structure(pin, tried), made_of, tried)
+            fitted(on_structure(pin, tried), made_of, tried, in_contact)
     except ArgumentError as error:
         raise study.error(str(error), at, error.code) from None
     return tuple(out)

@@ -64,7 +64,7 @@ class LugFactorsTable(StrictTable):
     """Efficiency factors of a lug for the code "aircraft", read off the figures of its source."""
 
     K: Times | None = None
-    """Bearing: AFFDL-TR-69-42, figure 9-2 or 9-3."""
+    """Bearing: AFFDL-TR-69-42, figure 9-2."""
     K_n: Times | None = None
     """Net section: AFFDL-TR-69-42, figure 9-4."""
     k_br: Times | None = None

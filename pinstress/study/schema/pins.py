@@ -68,6 +68,9 @@ class MaterialTable(StrictTable):
     ultimate_strain: Annotated[Number, Field(gt=0.0, lt=1.0)] | None = None
     """Total strain at the ultimate strength, for the plastic bending of pins after Cozzone (code
     "aircraft")."""
+    failure_strain: Annotated[Number, Field(gt=0.0, lt=3.0)] | None = None
+    """Equivalent plastic strain at which a lug breaks, for its ultimate load where limit loads are
+    requested, ln(1 + A) of the elongation A for instance. Default: no ultimate load."""
     fatigue: SnTable | None = None
     """Stress-life curve, for `fatigue.method` "signed-von-mises" and "critical-plane"."""
     fkm: FkmTable | None = None

@@ -11,46 +11,17 @@ from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats
 from fea.support.bands import Bands
 from fea.support.contact.contact import ContactProblem, ContactState
-
-NU = 0.3
-E_STAR = 1.0 / (1.0 - NU * NU)
-# E* dR / Q: half angle of contact (deg) and p0 R / Q of a disc in a hole of an infinite plate of
-# the same material, from E* dR / Q = [2 - ln(b^2 + 1) - 2 b^4] / (pi b^2 (b^2 + 1)) with
-# b = tan(eps / 2): Persson 1964; Ciavarella & Decuzzi 2001.
-PERSSON = {
-    0.0: (84.828, 0.599629),
-    0.1: (80.924, 0.609035),
-    0.5: (69.735, 0.650841),
-    1.0: (60.933, 0.704607),
-    2.0: (50.424, 0.805947),
-    5.0: (36.342, 1.059022),
-    10.0: (27.138, 1.383835),
-    20.0: (19.781, 1.872242),
-    50.0: (12.756, 2.877350),
-    100.0: (9.081, 4.029469),
-}
-
-
-def disc_and_plate(highest: int) -> Floats:
-    """Compliances (N + 1, 1, 1) under p cos n theta, R = E = 1, plane strain, by Muskhelishvili: of
-    the disc [k / (n + 1) + 1 / (n - 1)] / (4 mu), of the hole with n + 1 and n - 1 exchanged. What
-    n = 1 does is a shift, which is free.
-    """
-    mu, k = 0.5 / (1.0 + NU), 3.0 - 4.0 * NU
-    out = np.zeros((highest + 1, 1, 1))
-    out[0] = ((k - 1.0) + 2.0) / (4.0 * mu)
-    for n in range(2, highest + 1):
-        out[n] = (k + 1.0) * (1.0 / (n + 1.0) + 1.0 / (n - 1.0)) / (4.0 * mu)
-    return out
-
-
-def plane(
-    clearance: float, sectors: int = 96, highest: int = 6, tail: float = 1.0
-) -> ContactProblem:
-    """A disc in a plate, of unit radius and thickness; radial clearance."""
-    bands = Bands(np.zeros(1), np.ones(1), np.ones(1), np.zeros(1, int), np.array([clearance]))
-    both = np.array([tail * 4.0 * (1.0 - NU * NU)])
-    return ContactProblem(bands, disc_and_plate(highest), both, [math.inf], sectors)
+from tests.support.exact.plane_contact import (
+    E_STAR,
+    NU,
+    PERSSON,
+    ROLLER_LOAD,
+    ROLLER_PIN,
+    ROLLER_SECTORS,
+    disc_and_plate,
+    plane,
+    roller,
+)
 
 
 def three(
@@ -95,23 +66,13 @@ def test_persson(ratio: float) -> None:
 
 
 def test_hertz() -> None:
-    """A cylinder on a plane of a third of its modulus: p0 = sqrt(Q E' / (pi R)), half width
-    2 Q / (pi p0). A pin of R = 150 mm with three times as much clearance opens its gap as the
-    cylinder does; that its shift goes as the cosine of the angle is felt by 0.2 %.
-
-    Source of the numbers: NAFEMS R0094, test 1: 35 kN/mm, R = 50 mm, 210 on 70 GPa, nu = 0.3.
-    """
+    """p0 = sqrt(Q E' / (pi R)), half width 2 Q / (pi p0), within a cell."""
     weak = 1.0 / ((1.0 - NU * NU) * (1.0 / 210e3 + 1.0 / 70e3))
-    radius, load, pin, clearance, sectors = 50.0, 35e3, 150.0, 450.0, 1440
-    assert pin**2 / clearance == radius
-    bands = Bands(np.zeros(1), np.ones(1), np.array([pin]), np.zeros(1, int), np.array([clearance]))
-    tail = np.array([2.0 * pin / weak])
-    contact = ContactProblem(bands, np.zeros((2, 1, 1)), tail, [math.inf], sectors)
-    found = contact.solve(np.array([[-load, 0.0]]))
-    assert math.sqrt(load * weak / (math.pi * radius)) == pytest.approx(3585.36, rel=1e-4)
-    assert found.pressure.max() == pytest.approx(3585.36, rel=0.01)
-    width = np.count_nonzero(found.pressure) * math.pi / sectors * pin
-    assert width == pytest.approx(6.2146, abs=math.pi / sectors * pin)
+    peak, width = roller()
+    exact = math.sqrt(ROLLER_LOAD * weak / (math.pi * 50.0))
+    assert peak == pytest.approx(exact, rel=0.01)
+    cell = math.pi / ROLLER_SECTORS * ROLLER_PIN
+    assert width == pytest.approx(2.0 * ROLLER_LOAD / (math.pi * exact), abs=cell)
 
 
 def test_the_peak_converges_with_sectors_and_harmonics() -> None:
