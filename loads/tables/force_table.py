@@ -170,7 +170,8 @@ class _Forces:
         column = next((c for c in self.columns if c.meaning == "time"), None)
         if column is not None:
             cells = self.grid.columns[column.index]
-            without = [k for k in some if cells[k] == ""]
+            numbers = isinstance(cells, np.ndarray)
+            without = [] if numbers else [k for k in some if cells[k] == ""]
             if without and len(without) < len(some):
                 raise TableError(
                     f"{self.grid.where(without[0], column.index)}: connection {name} has no time "

@@ -77,6 +77,7 @@ class Rows:
     cells: of each row.
     comma: whether numbers may have a decimal comma.
     heading: cells of the comment above the first row.
+    separator: the character between the cells of a text.
     """
 
     source: Source
@@ -84,6 +85,7 @@ class Rows:
     cells: list[Sequence[Cell]]
     comma: bool = False
     heading: Sequence[Cell] | None = None
+    separator: str = ""
 
 
 @dataclass(frozen=True)

@@ -89,12 +89,10 @@ class Numbers:
         if any("." in _joined(self.grid.columns[c]) for c in self.columns):
             return False
         return any(
-            DECIMAL_COMMA_PATTERN.fullmatch(text) and not COMMA_GROUPS_PATTERN.fullmatch(text)
+            shows_decimal_comma(cell)
             for c in self.columns
             for cell in self.grid.columns[c]
             if isinstance(cell, str)
-            and "," in cell
-            and (text := cell.strip()[:MAX_SHOWN_CHARACTERS])
         )
 
     def _cell(self, row: int, index: int, cell: Cell) -> float:
@@ -157,6 +155,15 @@ class Numbers:
         if not math.isfinite(value):
             raise TableError(f"{what} = {shown} is not finite", "not-finite")
         raise TableError(f"{what} = {shown} exceeds the limit of {MAX_CELL_VALUE:g}", "too-large")
+
+
+def shows_decimal_comma(text: str) -> bool:
+    """Whether a number has a comma that cannot separate thousands, as in 0,5 or 12,34."""
+    if "," not in text:
+        return False
+    short = text.strip()[:MAX_SHOWN_CHARACTERS]
+    decimal = DECIMAL_COMMA_PATTERN.fullmatch(short)
+    return decimal is not None and not COMMA_GROUPS_PATTERN.fullmatch(short)
 
 
 def _not_a_number(what: str, text: str) -> TableError:

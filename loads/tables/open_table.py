@@ -8,7 +8,8 @@ from pathlib import Path
 from loads.tables.csv_table import TableError, read_content
 from loads.tables.grid import Grid, Reading, Source, grid_of
 from loads.tables.sent_files import stamp
-from loads.tables.text_rows import text_rows
+from loads.tables.text_grid import text_grid
+from loads.tables.text_rows import text_lines
 
 # The beginning of files that are no texts.
 ZIP_MARK, PARQUET_MARK = b"PK\x03\x04", b"PAR1"
@@ -50,7 +51,7 @@ def _open(path: Path, _: str, reading: Reading) -> Grid:
     else:
         if reading.sheet is not None:
             raise TableError(f"{path}: is a text, which has no sheets; remove sheet", "no-sheets")
-        rows = text_rows(source, content, reading)
+        return text_grid(source, text_lines(source, content, reading.encoding), reading)
     return grid_of(rows, reading.numbered)
 
 

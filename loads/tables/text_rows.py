@@ -44,15 +44,20 @@ def decoded(source: Source, content: bytes, encoding: str | None) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def text_rows(source: Source, content: bytes, reading: Reading) -> Rows:
+def text_lines(source: Source, content: bytes, encoding: str | None) -> list[str]:
+    """The lines of a text. Raises: TableError for other content, or lines of excessive length."""
+    lines = decoded(source, content, encoding).split("\n")
+    if max(map(len, lines)) > MAX_LINE_CHARACTERS:
+        k = next(k for k, line in enumerate(lines, 1) if len(line) > MAX_LINE_CHARACTERS)
+        raise TableError(
+            f"{source.at(k)}: has more than {MAX_LINE_CHARACTERS:,} characters; is it a table?",
+            "not-csv",
+        )
+    return lines
+
+
+def text_rows(source: Source, lines: list[str], reading: Reading) -> Rows:
     """The rows of a text table. Raises: TableError for a file that is not a table."""
-    lines = decoded(source, content, reading.encoding).split("\n")
-    for k, line in enumerate(lines, 1):
-        if len(line) > MAX_LINE_CHARACTERS:
-            raise TableError(
-                f"{source.at(k)}: has more than {MAX_LINE_CHARACTERS:,} characters; is it a table?",
-                "not-csv",
-            )
     start = (reading.header_line or 1) - 1
     first = next((k for k in range(start, len(lines)) if _has_cells(lines[k])), None)
     if first is None:
@@ -70,7 +75,7 @@ def text_rows(source: Source, content: bytes, reading: Reading) -> Rows:
         ) from None
     comma = separator != "," or reading.decimal == ","
     heading = _heading(lines[:first], separator, len(cells[0]))
-    return Rows(source, places, cells, comma, heading)
+    return Rows(source, places, cells, comma, heading, separator)
 
 
 def _has_cells(line: str) -> bool:

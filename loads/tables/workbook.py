@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 import zipfile
+import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from io import BytesIO
@@ -22,9 +23,10 @@ from loads.tables.text_rows import COMMENT_MARKS
 
 MAX_PART_BYTES = 256 * MB  # of a workbook, unpacked: a sheet of 200,000 rows and 7 columns has 60
 MAX_SHEET_ROWS = 1_048_576  # of a sheet, by the format
+MAX_SHEET_CELLS = 10_000_000
 MAX_SHOWN_SHEETS = 8
 REFERENCE_PATTERN = re.compile(r"([A-Z]{1,3})(\d{1,7})")
-# Numbers of formats for dates and times, clause 18.8.30; others are told by their codes.
+# Numbers of formats for dates and times, clause 18.8.30; others are recognised by their codes.
 DATE_FORMATS = {*range(14, 23), *range(27, 37), *range(45, 48), *range(50, 59)}
 NO_DATE_PATTERN = re.compile(r'"[^"]*"|\\.|_.|\*.|\[(?!h+\]|m+\]|s+\])[^\]]*\]', re.IGNORECASE)
 FORMULA = Unreadable("is a formula; replace it by its value (copy, paste values only)")
@@ -47,9 +49,11 @@ def workbook_rows(file: str, content: bytes, reading: Reading) -> Rows:
             part = book.sheets[name]
             sheet = _Sheet(book.texts(), book.date_styles(), reading.header_line or 1)
             sheet.read(_part(archive, part))
-    except (_NotAWorkbook, expat.ExpatError, zipfile.BadZipFile, ValueError, KeyError) as error:
+    except TableError:
+        raise
+    except (_NotAWorkbook, expat.ExpatError, zipfile.BadZipFile, ValueError, LookupError) as error:
         raise TableError(f"{file}: is not a workbook (.xlsx): {error}", "not-a-workbook") from None
-    except (OSError, EOFError, NotImplementedError, RuntimeError, zipfile.zlib.error) as error:  # type: ignore[attr-defined]
+    except (OSError, EOFError, NotImplementedError, RuntimeError, zlib.error) as error:
         raise TableError(f"{file}: cannot be unpacked ({error})", "not-a-workbook") from None
     source = Source(f"{file}, sheet {name!r}", workbook=True)
     if sheet.merged:
@@ -222,6 +226,12 @@ class _Sheet:
         """The rows with cells that are no comments."""
         places, rows = list[int](), list[list[Cell]]()
         width = max((max(row) + 1 for row in self.cells.values() if row), default=0)
+        if width * len(self.cells) > MAX_SHEET_CELLS:
+            raise TableError(
+                f"{source.file}: {len(self.cells):,} rows of {width} columns are more than "
+                f"{MAX_SHEET_CELLS:,} cells, the limit; save fewer, or as text",
+                "too-many-rows",
+            )
         for place in sorted(self.cells):
             row = self.cells[place]
             cells = [row.get(k, "") for k in range(width)]

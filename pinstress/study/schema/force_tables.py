@@ -154,9 +154,9 @@ class TimeColumn(StrictTable):
 def _with_connections(schema: dict[str, Any], table: type[StrictTable]) -> None:
     """Complete the JSON Schema of a table whose other keys are connections."""
     complete_schema(schema, table)
-    schema["additionalProperties"] = schema["properties"].pop(CONNECTIONS_ALIAS)[
-        "additionalProperties"
-    ]
+    connections = schema["properties"].pop(CONNECTIONS_ALIAS)
+    words = {"description": connections["description"]}
+    schema["additionalProperties"] = connections["additionalProperties"] | words
 
 
 class TableFile(ForceAxes):
@@ -181,7 +181,7 @@ class TableFile(ForceAxes):
     time: TimeColumn | None = None
     """The times. Default: none, one row; or a column `time` where headers name the columns."""
     connections: dict[str, JointColumns] = Field(default={}, alias="<connections>")
-    """The columns of each connection."""
+    """The columns of the connection with this name."""
 
     @model_validator(mode="before")
     @classmethod

@@ -9,12 +9,22 @@ import numpy as np
 import pytest
 
 from loads import JointAxes, Layout, Reactions, Reading, TableError, read_reactions
+from loads.tables import open_table, text_grid
+from loads.tables.grid import Source
 from tests.support.each import each
 from tests.support.errors import raises
 
 UNITS = {"s": 1.0, "ms": 1e-3, "kN": 1e3, "N": 1.0, "N m": 1.0}
 NAMES = {"time": "t", "B.fx": "Fx", "B.fy": "Fy"}
 NUMBERS = {"time": 1, "B.fx": 2, "B.fy": 3}
+
+
+@pytest.fixture(params=["at once", "by cells"], autouse=True)
+def way(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Tables of numbers alone are read at once where they are long: the results are the same."""
+    least = 0 if request.param == "at once" else 1_000_000
+    monkeypatch.setattr("loads.tables.text_grid.MIN_BLOCK_LINES", least)
+    open_table._open.cache_clear()
 
 
 def unit(written: str, dimension: str) -> float:
@@ -146,6 +156,16 @@ def test_what_the_study_states(
 def test_what_is_refused(tmp_path: Path, content: str | bytes, code: str, named: str) -> None:
     with raises(TableError, code, named):
         read(tmp_path, content)
+
+
+def test_which_tables_are_read_at_once() -> None:
+    """Those of numbers alone; not one with a comment, a text or a doubtful comma."""
+    source, reading = Source("t.csv"), Reading()
+    plain = ["t;Fx", "0;1", "1;2,5", ""]
+    assert text_grid._of_numbers(source, plain, reading) is not None
+    for line in ("# b", "2;x", "2;1.5", '"2";1', "2", "2;1;3", "2;nan", ""):
+        assert text_grid._of_numbers(source, [*plain[:3], line, "3;1"], reading) is None
+    assert text_grid._of_numbers(source, ["t;Fx", "0;1", "1;2,500"], reading) is None
 
 
 def test_a_folder_is_refused(tmp_path: Path) -> None:
