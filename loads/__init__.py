@@ -52,7 +52,7 @@ from loads.motion.refine import Resolved, resolved
 from loads.motion.singular_positions import MotionBlocked
 from loads.tables.csv_table import TableError, read_table
 from loads.tables.force_columns import JointAxes, Layout
-from loads.tables.force_table import table_cases
+from loads.tables.force_table import jump_times, table_cases
 from loads.tables.grid import Reading
 from loads.tables.regular_file import MB, FileError, read_regular, require_regular
 from loads.tables.sent_files import noted_files, on_disk, sent_files
@@ -120,6 +120,7 @@ __all__ = [
     "gear_pair",
     "given_reactions",
     "impulse_force",
+    "jump_times",
     "ledger",
     "leg_dynamics",
     "mobility",

@@ -237,12 +237,22 @@ def _first_difference(
     return 0.0, name
 
 
+def jump_times(times: Floats) -> Floats:
+    """The times (J,) s at which a table has values before and after a jump. times: (T,) s."""
+    return np.asarray(times[1:][np.diff(times) <= 2.0 * _least_step(times)])
+
+
+def _least_step(times: Floats) -> float:
+    """The least difference, s, that numbers of the size of these times have."""
+    return float(np.spacing(max(1.0, float(np.abs(times).max()))))
+
+
 def _distinct(times: Floats | None) -> Floats | None:
     """Times (T,) s, those after a jump larger by the least difference that numbers of this size
     have, so that every instant has a time of its own.
     """
     if times is None or np.diff(times).all():
         return times
-    least = np.spacing(max(1.0, float(np.abs(times).max())))
+    least = _least_step(times)
     again = np.concatenate([[False], np.diff(times) == 0.0])
     return np.where(again, np.maximum(times + least, np.nextafter(times, np.inf)), times)

@@ -12,7 +12,8 @@ from pinstress.study.reading.case_tables import layout_of
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.references import closed_message
 from pinstress.study.schema.cases import GivenCase
-from pinstress.study.schema.units import UNIT_SYSTEMS, to_si
+from pinstress.study.schema.force_tables import unit_factor
+from pinstress.study.schema.units import UNIT_SYSTEMS
 
 
 def given_forces(study: Study, name: str, case: GivenCase) -> Reactions:
@@ -64,7 +65,7 @@ def _stated(study: Study, name: str, case: GivenCase) -> Reactions:
         if not written:
             return system.factor(dimension)
         try:
-            return to_si(f"1 {written}", dimension, system)
+            return unit_factor(written, dimension)
         except ArgumentError as error:
             raise TableError(str(error), error.code) from None
 

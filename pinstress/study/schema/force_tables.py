@@ -1,9 +1,18 @@
 """The study file's form: how a table of another program states forces."""
 
 import math
+import re
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Discriminator, Field, Tag, ValidationError, model_validator
+from pydantic import (
+    AfterValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    ValidationError,
+    model_validator,
+)
 
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.shown import in_toml
@@ -17,10 +26,32 @@ from pinstress.study.schema.types import (
     complete_schema,
     unknown_key,
 )
+from pinstress.study.schema.units import UNIT_SYSTEMS, to_si
 
 CONNECTIONS_ALIAS = "<connections>"  # in angle brackets, so that messages leave it out
 AXIS_NAMES = "x", "y", "z"
 MAX_AXES_ERROR = 1e-4  # of the products of rows of `axes`: numbers of four digits
+
+JOINED_UNITS_PATTERN = re.compile(r"([kM]?N)([cm]?m)")  # Nm, kNmm
+HYPHEN_PATTERN = re.compile(r"(?<=[A-Za-z])-(?=[A-Za-z])")  # in-lbf
+
+
+def unit_factor(text: str, dimension: str) -> float:
+    """Return the SI value of a unit as programs write it.
+
+    Raises: ArgumentError for a text that is not a unit of this dimension.
+    """
+    spelled = HYPHEN_PATTERN.sub(" ", JOINED_UNITS_PATTERN.sub(r"\1 \2", text))
+    return to_si(f"1 {spelled}", dimension, UNIT_SYSTEMS["m-N-s"])
+
+
+def _unit_of(dimension: str) -> AfterValidator:
+    def check(text: str) -> str:
+        unit_factor(text, dimension)
+        return text
+
+    return AfterValidator(check)
+
 
 Column = Annotated[
     Annotated[str, Tag("<header>")] | Annotated[int, Field(strict=True), Tag("<number>")],
@@ -50,9 +81,9 @@ Matrix = tuple[tuple[float, float, float], ...]
 class ForceAxes(StrictTable):
     """Units and axes of forces in a table."""
 
-    unit: str | None = None
+    unit: Annotated[str, _unit_of("force")] | None = None
     """Unit of the forces, where the file does not state it."""
-    moment_unit: str | None = None
+    moment_unit: Annotated[str, _unit_of("moment")] | None = None
     """Unit of the moments, where the file does not state it."""
     axes: Axes | None = None
     """The pin's axes x, y, z in those of the table, for instance ["x", "-z", "y"] where the pin
@@ -137,7 +168,7 @@ class TimeColumn(StrictTable):
 
     column: Column | None = None
     """Header of the column, or its number from 1."""
-    unit: str | None = None
+    unit: Annotated[str, _unit_of("time")] | None = None
     """Its unit, where the file does not state it."""
     step: Duration | None = None
     """Time between rows, instead of `column`."""

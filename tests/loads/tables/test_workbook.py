@@ -18,7 +18,7 @@ from tests.support.each import each
 from tests.support.errors import raises
 
 NAMES = {"time": "t", "B.fx": "Fx", "B.fy": "Fy"}
-ROWS = [["t", "Fx", "Fy"], ["ms", "kN", "kN"], [0, 1.5, 2], [500, 0.1, -4]]
+ROWS: list[list[Any]] = [["t", "Fx", "Fy"], ["ms", "kN", "kN"], [0, 1.5, 2], [500, 0.1, -4]]
 
 
 def written(
@@ -49,8 +49,8 @@ def test_numbers_come_back_to_the_last_digit(tmp_path: Path) -> None:
 
 def test_the_table_may_stand_anywhere_on_a_sheet(tmp_path: Path) -> None:
     """With empty columns before it, comments, blank rows, other sheets."""
-    table: list[Any] = [["", *row] for row in ROWS]
-    rows = [["", "# rig 3"], [], *table[:3], [], table[3]]
+    rows: Any = [["", "# rig 3"], [], *(["", *row] for row in ROWS)]
+    rows.insert(-1, [])
     path = written(tmp_path / "t.xlsx", lambda book, _: book.add_worksheet("other"), rows)
     assert read(path, sheet="run 1").force("B")[:, 0].tolist() == [1500.0, 100.0]
     with raises(TableError, "which-sheet", "state which: sheet = 'run 1'"):
