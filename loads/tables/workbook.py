@@ -24,7 +24,7 @@ from loads.tables.text_rows import COMMENT_MARKS
 MAX_PART_BYTES = 256 * MB  # of a workbook, unpacked: a sheet of 200,000 rows and 7 columns has 60
 MAX_SHEET_ROWS = 1_048_576  # of a sheet, by the format
 MAX_SHEET_CELLS = 10_000_000
-MAX_SHOWN_SHEETS = 8
+MAX_SHOWN_SHEETS = 20
 REFERENCE_PATTERN = re.compile(r"([A-Z]{1,3})(\d{1,7})")
 # Numbers of formats for dates and times, clause 18.8.30; others are recognised by their codes.
 DATE_FORMATS = {*range(14, 23), *range(27, 37), *range(45, 48), *range(50, 59)}
