@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from geometry import PinLike
-from loads import Linkage
+from loads import Linkage, jump_times
 from loads.motion.four_bar import four_bar
 from pinstress.explore.sweep.correlations import correlations_of
 from pinstress.explore.sweep.parameters import parameters_of, require_laws
@@ -31,6 +31,8 @@ from pinstress.study.schema.pins import PinTable
 from pinstress.study.schema.require import RequireTable, level_of
 from pinstress.study.schema.units import UnitSystem
 from pinstress.study.schema.vary import VaryTable
+
+MAX_SHOWN_JUMPS = 6
 
 
 @dataclass(frozen=True)
@@ -249,7 +251,10 @@ def _teeth(mechanism: Linkage) -> str:
 def _words(study: Study, name: str, loads: CaseLoads) -> str:
     case, table, reactions = study.table.case[name], study.table.spatial_leg, loads.reactions
     if isinstance(case, GivenCase):
-        many = f"{len(reactions)} instants" if reactions.times is not None else "one instant"
+        many = "one instant"
+        if reactions.times is not None:
+            jumps = ", ".join(f"{t:g} s" for t in jump_times(reactions.times)[:MAX_SHOWN_JUMPS])
+            many = f"{len(reactions)} instants" + f", jump at t = {jumps}" * bool(jumps)
         return f"given, {many}, connections {', '.join(reactions.connections)}"
     if isinstance(case, LegCase):
         assert table is not None
