@@ -5,6 +5,7 @@ All quantities are in SI units. Of the other packages here, it imports only `pin
 
 from loads.forces.acting import Applied, ForceLaw, Load, Spring, Varying
 from loads.forces.curve import ForceTable
+from loads.forces.holding import locked
 from loads.forces.inverse_dynamics import Dynamics, motion_reactions
 from loads.forces.measures import Clock, Distance, Measure, Position
 from loads.forces.over_time import (
@@ -118,6 +119,7 @@ __all__ = [
     "impulse_force",
     "ledger",
     "leg_dynamics",
+    "locked",
     "mobility",
     "motion_reactions",
     "move",

@@ -203,7 +203,7 @@ class Parallel:
 class Linkage:
     """Bodies, joints, sliders and turns in the position in which they are drawn.
 
-    driven: names of the sliders and turns that drives prescribe.
+    driven: names of the sliders and turns that drives prescribe; none of a structure.
     gravity: acceleration of free fall, world axes, m/s^2.
 
     Raises: LinkageError where the parts contradict each other.
@@ -352,7 +352,7 @@ def _parallel_contradictions(
         if sum(name in other.members for other in linkage.parallel) > 1:
             yield f"sharing: {name} is in two rules; keep one", "shared-twice", at
     driven = [name for name in rule.members if name in linkage.driven]
-    if len(driven) != 1:
+    if linkage.driven and len(driven) != 1:
         text = f"sharing over {names}: exactly one of them must be driven, not {len(driven)}"
         yield f"{text}; the others follow it", "one-must-drive", at
 

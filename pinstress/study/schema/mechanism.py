@@ -326,7 +326,7 @@ class StopTable(StrictTable):
 
 
 class MechanismTable(StrictTable):
-    """A planar linkage, drawn in one position, with one or several drives."""
+    """A planar linkage, drawn in one position, with one or several drives, or a structure."""
 
     gravity: Annotated[
         tuple[Acceleration, Acceleration],
@@ -339,8 +339,9 @@ class MechanismTable(StrictTable):
     """Bodies by name, except the ground."""
     slider: dict[str, SliderTable] = {}
     """Sliders by name."""
-    drive: Annotated[list[AnyDrive], Field(min_length=1)]
-    """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom."""
+    drive: list[AnyDrive] = []
+    """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom; none
+    for a structure, and where `hold` names the locks of every case."""
     gear: dict[str, GearTable] = {}
     """Pairs of gears by name, which is also that of the force between their teeth."""
     rack: dict[str, RackTable] = {}
