@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import combinations
+
 import numpy as np
 
 from loads.linkage.linkage import Linkage, LinkageError
@@ -15,6 +18,11 @@ def undetermined(linkage: Linkage, freedom: Mobility) -> LinkageError:
         f"{_open(freedom)}; state how they share the load: [[mechanism.sharing]] with connections "
         "= [...] and stiffness = [...], one entry for each degree of redundancy"
     )
+    for (one, other), pins in _joined_twice(linkage, freedom.shared):
+        text += (
+            f". Pins {' and '.join(pins)} join {one} and {other}; if these are one part, "
+            f"write welded_to instead of the pins"
+        )
     if linkage.driven and not freedom.degrees:
         text += (
             f". As drawn it is a structure that cannot move: remove the drive of "
@@ -22,6 +30,22 @@ def undetermined(linkage: Linkage, freedom: Mobility) -> LinkageError:
             "the joints of the links that prevent it"
         )
     return LinkageError(text, "statically-indeterminate")
+
+
+def _joined_twice(
+    linkage: Linkage, shared: tuple[str, ...]
+) -> Iterator[tuple[tuple[str, str], list[str]]]:
+    """Pairs of bodies that several pins join, and the pins, of which some connection is shared."""
+    pins: dict[tuple[str, str], list[str]] = {}
+    for joint in linkage.joints:
+        bodies = [
+            *([joint.fixed_in] if joint.fixed_in else []),
+            *(c.body for c in joint.connections),
+        ]
+        if any(c.name in shared for c in joint.connections):
+            for pair in combinations(sorted(bodies), 2):
+                pins.setdefault(pair, []).append(joint.name)
+    return ((pair, names) for pair, names in pins.items() if len(names) > 1)
 
 
 def _open(freedom: Mobility) -> str:

@@ -61,14 +61,17 @@ def mobility(linkage: Linkage) -> Mobility:
 def kutzbach(linkage: Linkage) -> int:
     """Degrees of freedom by Kutzbach: 3 (links - 1) - 2 (pins and sliders) - pairs of teeth.
 
-    A pin at which k links meet counts k - 1 times; particles do not count.
+    A pin at which k links meet counts k - 1 times; particles do not count. Welded bodies are one
+    link.
     """
-    links = {b.name for b in linkage.bodies if not is_particle(linkage, b.name)} | {GROUND}
+    names = [b.name for b in linkage.bodies if not is_particle(linkage, b.name)] + [GROUND]
+    link = {name: linkage.rigid[name][0] for name in names}
     pins = 0
     for joint in linkage.joints:
-        meeting = {c.body for c in joint.connections} | {joint.fixed_in}
-        pins += max(len(meeting & links) - 1, 0)
-    return 3 * (len(links) - 1) - 2 * (pins + len(linkage.sliders)) - len(linkage.teeth)
+        meeting = (*(c.body for c in joint.connections), joint.fixed_in or "")
+        pins += max(len({link[name] for name in meeting if name in link}) - 1, 0)
+    links = len({*link.values()})
+    return 3 * (links - 1) - 2 * (pins + len(linkage.sliders)) - len(linkage.teeth)
 
 
 def is_particle(linkage: Linkage, name: str) -> bool:

@@ -134,6 +134,8 @@ class BodyTable(StrictTable):
     inertia: Inertia | None = None
     """Moment of inertia about the centre of mass. Default: that of the bar; without a bar the body
     is a particle, which has one connection or slides on the ground."""
+    welded_to: str | None = None
+    """Body, or "ground", to which it is fixed. Forces in the weld are not computed."""
 
     @model_validator(mode="after")
     def _one_mass(self) -> "BodyTable":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from typing import TypeVar
 
 import numpy as np
@@ -163,6 +164,7 @@ def _assembled(study: Study, drawing: Drawing, g: float) -> Linkage | list[Linka
         return tuple(parts)
 
     bodies = each(lambda b: _body(drawing, *b, g), mechanism.body.items(), _body_anywhere)
+    bodies = tuple(replace(b, welded=mechanism.body[b.name].welded_to) for b in bodies)
     jointless = {error.at[1] for error in wrong if not joints_on(mechanism, str(error.at[1]))}
     each(lambda s: _require_on_slider(drawing, *s), mechanism.slider.items())
     sliders = tuple(_slider(drawing, *s) for s in mechanism.slider.items())

@@ -159,6 +159,24 @@ def test_a_lock_holds_a_gear_without_a_drive(tmp_path: Path) -> None:
     assert (lock.name, lock.force[0]) == ("lock", pytest.approx(100.0))
 
 
+def test_a_bracket_is_welded_to_a_bar(tmp_path: Path) -> None:
+    """The load acts on the bracket as it would on the bar."""
+    bracket = """
+[mechanism.body.bracket]
+mass = 0
+inertia = 0
+centre = [2, 2]
+welded_to = "left"
+"""
+    on_bracket = ARCH.replace('body = "left"\nat', 'body = "bracket"\nat') + bracket
+    results = loads_only(load_study(written(tmp_path, on_bracket)))
+    bare = loads_only(load_study(written(tmp_path, ARCH)))
+    assert results.reactions[0].forces == pytest.approx(bare.reactions[0].forces)
+    wrong = on_bracket.replace('welded_to = "left"', 'welded_to = "lefft"')
+    with raises(InputError, "unknown-body", "mechanism.body.bracket.welded_to", "left"):
+        load_study(written(tmp_path, wrong))
+
+
 def test_what_only_a_drive_has_is_refused_without_one(tmp_path: Path) -> None:
     for old, new, code, named in (
         ('kind = "static"', 'kind = "motion"', "motion-without-drive", "case.snow"),
