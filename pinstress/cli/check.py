@@ -9,6 +9,7 @@ from functools import partial
 
 from geometry import PinLike
 from loads import Linkage, jump_times
+from loads.forces.sharing import undetermined
 from loads.motion.four_bar import four_bar
 from pinstress.explore.sweep.correlations import correlations_of
 from pinstress.explore.sweep.parameters import parameters_of, require_laws
@@ -219,8 +220,8 @@ def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
     mobility = determined(study, mechanism)
     lines = [
         f"mechanism: {len(mechanism.bodies)} bodies, {len(mechanism.joints)} joints, "
-        f"{len(mechanism.connections)} connections{_teeth(mechanism)}, driven by "
-        f"{', '.join(mechanism.driven)}"
+        f"{len(mechanism.connections)} connections{_teeth(mechanism)}, "
+        + (f"driven by {', '.join(mechanism.driven)}" if mechanism.driven else "no drive")
     ]
     counted = f"mobility {mobility.degrees}"
     if mobility.kutzbach != mobility.degrees:
@@ -230,11 +231,8 @@ def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
     if not mobility.redundant:
         return [*lines, counted]
     if mobility.shared and not mechanism.sharing:
-        raise study.error(
-            "mechanism: rigid-body statics does not determine the forces at "
-            f"{', '.join(mobility.shared)}; state how they share the load in [[mechanism.sharing]]",
-            code="statically-indeterminate",
-        )
+        error = undetermined(mechanism, mobility)
+        raise study.error(f"mechanism: {error}", code=error.code)
     rule = ", ".join(f"{'/'.join(s.connections)}" for s in mechanism.sharing)
     return [
         *lines,
