@@ -17,6 +17,7 @@ class Material:
 
     youngs_modulus, strengths: Pa; shear_strength and bearing_strength are ultimate ones.
     density: kg/m^3.
+    thermal_expansion: mean coefficient, 1/K.
     ultimate_strain: total strain at the ultimate strength.
     hardening: equivalent plastic strains and yield stresses (Pa) there, linear between them from
     the yield strength on and constant after the last.
@@ -35,6 +36,7 @@ class Material:
     bearing_strength: float | None = None
     hardening: tuple[tuple[float, float], ...] = ()
     ultimate_strain: float | None = None
+    thermal_expansion: float | None = None
 
     def __post_init__(self) -> None:
         if not 0.0 < self.youngs_modulus < np.inf:

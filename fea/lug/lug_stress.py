@@ -115,9 +115,8 @@ class LugInPlane:
         self.contact = PlaneContact(
             self.fields, E, lug.bearing, pin, inner, radius, lug.clearance, around
         )
-        bushing = lug.bushing
-        interference = 0.0 if bushing is None else bushing.interference
-        self.misfit = interference / outline.hole * E
+        misfit = 0.0 if lug.bushing is None else lug.bushing.misfit
+        self.misfit = misfit / outline.hole * E
 
     def amounts(self, pressures: Floats) -> Floats:
         """The amounts (T, K) of the unit loads under pressures (T, M), Pa, and the misfit."""

@@ -17,6 +17,7 @@ from assess.strength.bending_arms import BendingArms, bending_arms
 from fea.core.pin_loads import PinLoads
 from fea.support.lugs.fit import on_structure
 from fea.support.records import JointResult
+from pinstress.study.model.lost_fits import lost_fits
 from pinstress.study.model.requirements import required_factor
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
@@ -52,6 +53,7 @@ def assessed(study: Study, task: Task, row: PinResult) -> PinResult:
         margins=tuple(margins),
         worst=tuple(worst_places([*counted, *_not_made(s, why)])),
         arms=None if why else _arms(s, task, row),
+        lost_fits=lost_fits(study, task, row.case),
     )
 
 

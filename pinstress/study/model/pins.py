@@ -34,7 +34,8 @@ def material(study: Study, name: str) -> Material:
     m = study.table.material[name]
     strengths = m.yield_strength, m.ultimate_strength, m.shear_strength, m.bearing_strength
     elastic = m.youngs_modulus, m.poisson_ratio, m.density
-    return Material(name, *elastic, *strengths, tuple(m.hardening), m.ultimate_strain)
+    others = tuple(m.hardening), m.ultimate_strain, m.thermal_expansion
+    return Material(name, *elastic, *strengths, *others)
 
 
 def pin(study: Study, name: str) -> PinLike:
