@@ -16,6 +16,7 @@ from pinstress.explore.sweep.parameters import parameters_of, require_laws
 from pinstress.explore.sweep.sample import designs_of
 from pinstress.study.model.balance import other_warnings, unheld
 from pinstress.study.model.cases import CaseLoads, case_loads
+from pinstress.study.model.lost_fits import lost_fit_warnings
 from pinstress.study.model.lugs import lugs
 from pinstress.study.model.mechanism.drives import span
 from pinstress.study.model.mechanism.linkage import determined, linkage
@@ -23,6 +24,7 @@ from pinstress.study.model.pins import far_ends, outline, shape_notes, weight
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.sequence import require_times
 from pinstress.study.model.tasks import Task, assumed_distribution, require_models, tasks
+from pinstress.study.model.temperature import temperature_assumption
 from pinstress.study.reading.errors import Errors
 from pinstress.study.reading.file import Study, named_materials
 from pinstress.study.reading.published_tables import read_published
@@ -102,7 +104,8 @@ def examine(study: Study) -> Examination:
     lines.append(f"model {a.model}, tolerance {a.tolerance:g}{goal}")
     lines += filter(None, [assumed_distribution(study, todo)])
     lines += map(_requirement, table.require)
-    warnings = other_warnings(study, todo)
+    lines += temperature_assumption(study)
+    warnings = other_warnings(study, todo) + lost_fit_warnings(study, todo)
     if table.vary is not None or "reliability" in table.model_fields_set:
         lines += _varied(study)
         warnings += _impossible(study) if todo else []

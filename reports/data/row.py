@@ -128,6 +128,8 @@ class PinResult:
     exponent: with which the factor grows with the diameters, by the law of the section
     (assess.diameter_law).
     depends_on: values within the study's ranges that change whether the maximum is permitted.
+    lost_fits: lugs in which the pin is pressed no longer at the temperature of the case, with the
+    temperature at which it becomes loose, in words.
     published_*: the publication's value, in the study's units.
     units: of its numbers.
     """
@@ -149,6 +151,7 @@ class PinResult:
     loads: tuple[GoverningLoad, ...] = ()
     exponent: float = BENDING_EXPONENT
     depends_on: tuple[Dependence, ...] = ()
+    lost_fits: tuple[str, ...] = ()
     published_max_von_mises: float | None = None
     published_safety_factor: float | None = None
     units: Units = field(default=SI, compare=False)

@@ -25,6 +25,7 @@ from pinstress.study.model.pins import far_ends, outline, weight
 from pinstress.study.model.requirements import stated_requirements
 from pinstress.study.model.sequence import chosen_cases
 from pinstress.study.model.tasks import Task, assumed_distribution
+from pinstress.study.model.temperature import temperature_assumption
 from pinstress.study.reading.file import Study, named_materials
 from pinstress.study.reading.inputs import inputs
 from pinstress.study.reading.published_tables import Published, read_published
@@ -194,6 +195,7 @@ def _results(
             *factor_assumption(study, (row for _, row in rows)),
             *filter(None, [assumed_distribution(study, (task for task, _ in rows))]),
             *shanks_assumption(row for _, row in rows),
+            *temperature_assumption(study),
             *((WITHOUT_FRICTION_NOTE,) if _in_lugs(study) else ()),
             *(f"Possible mistake: {q}" for q in study.questions),
         ),
