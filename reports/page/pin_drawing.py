@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from html import escape
 
-from reports.data.check import LugSketch
-from reports.data.results import PinShape, Units
+from reports.data.results import LugSketch, PinShape, Units
 from reports.format.drawing.cuts import draw_cut, words
 from reports.format.drawing.spread import rows
 from reports.format.drawing.svg import INK_COLOUR, line, text, wide
@@ -117,16 +116,14 @@ def draw_pin(
     width: float = DRAWING_WIDTH,
     places: list[PlaceMark] | None = None,
     along: StressAlong | None = None,
-    lugs: Sequence[LugSketch] = (),
 ) -> str:
     """Return the drawing as an <svg> element, in which all text is escaped.
 
     zones: one per circle. places: of the stress of rows.
     width: of the drawing, in pixels; letters have the size 11.
     along: stress along the pin and loads, of the governing case.
-    lugs: that are drawn about it, in section.
     """
-    around = max((lug.outer_diameter for lug in lugs), default=0.0)
+    around = max((lug.outer_diameter for lug in shape.lugs), default=0.0)
     pieces = _pieces(shape, units, width, along, around)
     if not pieces:
         return ""
@@ -146,7 +143,7 @@ def draw_pin(
         f'<svg class="pin" viewBox="0 0 {width:.0f} {height:.0f}" role="img" '
         f'xmlns="http://www.w3.org/2000/svg" font-size="11" font-family="sans-serif">'
         f"<title>{escape(_title(shape, along))}</title>{PATTERNS}",
-        *(part for lug in lugs for part in _lug(lug, pieces, at)),
+        *(part for lug in shape.lugs for part in _lug(lug, pieces, at)),
         *_body(shape, pieces, at, marks),
         *([] if along is None else _loads(along, pieces, at)),
         *([] if along is None else triad(8.0, overall + 2.0, along.angle)),

@@ -33,7 +33,7 @@ from pinstress.study.schema.tables import ReportTable
 from reports.data import results as plain
 from reports.data.changes import Remedy
 from reports.data.dependence import depends_on
-from reports.data.results import CutShape
+from reports.data.results import CutShape, LugSketch, ShankSketch
 from reports.data.sensitivities import PinSensitivities
 
 WITHOUT_FRICTION_NOTE = (
@@ -262,7 +262,26 @@ def shape_of_task(task: Task, peaks: Sequence[Maximum]) -> plain.PinShape:
     cuts = tuple(cut_shapes(pin))
     solids = tuple(dict.fromkeys(ends for peak in peaks for ends in peak.solids))
     made_of = task.material.name
-    return plain.PinShape(pin.name, segments, made_of, heavy, far_ends(pin), cuts, solids)
+    return plain.PinShape(
+        pin.name, segments, made_of, heavy, far_ends(pin), cuts, solids, tuple(_lug_sketches(task))
+    )
+
+
+def _lug_sketches(task: Task) -> Iterator[LugSketch]:
+    """Yield the lugs that support the pin of a task, in the order of z."""
+    for lug in sorted(task.lugs, key=lambda lug: task.pin.band(lug.connection).z0):
+        band, bushing, shank = task.pin.band(lug.connection), lug.bushing, lug.shank
+        yield LugSketch(
+            lug.connection,
+            (band.z0, band.z1),
+            lug.outer_diameter,
+            lug.clearance,
+            lug.material.name,
+            lug.edge_radius,
+            bushing.thickness if bushing else 0.0,
+            bushing.interference if bushing else 0.0,
+            ShankSketch(shank.shape, shank.width, shank.length, shank.end) if shank else None,
+        )
 
 
 def cut_shapes(pin: PinLike) -> Iterator[CutShape]:
