@@ -7,6 +7,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, replace
 from importlib.metadata import version
 
+import numpy as np
+
 from assess.diameter_law import section_exponent
 from assess.margin import PinMargin
 from fea.core.peak import Maximum
@@ -225,11 +227,23 @@ def _completed(
         position=None if positions is None else float(positions[0]),
         position_unit=position_unit(study, here),
         loads=_governing_loads(task, here),
+        shank_angles=tuple(_shank_angles(task, row.case, time)),
         exponent=section_exponent(task.pin, row.places.section if row.places else None),
         depends_on=depends_on(row),
         published_max_von_mises=published_stress,
         published_safety_factor=published_factor,
     )
+
+
+def _shank_angles(task: Task, case: str, time: float | None) -> Iterator[tuple[str, float]]:
+    """Yield the directions of the shanks that are known, degrees."""
+    now = None if time is None else np.array([time])
+    turning = task.shanks.get(case, {})
+    for lug in task.lugs:
+        if lug.connection in turning:
+            yield lug.connection, math.degrees(turning[lug.connection].at(now, 1)[0])
+        elif lug.shank is not None and lug.shank.angle is not None:
+            yield lug.connection, math.degrees(lug.shank.angle)
 
 
 def _held(task: Task, joint: JointResult | None) -> str:
