@@ -17,9 +17,9 @@ from reports.page.stress_along import StressAlong, governing_rows, surface_of
 from reports.page.stress_panel import LOAD_COLOUR
 
 SIZE = 240.0  # of the picture; below it are two lines of text
-EYE_SHARE = 0.56  # of the picture, that the eye takes
+EYE_SHARE = 0.5  # of the picture, that the eye takes
 PRESSURE_SHARE = 0.45  # of the pin's radius, that the largest pressure takes
-SHANK_REACH = 1.6  # radii of the eye, to which a shank is drawn where it is longer
+SHANK_REACH = 1.5  # radii of the eye, to which a shank is drawn where it is longer
 PIN_COLOUR = "#9dbbe0"
 
 

@@ -12,6 +12,7 @@ from reports.format.ranges import error_range, factor_range
 from reports.page.joint import JointPart, joint_part
 from reports.page.lets_go import LetsGoPart, lets_go_parts
 from reports.page.loads import loads_at
+from reports.page.lug_clauses import LugClauses, lug_clauses
 from reports.page.places import PlacesPart, places_part
 from reports.page.second_opinion import OpinionPart, opinion_part
 from reports.page.stress_along import governing_rows
@@ -29,7 +30,8 @@ class PinCase:
 
     governs: whether it is the worst case of the pin, or of one of its checks.
     checks: hand checks. margins: of safety. places: where stress is read. joint: contact with lugs.
-    opinion: of CalculiX. ratio: computed maximum over the published one.
+    opinion: of CalculiX. ratio: computed maximum over the published one. clauses: of its lugs by
+    several codes.
     """
 
     result: PinResult
@@ -44,6 +46,7 @@ class PinCase:
     joint: JointPart | None
     opinion: OpinionPart | None
     ratio: float | None
+    clauses: tuple[LugClauses, ...]
 
 
 @dataclass(frozen=True)
@@ -116,6 +119,7 @@ def _case(results: Results, row: PinResult, governs: bool) -> PinCase:
         joint_part(row, units),
         opinion_part(row.second_opinion, units),
         ratio(row.max_von_mises, row.published_max_von_mises),
+        lug_clauses(row, units),
     )
 
 
