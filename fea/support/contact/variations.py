@@ -23,11 +23,12 @@ from fea.section.section_stress import SectionField
 from fea.singular.singularities import singularities_of
 from fea.support.contact.coarser_cells import on_coarser_cells
 from fea.support.contact.contact import ContactProblem, ContactState
+from fea.support.contact.friction import TURNING, coefficient_words, rubs, turning
 from fea.support.contact.pressure_loads import MODE_TOLERANCE, PressureLoads, PressureModes, stacked
 from fea.support.contact.solve_joint import ContactModel, JointContact
 from fea.support.lugs.changes import joint_variations
 from fea.support.lugs.rings import USUAL_RING_COUNT
-from fea.support.records import JointRange, Variation
+from fea.support.records import FRICTION, JointRange, Variation
 
 # Of the tolerance: the part that the cells may use. Chosen by judgement; the rest is for meshes and
 # instants (MIN_TOLERANCE_SHARE of fea.core.requirement).
@@ -87,7 +88,8 @@ class ResolutionComparison:
             replace(x, max_von_mises=largest * x.max_von_mises, beneath=below * (x.beneath or 0.0))
             for x in self.over
         )
-        ends = [largest, *(x.max_von_mises for x in over)]
+        ends = [largest, *(x.max_von_mises for x in over if x.what != FRICTION)]
+        ends += [max(largest, x.max_von_mises) for x in over if x.what == FRICTION]
         return JointRange((min(ends), max(ends)), over)
 
     def is_at(self, links: PinLoads, case: PinLoads) -> bool:
@@ -141,7 +143,8 @@ def compare(
         for contact, both, others in zip(at, exact, varied, strict=True)
     ]
     stress = _at_places(model, requirement, every)
-    for contact, names, loads, why in zip(at, over, every, missing, strict=True):
+    rubbed = _rubbed(model, requirement, at, vary)
+    for contact, names, loads, why, more in zip(at, over, every, missing, rubbed, strict=True):
         first, twice, *others = (stress.pop(0) for _ in loads)
         like = first if few else twice  # on the same cells as the others
         ratios = tuple(
@@ -154,8 +157,38 @@ def compare(
         )
         cells = _by_cells(first, twice, model.cells.rings)
         left_out = f"not included: {'; '.join(why)}" if why else ""
-        out.append(ResolutionComparison(first, cells, contact.loads.links, ratios, left_out))
+        over_all = ratios + more
+        out.append(ResolutionComparison(first, cells, contact.loads.links, over_all, left_out))
     return tuple(out)
+
+
+def _rubbed(
+    model: ContactModel, requirement: Requirement, at: Sequence[JointContact], vary: Sequence[bool]
+) -> list[tuple[Variation, ...]]:
+    """The variations of each contact by the friction of lugs, relative to those without.
+
+    They are compared among themselves, since loads by friction have edges where stress is not read.
+    """
+    if not rubs(model.lugs):
+        return [()] * len(at)
+    words = coefficient_words(model.lugs)
+    out = []
+    for contact, so in zip(at, vary, strict=True):
+        changed = {TURNING: turning(model, contact.contact[0], contact.loads)} if so else {}
+        every = [loads for both in changed.values() for loads in both]
+        plain, *stress = _at_places(model, requirement, [[contact.loads, *every]])
+        names = [f"{words}, {name}" for name, both in changed.items() for _ in both]
+        most: dict[str, Variation] = {}
+        for name, x in zip(names, stress, strict=True):
+            known = most.get(name, Variation(FRICTION, name, 0.0, beneath=0.0))
+            row, deep = x.row / (plain.row or 1.0), x.beneath / (plain.beneath or 1.0)
+            most[name] = replace(
+                known,
+                max_von_mises=max(known.max_von_mises, row),
+                beneath=max(known.beneath or 0.0, deep),
+            )
+        out.append(tuple(most.values()))
+    return out
 
 
 def uncompared(contact: JointContact) -> ResolutionComparison:

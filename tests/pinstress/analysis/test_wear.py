@@ -13,6 +13,7 @@ import pytest
 
 import pinstress
 from pinstress.analysis.gather.gather import loads_only
+from pinstress.study.model.pins import pin as pin_of
 from reports.data.results import Results
 from reports.files import write_loads
 from tests.conftest import ROOT
@@ -53,6 +54,7 @@ def test_a_slider_crank_slides_as_its_closed_form_says(
 
 def test_pressure_and_p_v_are_those_of_the_forces(crank: Results) -> None:
     (table,) = crank.reactions
+    assert table.times is not None
     (row,) = (row for row in crank.wear if row.connection == "A")
     k = table.connections.index("A")
     pressure = np.linalg.norm(table.forces[:, k, :2], axis=1) / BAND_A
@@ -60,6 +62,8 @@ def test_pressure_and_p_v_are_those_of_the_forces(crank: Results) -> None:
     rate = motion.angular_velocity[:, [motion.bodies.index(b) for b in ("rod", "crank")]]
     product = pressure * 8.0 * np.abs(rate[:, 0] - rate[:, 1])
     assert row.mean_pressure == pytest.approx(table.largest[k].force / BAND_A, rel=1e-4)
+    assert row.velocity is not None
+    assert row.pressure_velocity is not None
     assert product.max() * (1.0 - 1e-9) <= row.pressure_velocity
     assert row.pressure_velocity == pytest.approx(product.max(), rel=1e-3)
     assert row.time == pytest.approx(table.times[product.argmax()], abs=2e-3)
@@ -72,7 +76,7 @@ def test_a_floating_pin_may_turn_with_any_of_its_links() -> None:
     (motion,) = (m for m in results.motion if m.case == "retract")
     turn = {body: np.radians(motion.angle[:, k]) for k, body in enumerate(motion.bodies)}
     bodies = {name: row.body for name, row in rows.items()}
-    (radius,) = {s[1] / 2.0 for s in next(x for x in results_shapes() if x[0] == "E")[1]}
+    radius = band_radius("E")
     for name, row in rows.items():
         assert row.floats
         paths = {
@@ -84,13 +88,11 @@ def test_a_floating_pin_may_turn_with_any_of_its_links() -> None:
         assert row.distance == pytest.approx(max(paths.values()), rel=1e-4)
 
 
-def results_shapes() -> list[tuple[str, list[tuple[float, float]]]]:
-    """Names of the pins of the landing gear, and length and diameter of their bands, in."""
-    table = pinstress.load_study(ROOT / "studies" / "landing_gear.toml").table
-    return [
-        (name, [(s.length / 0.0254, s.diameter / 0.0254) for s in pin.profile if s.connection])
-        for name, pin in table.pin.items()
-    ]
+def band_radius(pin: str) -> float:
+    """The radius of the bands of a pin of the landing gear, which are all alike, in."""
+    shape = pin_of(pinstress.load_study(ROOT / "studies" / "landing_gear.toml"), pin)
+    (radius,) = {shape.band(name).radius for name in shape.connections}
+    return radius / 0.0254
 
 
 def test_a_particle_has_a_pressure_but_no_rotation() -> None:
