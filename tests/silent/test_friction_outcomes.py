@@ -12,6 +12,7 @@ from fea.support.contact.variations import NOWHERE, ResolutionComparison
 from fea.support.records import FRICTION, JointRange, Variation
 from reports.data.dependence import depends_on
 from reports.data.results import PinResult
+from reports.data.unknowns import unknowns
 from reports.format.words import result_words
 from tests.fea.support.contact.test_solve_in_lugs import STEADY
 from tests.silent.test_outcomes import in_contact
@@ -51,3 +52,12 @@ def test_the_range_over_the_joint_has_no_lower_end_by_friction() -> None:
     )
     known = ResolutionComparison(NOWHERE, NOWHERE, STEADY, over)
     assert known.range(200.0).max_von_mises == pytest.approx((190.0, 260.0))
+
+
+def test_friction_is_an_open_value_that_only_lowers_the_factor() -> None:
+    pin = with_friction(1.8, 0.8, 1.3)
+    pin = replace(pin, depends_on=depends_on(pin))
+    ((_, value),) = (row for unknown in unknowns([pin]) for row in unknown.rows)
+    assert (value.what, value.high) == ("friction", pytest.approx(1.8))
+    assert value.low == pytest.approx(1.8 / 1.3)
+    assert value.flips is not None
