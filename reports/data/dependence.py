@@ -11,7 +11,7 @@ import numpy as np
 
 from assess.judgement import BELOW_YIELD, NOT_DECIDED, SAFE
 from fea.core.places import ContactPlace
-from fea.support.records import JointResult, Variation
+from fea.support.records import FRICTION, JointResult, Variation
 from reports.data.decision import factor_ends
 from reports.data.results import Dependence, Floats, LandingRange, PinResult
 
@@ -114,7 +114,8 @@ def _over_both(
     of_landing = float(extreme(r.max_von_mises)) / judged.maximum
     of_joint = extreme(judged.maximum, *over.max_von_mises) / judged.maximum
     beneath = [contact.upper_end if contact else 0.0]
-    beneath += [_upper_end(contact, v) for v in over.variations]
+    counted = (v for v in over.variations if judged.safe or v.what != FRICTION)
+    beneath += [_upper_end(contact, v) for v in counted]
     deep = of_landing * extreme(beneath)
     stress = judged.maximum * of_landing * of_joint
     fails_beneath = deep > judged.permitted
@@ -145,8 +146,8 @@ def _over_joint(
 ) -> Iterator[Dependence]:
     """Yield the variations of the joint that change the outcome.
 
-    A row that fails is safe at another value only if the stress beneath contact is safe there, too.
-    A row that is safe, beneath contact too, may no longer be so there.
+    A row that fails is safe at another value only if the stress beneath contact is safe there, too,
+    and never by friction. A row that is safe, beneath contact too, may no longer be so there.
     """
     over = joint.range if joint else None
     if joint is None or over is None:
@@ -156,7 +157,8 @@ def _over_joint(
     turning = [
         v
         for v in over.variations
-        if judged.turns(v.max_von_mises, v.interval) and (judged.safe or v not in deep)
+        if judged.turns(v.max_von_mises, v.interval)
+        and (judged.safe or (v not in deep and v.what != FRICTION))
     ]
     for v in turning:
         yield Dependence(

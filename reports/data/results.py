@@ -39,10 +39,12 @@ from reports.data.mechanics import (
 from reports.data.row import SI, Dependence, GoverningLoad, LandingRange, PinResult, Units
 from reports.data.sensitivities import PinSensitivities, Sensitivity
 from reports.data.surface import Surface
+from reports.data.wear import BandWear
 
 __all__ = [
     "SI",
     "BandLoad",
+    "BandWear",
     "BeamCheck",
     "Dependence",
     "Dimensioned",
@@ -230,6 +232,7 @@ class Results:
     published: tuple[PublishedValue, ...] = ()
     legs: tuple[LegTable, ...] = ()
     drops: tuple[DropRecord, ...] = ()
+    wear: tuple[BandWear, ...] = ()
     surfaces: tuple[Surface, ...] = ()
     changes: tuple[Remedy, ...] = ()
     sensitivities: tuple[PinSensitivities, ...] = ()

@@ -210,4 +210,6 @@ def beyond_foundations(pin: Pin, lugs: Iterable[Lug]) -> str:
             return f"lug {lug.connection} has an interference, whose stress it does not include"
         if lug.bushing is not None:
             return f"lug {lug.connection} has a bushing, for which it has no stiffness"
+        if lug.friction:
+            return f"lug {lug.connection} has friction, which needs the pressures of contact"
     return ""

@@ -230,8 +230,10 @@ def assumed_lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> Assumed
         return AssumedLugs(why="one band alone does not show how the pin is supported")
     made_of = material(study, table.material)
     try:
+        # Without friction, as this range is by a beam on foundations.
         assumed = tuple(
-            _lug(study, profile, name, table.lug.get(name, LugTable()), made_of) for name in names
+            replace(_lug(study, profile, name, _given(table, name), made_of), friction=0.0)
+            for name in names
         )
     except ArgumentError as error:
         return AssumedLugs(why=str(error))
@@ -269,6 +271,7 @@ def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Mater
         bushing,
         _range(given.range, fit),
         None if given.shank is None else _shank(given.shank, outer),
+        given.friction,
     )
 
 
