@@ -35,8 +35,10 @@ def material(study: Study, name: str) -> Material:
     at_yield = m.yield_strength if m.hardened is None else m.hardened.core
     strengths = at_yield, m.ultimate_strength, m.shear_strength, m.bearing_strength
     elastic = m.youngs_modulus, m.poisson_ratio, m.density
-    strains = m.ultimate_strain, m.failure_strain
-    return Material(name, *elastic, *strengths, tuple(m.hardening), *strains)
+    return Material(
+        name, *elastic, *strengths, hardening=tuple(m.hardening),
+        ultimate_strain=m.ultimate_strain, failure_strain=m.failure_strain,
+    )  # fmt: skip
 
 
 def pin(study: Study, name: str) -> PinLike:
