@@ -18,6 +18,7 @@ class Material:
 
     youngs_modulus, strengths: Pa; shear_strength and bearing_strength are ultimate ones.
     density: kg/m^3.
+    thermal_expansion: mean coefficient, 1/K.
     ultimate_strain: total strain at the ultimate strength.
     hardened: stretches of a pin whose surface is hardened, in the order of z. The yield strength is
     then that of the weakest core or of what is not hardened, for all that takes one alone.
@@ -43,6 +44,7 @@ class Material:
     hardened: tuple[Hardened, ...] = ()
     unhardened: float | None = None
     failure_strain: float | None = None
+    thermal_expansion: float | None = None
 
     def __post_init__(self) -> None:
         if not 0.0 < self.youngs_modulus < np.inf:

@@ -36,9 +36,14 @@ def material(study: Study, name: str) -> Material:
     strengths = at_yield, m.ultimate_strength, m.shear_strength, m.bearing_strength
     elastic = m.youngs_modulus, m.poisson_ratio, m.density
     return Material(
-        name, *elastic, *strengths, hardening=tuple(m.hardening),
-        ultimate_strain=m.ultimate_strain, failure_strain=m.failure_strain,
-    )  # fmt: skip
+        name,
+        *elastic,
+        *strengths,
+        tuple(m.hardening),
+        m.ultimate_strain,
+        failure_strain=m.failure_strain,
+        thermal_expansion=m.thermal_expansion,
+    )
 
 
 def pin(study: Study, name: str) -> PinLike:

@@ -19,14 +19,15 @@ from pinstress.study.schema.types import (
 
 
 class BushingTable(StrictTable):
-    """A ring of another material bonded in the bore of a lug."""
+    """A ring of another material in the bore of a lug: bonded, or pressed in."""
 
     thickness: PositiveLength
     """Wall thickness."""
     material: str
     """Name of a `[material]`."""
     interference: NotNegativeLength = 0.0
-    """Outer diameter of the bushing minus the diameter of the hole into which it was pressed."""
+    """Outer diameter of the bushing minus the diameter of the hole into which it was pressed.
+    Default: it is bonded."""
 
 
 class ShankTable(StrictTable):
@@ -113,7 +114,7 @@ class LugTable(StrictTable):
     """Resistance of the link to tilting of its eye: "guided" (rigid), "free", or a stiffness.
     Default: the bending stiffness of an eye clamped at a distance of 0.8 outer diameters."""
     bushing: BushingTable | None = None
-    """A bushing bonded in the eye."""
+    """A bushing in the eye."""
     shank: ShankTable | None = None
     """The outline of the lug in its plane, which its own stress requires."""
     factors: LugFactorsTable = LugFactorsTable()

@@ -20,6 +20,7 @@ from pinstress.study.schema.types import (
     StrictTable,
     Switch,
     Tapered,
+    ThermalExpansion,
 )
 
 
@@ -54,6 +55,9 @@ class MaterialTable(StrictTable):
     """Poisson's ratio."""
     density: Density | None = None
     """Density, for the weight and inertia of the pin. Default: no weight."""
+    thermal_expansion: ThermalExpansion | None = None
+    """Mean coefficient of thermal expansion between the reference temperature and those of the
+    cases, which a case with a `temperature` needs of pins in lugs, of these and their bushings."""
     yield_strength: Stress | None = None
     """Yield strength. Without it no safety factors are computed."""
     hardened: HardenedTable | None = None

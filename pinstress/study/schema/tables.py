@@ -26,6 +26,7 @@ from pinstress.study.schema.types import (
     Number,
     PositiveLength,
     StrictTable,
+    Temperature,
 )
 from pinstress.study.schema.vary import ReliabilityTable, VaryTable
 
@@ -74,6 +75,10 @@ class AnalysisTable(StrictTable):
     """Design factor N_d of ASME BTH-1 for the code "lifting"; the standard gives it by the design
     category of the device."""
 
+    reference_temperature: Annotated[
+        Temperature, Field(json_schema_extra={"default": "20 degC"})
+    ] = 293.15
+    """Temperature at which the dimensions, clearances and interferences of the study hold."""
     bending_moment: Literal["joint", "formula"] = "joint"
     """Which bending moments and shear forces the checks of pins in solved joints take: those of
     the joint model ("joint") or those of even loads on the bands ("formula"); the others are
