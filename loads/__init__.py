@@ -5,6 +5,7 @@ All quantities are in SI units. Of the other packages here, it imports only `pin
 
 from loads.forces.acting import Applied, ForceLaw, Load, Spring, Varying
 from loads.forces.curve import ForceTable
+from loads.forces.holding import locked
 from loads.forces.inverse_dynamics import Dynamics, motion_reactions
 from loads.forces.measures import Clock, Distance, Measure, Position
 from loads.forces.over_time import (
@@ -123,6 +124,7 @@ __all__ = [
     "jump_times",
     "ledger",
     "leg_dynamics",
+    "locked",
     "mobility",
     "motion_reactions",
     "move",

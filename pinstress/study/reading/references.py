@@ -312,6 +312,9 @@ def _of_mechanism(mechanism: MechanismTable) -> Iterator[Wrong]:
             yield from _known(f"{where}.fixed_in", "body", joint.fixed_in, bodies)
         for connection, body in joint.connections.items():
             yield from _known(f"{where}.connections.{connection}", "body", body, bodies)
+    for name, part in mechanism.body.items():
+        where = f"mechanism.body.{name}.welded_to"
+        yield from _known(where, "body", part.welded_to or "ground", bodies)
     for place, named in named_joints(mechanism):
         yield from _known(f"mechanism.{place}", "joint", named, mechanism.joint)
     for i, drive in enumerate(mechanism.drive, 1):

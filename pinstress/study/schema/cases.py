@@ -20,6 +20,7 @@ from pinstress.study.schema.types import (
     Number,
     StrictTable,
     Switch,
+    Temperature,
     Time,
     Velocity,
     Weight,
@@ -38,6 +39,9 @@ class CaseTable(StrictTable):
     edge stress is unbounded."""
     clamp: dict[str, list[str]] = {}
     """Pins that are clamped differently in this case, each with its clamped surfaces."""
+    temperature: Temperature | None = None
+    """Temperature of all pins, lugs and bushings, the same throughout. It changes clearances and
+    interferences by `thermal_expansion` of the materials. Default: `reference_temperature`."""
 
 
 class GivenCase(CaseTable):

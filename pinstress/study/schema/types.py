@@ -38,6 +38,7 @@ REMOVED_KEYS = {
 UNKNOWN_KEY_ERROR = "unknown_key"  # the type of pydantic's error
 MIN_SI_VALUE = 1.0 / MAX_SI_VALUE  # in SI: its square does not underflow
 FORBIDDEN_CHARACTERS = '/\\:*?"<>|'  # in names of files, on some system
+MAX_THERMAL_EXPANSION = 1e-3  # 1/K: metals have 1e-6 to 4e-5, rubber 2e-4
 MAX_NAME_LENGTH = 100  # characters as quoted: two names fit into a file name
 
 
@@ -153,6 +154,17 @@ def _not_negative(value: float) -> float:
 
 
 POSITIVE = Within(_positive, "> 0")
+
+
+def _expansion(value: float) -> float:
+    if not abs(value) < MAX_THERMAL_EXPANSION:
+        raise ArgumentError(
+            f"must be less than {MAX_THERMAL_EXPANSION:g} 1/K; steel has about 12e-6 1/K",
+            "out-of-range",
+        )
+    return value
+
+
 NOT_NEGATIVE = Within(_not_negative, "≥ 0")
 PIN_SIZED = Within(_pin_sized, "from 1 µm to 1 km")
 
@@ -232,6 +244,11 @@ def _usable_section(name: str) -> str:
 
 CaseName = Annotated[str, AfterValidator(_usable_section)]
 Point = tuple[Length, Length]
+Temperature = Annotated[float, Quantity("temperature")]
+ThermalExpansion = Annotated[
+    Annotated[float, Quantity("thermal expansion")],
+    Within(_expansion, f"less than {MAX_THERMAL_EXPANSION:g} 1/K"),
+]
 TiltStiffness = Annotated[Annotated[float, Quantity("torsional stiffness")], POSITIVE]
 
 JointOrPoint = Annotated[
