@@ -89,6 +89,8 @@ class LugStress:
     error_estimate: of max_von_mises, the sum of its parts: mesh and sectors, rings through the
     thickness, sampling in time.
     assumed: what the study does not state.
+    interface: of a pressed bushing in its hole, "bonded" or "frictionless": friction is between
+    the two, and the larger stress counts. other_interface: the stress with the other one.
     """
 
     connection: str
@@ -106,6 +108,8 @@ class LugStress:
     sampling: Stress
     yield_strength: Stress | None = None
     assumed: str = ""
+    interface: str = ""
+    other_interface: Stress | None = None
 
     @property
     def safety_factor(self) -> float | None:

@@ -36,6 +36,8 @@ LUG_ORDER = (
     "place",
     "max_von_mises",
     "error_estimate",
+    "interface",
+    "other_interface",
     "max_hoop_stress",
     "angle",
     "time",
