@@ -156,11 +156,14 @@ def test_names_and_the_order_of_cases_change_nothing(seed: str) -> None:
 
 
 @seeds
-def test_twice_as_many_flights_do_twice_the_damage(seed: str) -> None:
-    """By Miner's rule."""
+def test_twice_as_many_occurrences_do_more_damage_at_most_in_proportion(seed: str) -> None:
+    """Where cases stress a point either way, the one range from the first to the second case is
+    counted once in a flight, however often both occur.
+    """
     tree, one = drawn(seed), before(seed)
     twice = {"occurrences": {"pull": 2, "push": 6}, "life": 100}
     more = answers(tree | {"fatigue": twice})
     assert more.rows == one.rows
     assert min(one.damage.values()) > 0.0
-    assert more.damage == pytest.approx({pin: 2.0 * d for pin, d in one.damage.items()})
+    for pin, damage in one.damage.items():
+        assert damage * (1.0 + ROUND_OFF) < more.damage[pin] <= 2.0 * damage * (1.0 + ROUND_OFF)
