@@ -132,6 +132,10 @@ def _of_cases(table: StudyTable, bears: dict[str, str]) -> Iterator[Wrong]:
                     if borne is not None and connection == table.pin[borne].balance:
                         yield Wrong(closed_message(f"case.{name}.{key}.{connection}", borne),
                                     code="balances-the-others")  # fmt: skip
+            for file in case.tables:
+                for connection in file.connections:
+                    what = "pin has a connection"
+                    yield from _known(f"case.{name}.table", what, connection, bears)
         elif isinstance(case, LegCase):
             if table.spatial_leg is None:
                 yield Wrong(f"case.{name}: kind 'spatial_leg' needs a [spatial_leg]", code="no-leg")
