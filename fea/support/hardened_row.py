@@ -14,7 +14,8 @@ from typing import Literal
 
 import numpy as np
 
-from fea.core.hardened import StrengthPart
+from fea.core.hardened import StrengthPart, linear_strength
+from fea.core.material import Material
 from fea.core.mesh_result import Point
 from fea.core.over_time import Between, rise_between, through_time
 from fea.core.peak import ErrorParts, Maximum, Reason
@@ -25,6 +26,7 @@ from fea.harmonic.field import HarmonicField
 from fea.harmonic.part_field import PartField
 from fea.section.place import found_section
 from fea.section.section_stress import SectionField
+from fea.support.records import JointResult
 from fea.support.support import StressReading
 from geometry import Pin
 
@@ -244,3 +246,29 @@ def in_core(place: ContactPlace, search: PartSearch, parts: Sequence[StrengthPar
         beneath_time=deepest.time,
         strength=deepest.part.strength,
     )
+
+
+def range_of_row(
+    joint: JointResult | None, row: Maximum, material: Material, pin: Pin
+) -> JointResult | None:
+    """A range of the stress at the surface, which foundations give, as of the part that governs a
+    row: the stress over which case or core yield if it falls linearly to the axis. In notches it
+    falls faster, so that this is safe.
+    """
+    if joint is None or joint.range is None or row.strength is None:
+        return joint
+    parts = material.strength_parts(pin.length)
+    times = row.strength / linear_strength(parts, pin.largest_diameter / 2.0)
+
+    def ends(of: tuple[float, float]) -> tuple[float, float]:
+        return times * of[0], times * of[1]
+
+    over = tuple(
+        replace(
+            x, max_von_mises=times * x.max_von_mises,
+            interval=None if x.interval is None else ends(x.interval),
+        )
+        for x in joint.range.variations
+    )  # fmt: skip
+    span = ends(joint.range.max_von_mises)
+    return replace(joint, range=replace(joint.range, max_von_mises=span, variations=over))
