@@ -23,7 +23,7 @@ from fea.core.pin_loads import PinLoads
 from fea.core.places import ContactPlace, PartPlace, Places
 from fea.core.verdict import Evidence, judge
 from fea.harmonic.field import HarmonicField
-from fea.harmonic.part_field import PartField
+from fea.harmonic.part_field import PartField, Where
 from fea.section.place import found_section
 from fea.section.section_stress import SectionField
 from fea.support.records import JointResult
@@ -107,24 +107,36 @@ class PartSearch:
 
     def of(self, parts: Sequence[StrengthPart]) -> list[FoundPart]:
         """The largest stresses of all parts, of field and sections."""
-        return [place for part in parts for place in (self.in_field(part), self._in_section(part))]
+        every = [place for part in parts for place in (self.in_field(part), self._in_section(part))]
+        if self.reading.loads.pressed is not None:
+            every += [self._beside_lugs(part) for part in parts if part.part == "core"]
+        return every
 
-    def in_field(self, part: StrengthPart, beneath: bool = False) -> FoundPart:
-        """The largest stress of a part in the field.
+    def _beside_lugs(self, part: StrengthPart) -> FoundPart:
+        """The largest stress of a core beneath free surface, also beside lugs.
 
-        beneath: only what lies beneath contact.
+        There the field has the stress of contact, too, which is no part of a row: so it is at most
+        that of the surface less what it falls linearly, which in a notch it does faster.
         """
+        core, radius = self.in_field(part, "beside"), self.pin.largest_diameter / 2.0
+        most = self.surface.value * (1.0 - part.least_depth / radius)
+        if core.value <= most:
+            return core
+        return replace(core, value=most, errors=self._errors(part, most, 0.0, False))
+
+    def in_field(self, part: StrengthPart, where: Where = "away") -> FoundPart:
+        """The largest stress of a part in the field; where: as of PartField."""
         answer = self.reading.answer
         assert isinstance(answer, HarmonicField)
-        field, loads, rise = PartField(answer, self.pin, part, beneath), self.reading.loads, 0.0
+        field, loads, rise = PartField(answer, self.pin, part, where), self.reading.loads, 0.0
         if self.between is not None and len(loads) > 1:
             loads = through_time(field, loads, self.between, self.tolerance)
             rise = rise_between(field, loads, self.between)
         top = field.maximum(loads)
         now = loads.at(np.array([top.instant]))
-        errors = self._errors(part, top.value, rise, beneath)
+        errors = self._errors(part, top.value, rise, where == "beneath")
         if isinstance(self.reading.coarser, HarmonicField):
-            coarse = PartField(self.reading.coarser, self.pin, part, beneath).largest(now)[0]
+            coarse = PartField(self.reading.coarser, self.pin, part, where).largest(now)[0]
             ratio = self.reading.mesh_ratio
             change = TWO_MESH_FACTOR * abs(top.value - coarse) / (ratio * ratio - 1.0)
             errors = replace(errors, mesh=max(errors.mesh, change))
@@ -236,7 +248,7 @@ def in_core(place: ContactPlace, search: PartSearch, parts: Sequence[StrengthPar
     or of what is not hardened, by its strength.
     """
     softer = [part for part in parts if part.part != "case"]
-    deepest = max((search.in_field(part, beneath=True) for part in softer), key=lambda x: x.use)
+    deepest = max((search.in_field(part, "beneath") for part in softer), key=lambda x: x.use)
     error = place.beneath_error / place.beneath if place.beneath else 0.0
     return replace(
         place,
