@@ -22,7 +22,7 @@ from assess.clauses import (
     melcon_hoblit,
 )
 from assess.clauses.lug_checks import lug_checks
-from assess.clauses.lug_collapse import lug_collapse
+from assess.clauses.lug_collapse import lug_collapse, lug_rupture
 from assess.codes import DEFAULT_CODES, Code
 from assess.margin import Margin, for_comparison
 from assess.situation import Situation
@@ -49,6 +49,7 @@ CHECKS: tuple[Check, ...] = (
     lug_stress,
     collapse,
     lug_collapse,
+    lug_rupture,
     mean_shear,
     neutral_axis_shear,
     double_shear,
@@ -79,6 +80,7 @@ AIRCRAFT: tuple[Check, ...] = (
     melcon_hoblit.transverse,
     melcon_hoblit.transverse_yield,
     melcon_hoblit.oblique,
+    melcon_hoblit.oblique_yield,
     ekvall.ekvall_transverse,
     ekvall.ekvall_bore_stress,
     affdl_joint.affdl_joint,

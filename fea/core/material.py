@@ -18,10 +18,12 @@ class Material:
 
     youngs_modulus, strengths: Pa; shear_strength and bearing_strength are ultimate ones.
     density: kg/m^3.
+    thermal_expansion: mean coefficient, 1/K.
     ultimate_strain: total strain at the ultimate strength.
     hardened: stretches of a pin whose surface is hardened, in the order of z. The yield strength is
     then that of the weakest core or of what is not hardened, for all that takes one alone.
     unhardened: the yield strength of what is not hardened, Pa, beside such stretches.
+    failure_strain: equivalent plastic strain at which a lug breaks.
     hardening: equivalent plastic strains and yield stresses (Pa) there, linear between them from
     the yield strength on and constant after the last.
 
@@ -41,6 +43,8 @@ class Material:
     ultimate_strain: float | None = None
     hardened: tuple[Hardened, ...] = ()
     unhardened: float | None = None
+    failure_strain: float | None = None
+    thermal_expansion: float | None = None
 
     def __post_init__(self) -> None:
         if not 0.0 < self.youngs_modulus < np.inf:

@@ -61,7 +61,7 @@ def same_shape(one: Task, other: Task) -> bool:
 
 def _shape(task: Task) -> object:
     task = elastic_task(task)
-    eyes = [replace(x, clearance=0.0, tilt=0.0, range=LugRange()) for x in task.lugs]
+    eyes = [replace(x, clearance=0.0, growth=0.0, tilt=0.0, range=LugRange()) for x in task.lugs]
     return task.pin, task.material, eyes
 
 

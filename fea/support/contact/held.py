@@ -21,7 +21,7 @@ import numpy as np
 from fea.core.equilibrium import out_of_balance
 from fea.core.linear_solver import SolveError
 from fea.core.peak import Maximum, Reason, meets_limit
-from fea.core.pin_loads import PinLoads
+from fea.core.pin_loads import Floats, PinLoads
 from fea.core.places import CaseCrushing
 from fea.core.requirement import Requirement
 from fea.core.verdict import Evidence
@@ -35,6 +35,7 @@ from fea.support.cell_pressure import CellPressure
 from fea.support.contact.case_crushing import case_crushing, pressed_most
 from fea.support.contact.contact_place import contact_place
 from fea.support.contact.cut_in_lugs import neglected, with_neglected
+from fea.support.contact.friction import band_torques, rubs
 from fea.support.contact.pressed_cases import Candidates, Compared, PressedCases
 from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
 from fea.support.contact.unit_pressures import unit_model, unit_patterns
@@ -284,9 +285,16 @@ class HeldContact:
             place = in_core(place, search, material.strength_parts(model.pin.length))
             place = replace(place, crushing=self._crushing(case, contact))
         over = known.row.range(row, place.beneath)
-        joint = contact_result(contact, over, solution.loads, known.row.left_out)
+        torques = self._friction_torques(solution.loads.links)
+        joint = contact_result(contact, over, solution.loads, known.row.left_out, torques)
         peak = with_contact(peak, place)
         return replace(solution, peak=peak, joint=joint, pressure=_pressure(contact))
+
+    def _friction_torques(self, links: PinLoads) -> Floats | None:
+        """The largest torque of friction of each lug over the loads' instants, (B,) N m."""
+        if not rubs(self.model.lugs):
+            return None
+        return np.asarray(band_torques(self.model, self.contact.states(links)).max(axis=0))
 
     def _evidence(
         self, reading: StressReading, case: PinLoads, contact: JointContact, cells: float

@@ -25,6 +25,7 @@ from assess.strength.hand_checks import BENDING_TEXTS
 from fea.core.pin_loads import PinLoads
 from fea.support.lugs.fit import on_structure
 from fea.support.records import JointResult
+from pinstress.study.model.lost_fits import lost_fits
 from pinstress.study.model.requirements import required_factor
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
@@ -63,6 +64,7 @@ def assessed(study: Study, task: Task, row: PinResult) -> PinResult:
         margins=tuple(margins),
         worst=tuple(worst_places([*counted, *_not_made(s, why)])),
         arms=None if why else _arms(s, task, row),
+        lost_fits=lost_fits(study, task, row.case),
     )
 
 

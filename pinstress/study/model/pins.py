@@ -35,7 +35,15 @@ def material(study: Study, name: str) -> Material:
     at_yield = m.yield_strength if m.hardened is None else m.hardened.core
     strengths = at_yield, m.ultimate_strength, m.shear_strength, m.bearing_strength
     elastic = m.youngs_modulus, m.poisson_ratio, m.density
-    return Material(name, *elastic, *strengths, tuple(m.hardening), m.ultimate_strain)
+    return Material(
+        name,
+        *elastic,
+        *strengths,
+        tuple(m.hardening),
+        m.ultimate_strain,
+        failure_strain=m.failure_strain,
+        thermal_expansion=m.thermal_expansion,
+    )
 
 
 def pin(study: Study, name: str) -> PinLike:

@@ -20,6 +20,7 @@ from pinstress.study.schema.types import (
     StrictTable,
     Switch,
     Tapered,
+    ThermalExpansion,
 )
 
 
@@ -54,6 +55,9 @@ class MaterialTable(StrictTable):
     """Poisson's ratio."""
     density: Density | None = None
     """Density, for the weight and inertia of the pin. Default: no weight."""
+    thermal_expansion: ThermalExpansion | None = None
+    """Mean coefficient of thermal expansion between the reference temperature and those of the
+    cases, which a case with a `temperature` needs of pins in lugs, of these and their bushings."""
     yield_strength: Stress | None = None
     """Yield strength. Without it no safety factors are computed."""
     hardened: HardenedTable | None = None
@@ -68,6 +72,9 @@ class MaterialTable(StrictTable):
     ultimate_strain: Annotated[Number, Field(gt=0.0, lt=1.0)] | None = None
     """Total strain at the ultimate strength, for the plastic bending of pins after Cozzone (code
     "aircraft")."""
+    failure_strain: Annotated[Number, Field(gt=0.0, lt=3.0)] | None = None
+    """Equivalent plastic strain at which a lug breaks, for its ultimate load where limit loads are
+    requested, ln(1 + A) of the elongation A for instance. Default: no ultimate load."""
     fatigue: SnTable | None = None
     """Stress-life curve, for `fatigue.method` "signed-von-mises" and "critical-plane"."""
     fkm: FkmTable | None = None
