@@ -101,7 +101,7 @@ def _ways(check: JudgedCheck, shape: PinShape | None, results: Results) -> list[
         size = f"{engineering(passing.value, 3)} {units.length}"
         ways.append(PASSING_WORDS.get(passing.symbol, f"{passing.symbol} {{}}").format(size))
     if check.used <= MAX_STRENGTH_RATIO:
-        ways.insert(0, _stronger(check, units))
+        ways.append(_stronger(check, units))
     return ways
 
 
@@ -115,8 +115,8 @@ def _at_face(check: JudgedCheck, lug: LugSketch) -> bool:
 def _of_face(used: float, lug: LugSketch, pin: float, units: Units) -> list[str]:
     """Return the pin and eye that are enough where a bending pin loads the face of a lug."""
     return [
-        f"a pin of {_now(used, pin, units)} in an eye of {_now(used, lug.outer_diameter, units)}, "
-        "because its pin bends and loads a face of it"
+        f"a stiffer pin, of {_now(used, pin, units)}, in an eye of "
+        f"{_now(used, lug.outer_diameter, units)}"
     ]
 
 
