@@ -54,7 +54,7 @@ from loads.motion.singular_positions import MotionBlocked
 from loads.tables.csv_table import TableError, read_table
 from loads.tables.force_columns import JointAxes, Layout
 from loads.tables.force_table import jump_times, table_cases
-from loads.tables.grid import Reading
+from loads.tables.grid import FileReading
 from loads.tables.regular_file import MB, FileError, read_regular, require_regular
 from loads.tables.sent_files import noted_files, on_disk, sent_files
 from pinbase.errors import ArgumentError, CodedError
@@ -79,6 +79,7 @@ __all__ = [
     "Energy",
     "Extremum",
     "FileError",
+    "FileReading",
     "ForceLaw",
     "ForceTable",
     "Gear",
@@ -104,7 +105,6 @@ __all__ = [
     "Position",
     "Rack",
     "Reactions",
-    "Reading",
     "Resolved",
     "Sharing",
     "Slider",

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from loads.tables.csv_table import TableError
-from loads.tables.grid import Grid, Reading, empty_columns, is_number, unique_names
+from loads.tables.grid import FileReading, TableGrid, empty_columns, is_number, unique_names
 from pinbase.arrays import Floats
 
 FORCE_COMPONENTS = ("fx", "fy", "fz", "mx", "my", "mz")
@@ -73,10 +73,10 @@ class Layout:
     units: Mapping[str, str] = field(default_factory=dict)
     unit_needed: frozenset[str] = frozenset()
     axes: Mapping[str, JointAxes] = field(default_factory=dict)
-    reading: Reading = field(default_factory=Reading)
+    reading: FileReading = field(default_factory=FileReading)
 
     @property
-    def file_reading(self) -> Reading:
+    def file_reading(self) -> FileReading:
         """How the file is read: also without a header, where all columns are stated by number."""
         columns = self.columns.values()
         numbered = bool(columns) and all(isinstance(c, int) for c in columns)
@@ -104,7 +104,7 @@ class ForceColumn:
     meaning: str
 
 
-def column_index(grid: Grid, meaning: str, at: str | int) -> int:
+def column_index(grid: TableGrid, meaning: str, at: str | int) -> int:
     """The index of a stated column. Raises: TableError unless there is exactly one."""
     file, names = grid.source.file, list(grid.names)
     if isinstance(at, int):
@@ -131,7 +131,7 @@ def column_index(grid: Grid, meaning: str, at: str | int) -> int:
     return names.index(wanted)
 
 
-def force_columns(grid: Grid, layout: Layout, unit: Unit) -> list[ForceColumn]:
+def force_columns(grid: TableGrid, layout: Layout, unit: Unit) -> list[ForceColumn]:
     """The columns of a table with their meaning and factor to SI.
 
     unit: gives the SI value of a unit.
@@ -166,7 +166,7 @@ def force_columns(grid: Grid, layout: Layout, unit: Unit) -> list[ForceColumn]:
     return out
 
 
-def _chosen(grid: Grid, layout: Layout) -> Iterator[tuple[str, int, float]]:
+def _chosen(grid: TableGrid, layout: Layout) -> Iterator[tuple[str, int, float]]:
     """Meaning, index and sign of each column: as the layout states, or by the headers."""
     if not layout.columns:
         unique_names(grid)
@@ -184,7 +184,7 @@ def _chosen(grid: Grid, layout: Layout) -> Iterator[tuple[str, int, float]]:
 
 
 def _factor(
-    grid: Grid, index: int, meaning: str, dimension: str, layout: Layout, unit: Unit
+    grid: TableGrid, index: int, meaning: str, dimension: str, layout: Layout, unit: Unit
 ) -> float:
     """The factor of a column to SI, of the unit in the study, in the row of units or in the header.
 
@@ -229,7 +229,7 @@ def _factor(
     return factor
 
 
-def _require_components(grid: Grid, columns: list[ForceColumn], layout: Layout) -> None:
+def _require_components(grid: TableGrid, columns: list[ForceColumn], layout: Layout) -> None:
     """Raises: TableError unless every force has x and y components, each once."""
     path = grid.source.file
     seen = [(c.connection, c.meaning) for c in columns]

@@ -22,8 +22,8 @@ from loads.tables.force_columns import (
     column_index,
     force_columns,
 )
-from loads.tables.grid import Grid, text_of
-from loads.tables.numbers import Numbers
+from loads.tables.grid import TableGrid, text_of
+from loads.tables.numbers import TableNumbers
 from loads.tables.open_table import open_table, rows_by_case
 from pinbase.arrays import Floats
 
@@ -73,7 +73,7 @@ def read_forces(path: Path, layout: Layout, unit: Unit, known: set[str]) -> Tabl
     if not by_connection:
         raise TableError(f"{path}: no row belongs to a connection of a pin", "no-rows")
     with_numbers = [c.index for c in columns if c.meaning in (*FORCE_COMPONENTS, "time")]
-    cells = Numbers(grid, with_numbers, layout.reading.decimal)
+    cells = TableNumbers(grid, with_numbers, layout.reading.decimal)
     forces = _Forces(grid, cells, columns, layout, unit("", "time"))
     times, values = list[Floats | None](), list[Floats]()
     for name, (some, components) in by_connection.items():
@@ -87,7 +87,7 @@ def read_forces(path: Path, layout: Layout, unit: Unit, known: set[str]) -> Tabl
     return TabledForces(names, _distinct(times[0]), np.stack(values, axis=1))
 
 
-def _rows_of_case(path: Path, grid: Grid, layout: Layout) -> Indices:
+def _rows_of_case(path: Path, grid: TableGrid, layout: Layout) -> Indices:
     """The rows of the case, or all rows of a table without cases.
 
     Raises: TableError where no row has the case.
@@ -105,7 +105,7 @@ def _rows_of_case(path: Path, grid: Grid, layout: Layout) -> Indices:
 
 
 def _by_connection(
-    grid: Grid, columns: list[ForceColumn], rows: Indices, layout: Layout, known: set[str]
+    grid: TableGrid, columns: list[ForceColumn], rows: Indices, layout: Layout, known: set[str]
 ) -> dict[str, tuple[Indices, list[ForceColumn]]]:
     """The rows of each connection and the columns of its components. Raises: TableError."""
     first = 0 if rows is None else rows[0]
@@ -138,8 +138,8 @@ def _by_connection(
 class _Forces:
     """The numbers of a table of forces. time: SI value of the study's unit of time."""
 
-    grid: Grid
-    numbers: Numbers
+    grid: TableGrid
+    numbers: TableNumbers
     columns: list[ForceColumn]
     layout: Layout
     time: float

@@ -32,7 +32,7 @@ Decimal = Literal[".", ","]
 
 
 @dataclass(frozen=True)
-class Reading:
+class FileReading:
     """What a study says of a file that the file does not say itself.
 
     sheet: name of the sheet of a workbook; None: its only one.
@@ -91,7 +91,7 @@ class Rows:
 
 
 @dataclass(frozen=True)
-class Grid:
+class TableGrid:
     """A table.
 
     names: headers of the columns; empty without a header.
@@ -142,7 +142,7 @@ def text_of(cell: object) -> str:
     return str(cell).strip()
 
 
-def grid_of(rows: Rows, numbered: bool) -> Grid:
+def grid_of(rows: Rows, numbered: bool) -> TableGrid:
     """The table in rows of cells.
 
     numbered: whether the study states columns by number, so that the table needs no header.
@@ -183,7 +183,7 @@ def grid_of(rows: Rows, numbered: bool) -> Grid:
         cells = [row[:width] for row in cells]
     columns = tuple(zip(*cells, strict=True))
     names = tuple(" ".join(str(cell).split()) for cell in header)
-    return Grid(source, names, units, unit_place, columns, places, rows.comma)
+    return TableGrid(source, names, units, unit_place, columns, places, rows.comma)
 
 
 def _require_cells(where: str, cells: Sequence[Cell], width: int) -> None:
@@ -207,7 +207,7 @@ def bare_unit(cell: Cell) -> str:
     return "" if text in EMPTY_UNITS else text
 
 
-def unique_names(grid: Grid) -> None:
+def unique_names(grid: TableGrid) -> None:
     """Raises: TableError for a table in which two columns have the same name."""
     for k, name in enumerate(grid.names):
         if name in grid.names[:k]:
@@ -218,7 +218,7 @@ def unique_names(grid: Grid) -> None:
             )
 
 
-def empty_columns(grid: Grid) -> frozenset[int]:
+def empty_columns(grid: TableGrid) -> frozenset[int]:
     """Columns without a name and without a cell that is not empty."""
     return frozenset(
         k

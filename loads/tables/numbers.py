@@ -16,7 +16,7 @@ from loads.tables.csv_table import (
     TableError,
     remedy,
 )
-from loads.tables.grid import Cell, Column, Decimal, Grid, Unreadable
+from loads.tables.grid import Cell, Column, Decimal, TableGrid, Unreadable
 from pinbase.arrays import Floats
 
 FORTRAN_PATTERN = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+))[dD]([-+]?\d+)")
@@ -25,7 +25,7 @@ COMMA_GROUPS_PATTERN = re.compile(r"[-+]?[1-9]\d{0,2}(?:,\d{3})+(?:\.\d*)?")
 POINT_GROUPS_PATTERN = re.compile(r"[-+]?[1-9]\d{0,2}(?:\.\d{3})+(?:,\d*)?")
 
 
-class Numbers:
+class TableNumbers:
     """The numbers of a table, in its units.
 
     grid: the table.
@@ -33,7 +33,7 @@ class Numbers:
     decimal: the decimal sign that the study states.
     """
 
-    def __init__(self, grid: Grid, columns: Sequence[int], decimal: Decimal | None) -> None:
+    def __init__(self, grid: TableGrid, columns: Sequence[int], decimal: Decimal | None) -> None:
         self.grid, self.columns, self.decimal = grid, columns, decimal
 
     def column(self, index: int, rows: Sequence[int] | None) -> Floats:

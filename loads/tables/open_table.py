@@ -6,7 +6,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from loads.tables.csv_table import TableError, read_content
-from loads.tables.grid import Grid, Reading, Source, grid_of, text_of
+from loads.tables.grid import FileReading, Source, TableGrid, grid_of, text_of
 from loads.tables.sent_files import stamp
 from loads.tables.text_grid import text_grid
 from loads.tables.text_rows import text_lines
@@ -20,7 +20,7 @@ OTHER_MARKS = {
 }
 
 
-def open_table(path: Path, reading: Reading) -> Grid:
+def open_table(path: Path, reading: FileReading) -> TableGrid:
     """The table in a file: text, a workbook (.xlsx) or Parquet, as its first bytes tell.
 
     Raises: TableError for a file that is not a table.
@@ -28,13 +28,13 @@ def open_table(path: Path, reading: Reading) -> Grid:
     return _open(path, stamp(path), reading)
 
 
-def rows_by_case(path: Path, reading: Reading, column: int) -> dict[str, list[int]]:
+def rows_by_case(path: Path, reading: FileReading, column: int) -> dict[str, list[int]]:
     """The rows of a table by the text in a column. column: its index."""
     return _by_case(path, stamp(path), reading, column)
 
 
 @lru_cache(maxsize=1)  # the cases of one table follow each other
-def _open(path: Path, _: str, reading: Reading) -> Grid:
+def _open(path: Path, _: str, reading: FileReading) -> TableGrid:
     """As open_table; _: the file's stamp, which makes the cache notice a changed file."""
     content, source = read_content(path), Source(str(path))
     for mark, what in OTHER_MARKS.items():
@@ -56,7 +56,7 @@ def _open(path: Path, _: str, reading: Reading) -> Grid:
 
 
 @lru_cache(maxsize=1)
-def _by_case(path: Path, _: str, reading: Reading, column: int) -> dict[str, list[int]]:
+def _by_case(path: Path, _: str, reading: FileReading, column: int) -> dict[str, list[int]]:
     cases: dict[str, list[int]] = {}
     for k, cell in enumerate(open_table(path, reading).columns[column]):
         cases.setdefault(text_of(cell), []).append(k)

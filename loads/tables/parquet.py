@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from loads.tables.csv_table import MAX_COLUMNS, TableError
-from loads.tables.grid import MAX_TABLE_ROWS, Cell, Grid, Source, Unreadable
+from loads.tables.grid import MAX_TABLE_ROWS, Cell, Source, TableGrid, Unreadable
 
 NO_NUMBER = Unreadable("is neither a number nor a text")
 
 
-def parquet_grid(source: Source, content: bytes) -> Grid:
+def parquet_grid(source: Source, content: bytes) -> TableGrid:
     """The table in a Parquet file. Raises: TableError for a file that is none."""
     import pyarrow as pa
     from pyarrow import parquet
@@ -38,7 +38,7 @@ def parquet_grid(source: Source, content: bytes) -> Grid:
     names = tuple(" ".join(name.split()) for name in table.column_names)
     columns = tuple(_cells(column) for column in table.columns)
     rows = Source(source.file, rows=True)
-    return Grid(rows, names, ("",) * len(names), 0, columns, range(1, size[0] + 1))
+    return TableGrid(rows, names, ("",) * len(names), 0, columns, range(1, size[0] + 1))
 
 
 def _cells(column: Any) -> Any:

@@ -10,9 +10,9 @@ from loads.tables.csv_table import MAX_CELL_VALUE, TableError
 from loads.tables.grid import (
     MAX_TABLE_ROWS,
     Column,
-    Grid,
-    Reading,
+    FileReading,
     Source,
+    TableGrid,
     grid_of,
     is_number,
 )
@@ -24,7 +24,7 @@ HEAD_LINES = 200  # from which the form of a long table is read
 MIN_BLOCK_LINES = 1000  # of a table that is read at once; shorter ones take milliseconds anyway
 
 
-def text_grid(source: Source, lines: list[str], reading: Reading) -> Grid:
+def text_grid(source: Source, lines: list[str], reading: FileReading) -> TableGrid:
     """The table in the lines of a text. Raises: TableError for a text that is not a table."""
     if len(lines) >= MIN_BLOCK_LINES:
         grid = _of_numbers(source, lines, reading)
@@ -33,7 +33,7 @@ def text_grid(source: Source, lines: list[str], reading: Reading) -> Grid:
     return grid_of(text_rows(source, lines, reading), reading.numbered)
 
 
-def _of_numbers(source: Source, lines: list[str], reading: Reading) -> Grid | None:
+def _of_numbers(source: Source, lines: list[str], reading: FileReading) -> TableGrid | None:
     """The table if its columns are of numbers in one form, without a doubt, or of texts;
     otherwise None.
     """
@@ -71,7 +71,7 @@ def _of_numbers(source: Source, lines: list[str], reading: Reading) -> Grid | No
     return replace(grid, columns=tuple(columns[k] for k in sorted(columns)), places=places)
 
 
-def _has_texts(grid: Grid, column: int, reading: Reading) -> bool:
+def _has_texts(grid: TableGrid, column: int, reading: FileReading) -> bool:
     """Whether a column has texts: by its meaning, or as its first cells show."""
     name = grid.names[column] if grid.names else ""
     return (
@@ -81,7 +81,7 @@ def _has_texts(grid: Grid, column: int, reading: Reading) -> bool:
     )
 
 
-def _cells(grid: Grid) -> list[str]:
+def _cells(grid: TableGrid) -> list[str]:
     return [cell for column in grid.columns for cell in column if isinstance(cell, str)]
 
 

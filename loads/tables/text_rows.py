@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator, Sequence
 
 from loads.tables.csv_table import MAX_LINE_CHARACTERS, TableError
-from loads.tables.grid import Cell, Reading, Rows, Source, is_number
+from loads.tables.grid import Cell, FileReading, Rows, Source, is_number
 
 COMMENT_MARKS = "#", "%", "//", "!"
 MARKS_PATTERN = re.compile(r"\s*(?:[#%!]+|//+)\s*")
@@ -56,7 +56,7 @@ def text_lines(source: Source, content: bytes, encoding: str | None) -> list[str
     return lines
 
 
-def text_rows(source: Source, lines: list[str], reading: Reading) -> Rows:
+def text_rows(source: Source, lines: list[str], reading: FileReading) -> Rows:
     """The rows of a text table. Raises: TableError for a file that is not a table."""
     start = (reading.header_line or 1) - 1
     first = next((k for k in range(start, len(lines)) if has_cells(lines[k])), None)
@@ -84,7 +84,7 @@ def has_cells(line: str) -> bool:
     return bool(text) and not text.startswith(COMMENT_MARKS)
 
 
-def _separator(line: str, reading: Reading) -> str:
+def _separator(line: str, reading: FileReading) -> str:
     """The character that separates the cells of the first line."""
     if reading.separator is not None:
         return SEPARATOR_CHARACTERS[reading.separator]

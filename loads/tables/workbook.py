@@ -17,7 +17,7 @@ from posixpath import join, normpath
 from xml.parsers import expat
 
 from loads.tables.csv_table import MAX_COLUMNS, TableError
-from loads.tables.grid import Cell, Reading, Rows, Source, Unreadable, letters
+from loads.tables.grid import Cell, FileReading, Rows, Source, Unreadable, letters
 from loads.tables.regular_file import MB
 from loads.tables.text_rows import COMMENT_MARKS
 
@@ -40,7 +40,7 @@ class _NotAWorkbook(Exception):
     """A file is not a workbook; the message says why."""
 
 
-def workbook_rows(file: str, content: bytes, reading: Reading) -> Rows:
+def workbook_rows(file: str, content: bytes, reading: FileReading) -> Rows:
     """The rows of a sheet of a workbook. Raises: TableError for a file that is none."""
     try:
         with zipfile.ZipFile(BytesIO(content)) as archive:

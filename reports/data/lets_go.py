@@ -31,7 +31,7 @@ SAME_FACTOR = 1e-3  # relative difference of load factors of places that share a
 
 
 @dataclass(frozen=True)
-class Step:
+class LettingGo:
     """What lets go, and the factor on all loads of the case at which it does.
 
     what: the part or the check. at: bands or segments. effect: what happens to it.
@@ -68,15 +68,15 @@ class PinSteps:
     """
 
     row: PinResult
-    steps: tuple[Step, ...]
+    steps: tuple[LettingGo, ...]
 
     @property
-    def known(self) -> tuple[Step, ...]:
+    def known(self) -> tuple[LettingGo, ...]:
         """The steps with a load factor."""
         return tuple(step for step in self.steps if step.load_factor is not None)
 
     @property
-    def unknown(self) -> tuple[Step, ...]:
+    def unknown(self) -> tuple[LettingGo, ...]:
         """The steps without one."""
         return tuple(step for step in self.steps if step.load_factor is None)
 
@@ -91,7 +91,7 @@ def lets_go(results: Results) -> list[PinSteps]:
     ]
 
 
-def steps(row: PinResult, shape: PinShape | None) -> list[Step]:
+def steps(row: PinResult, shape: PinShape | None) -> list[LettingGo]:
     """Return the steps of a row, the first to let go first."""
     joint = _Joint.of(row, shape)
     raw = [*_of_pin(row), *_of_lugs(row), *_of_margins(row)]
@@ -126,7 +126,7 @@ class _Joint:
             frozenset(lug.connection for lug in lugs) - links,
         )
 
-    def judged(self, steps: Iterable[tuple[Step, bool]]) -> Iterator[Step]:
+    def judged(self, steps: Iterable[tuple[LettingGo, bool]]) -> Iterator[LettingGo]:
         """Yield steps with what the joint does to them; each comes with whether it is of it."""
         for step, of_joint in steps:
             if not (of_joint and self.solved) and step.at not in self.structure:
@@ -137,7 +137,7 @@ class _Joint:
                 yield replace(step, in_proportion=self.proportional)
 
 
-def _of_pin(row: PinResult) -> Iterator[tuple[Step, bool]]:
+def _of_pin(row: PinResult) -> Iterator[tuple[LettingGo, bool]]:
     """Yield the yielding of surface, section, and of what lugs press on."""
     strength, required = row.yield_strength, _required(row)
     if not strength:
@@ -145,46 +145,46 @@ def _of_pin(row: PinResult) -> Iterator[tuple[Step, bool]]:
     places = row.places
     if places is None:
         low, high = factor_ends(row)
-        step = Step("pin", "", LOCAL, row.safety_factor, low, high, required, clause=CLAUSE)
+        step = LettingGo("pin", "", LOCAL, row.safety_factor, low, high, required, clause=CLAUSE)
         yield step, True
         return
     surface, outside = places.surface, places.surface.strength or strength
     at_surface = _of_stress(surface.max_von_mises, surface.error_estimate, outside)
     if row.safety_factor_interval and places.governs == "surface":
         at_surface = row.safety_factor or 0.0, *factor_ends(row)
-    yield Step("surface of the pin", "", LOCAL, *at_surface, required, clause=CLAUSE), True
+    yield LettingGo("surface of the pin", "", LOCAL, *at_surface, required, clause=CLAUSE), True
     if (section := places.section) is not None and section.max_von_mises:
         there = section.strength or strength
         ends = _of_stress(section.max_von_mises, section.error_estimate, there)
-        yield Step("section of the pin", "", YIELDS, *ends, required, clause=CLAUSE), True
+        yield LettingGo("section of the pin", "", YIELDS, *ends, required, clause=CLAUSE), True
         if section.plastic_utilisation:
             factor = 1.0 / section.plastic_utilisation
-            yield Step("section of the pin", "", PLASTIC, factor), True
+            yield LettingGo("section of the pin", "", PLASTIC, factor), True
     for part in (x for x in places.hardened if x.part == "core"):
         ends = _of_stress(part.max_von_mises, part.error_estimate, part.strength)
-        yield Step("core of the pin", "", LOCAL, *ends, required, clause=CLAUSE), True
+        yield LettingGo("core of the pin", "", LOCAL, *ends, required, clause=CLAUSE), True
     if (contact := places.contact) is None:
         return
     if contact.beneath:
         there = contact.strength or strength
         ends = _of_stress(contact.beneath, contact.beneath_error, there)
-        yield Step("pin beneath the contact", "", LOCAL, *ends, required, clause=CLAUSE), True
+        yield LettingGo("pin beneath the contact", "", LOCAL, *ends, required, clause=CLAUSE), True
     at_edges: dict[str, float] = {}
     for edge in contact.edges:
         at_edges[edge.band] = max(at_edges.get(edge.band, 0.0), edge.max_von_mises or 0.0)
     for band, stress in at_edges.items():
         if stress > 0.0:
-            yield Step(UNDER_EDGE, band, LOCAL, outside / stress), True
+            yield LettingGo(UNDER_EDGE, band, LOCAL, outside / stress), True
 
 
-def _of_lugs(row: PinResult) -> Iterator[tuple[Step, bool]]:
+def _of_lugs(row: PinResult) -> Iterator[tuple[LettingGo, bool]]:
     """Yield the yielding of lugs and bushings at their bores."""
     for stress in row.joint.lugs if row.joint else ():
         if stress.yield_strength and stress.max_von_mises:
             ends = _of_stress(stress.max_von_mises, stress.error_estimate, stress.yield_strength)
             required = _required(row) if stress.place != "beneath" else None
             what, at = _wall(stress), stress.connection
-            yield Step(what, at, LOCAL, *ends, required, clause=CLAUSE), True
+            yield LettingGo(what, at, LOCAL, *ends, required, clause=CLAUSE), True
 
 
 def _wall(stress: LugStress) -> str:
@@ -192,7 +192,7 @@ def _wall(stress: LugStress) -> str:
     return f"{part}, {'free side' if stress.place == 'free' else 'where it is pressed'}"
 
 
-def _of_margins(row: PinResult) -> Iterator[tuple[Step, bool]]:
+def _of_margins(row: PinResult) -> Iterator[tuple[LettingGo, bool]]:
     """Yield the checks that count, at each of their places, but yield by the models' stress."""
     for m in row.margins:
         factor = m.safety_factor
@@ -207,8 +207,8 @@ def _of_margins(row: PinResult) -> Iterator[tuple[Step, bool]]:
         elif m.kind == "collapse":
             high = next((factor * x.upper / x.lower for x in row.lug_collapses
                          if x.connection == m.at and x.upper and x.lower), None)  # fmt: skip
-        step = Step(m.method, m.at, _effect(m), factor, factor if high else None, high, m.factor,
-                    clause=m.clause)  # fmt: skip
+        ends = factor, factor if high else None, high
+        step = LettingGo(m.method, m.at, _effect(m), *ends, m.factor, clause=m.clause)
         yield step, m.kind == "model" or m.basis.startswith(JOINT_MODEL_BASIS)
 
 
@@ -220,22 +220,22 @@ def _effect(m: Margin) -> str:
     return BY_FORMULA[m.level] if m.kind == "hand" else ALLOWED
 
 
-def _not_computed(row: PinResult, joint: _Joint) -> Iterator[Step]:
+def _not_computed(row: PinResult, joint: _Joint) -> Iterator[LettingGo]:
     """Yield what has no load factor, with what it needs."""
     for m in row.worst:
         if m.needs and m.governs:
-            yield Step(
+            yield LettingGo(
                 m.method, m.at, _effect(m), required=m.factor, clause=m.clause, needs=m.needs
             )
     if row.limit_load is None and row.yield_strength:
-        yield Step("limit load of the pin", "", COLLAPSES, needs=LIMIT_LOAD_NEED)
+        yield LettingGo("limit load of the pin", "", COLLAPSES, needs=LIMIT_LOAD_NEED)
     if joint.solved and not row.lug_collapses:
-        yield Step("limit load of the lugs", "", COLLAPSES, needs=LIMIT_LOAD_NEED)
+        yield LettingGo("limit load of the lugs", "", COLLAPSES, needs=LIMIT_LOAD_NEED)
     edges = row.places.contact.edges if row.places and row.places.contact else ()
     sharp = dict.fromkeys(edge.band for edge in edges if edge.max_von_mises is None)
     if sharp:
         at = ", ".join(sharp)
-        yield Step(UNDER_EDGE, at, LOCAL, needs=SHARP_EDGE_NEED)
+        yield LettingGo(UNDER_EDGE, at, LOCAL, needs=SHARP_EDGE_NEED)
 
 
 def _required(row: PinResult) -> float | None:
@@ -250,9 +250,9 @@ def _of_stress(stress: float, error: float | None, strength: float) -> tuple[flo
     return strength / stress, strength / (stress + error), strength / least if least > 0.0 else inf
 
 
-def _merged(steps: Iterable[Step]) -> list[Step]:
+def _merged(steps: Iterable[LettingGo]) -> list[LettingGo]:
     """Return steps in which places that let go of the same at the same load share one."""
-    merged: list[Step] = []
+    merged: list[LettingGo] = []
     for step in steps:
         for k, other in enumerate(merged):
             if _alike(step, other):
@@ -264,7 +264,7 @@ def _merged(steps: Iterable[Step]) -> list[Step]:
     return merged
 
 
-def _alike(a: Step, b: Step) -> bool:
+def _alike(a: LettingGo, b: LettingGo) -> bool:
     if (a.what, a.effect, a.needs) != (b.what, b.effect, b.needs) or not (a.at and b.at):
         return False
     x, y = a.load_factor, b.load_factor

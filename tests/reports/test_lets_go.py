@@ -16,7 +16,7 @@ from assess.margin import Margin
 from assess.plastic.records import LimitLoad
 from fea.core.places import ContactEdge, ContactPlace, Places, SectionPlace, SurfacePlace
 from fea.support.records import LugStress
-from reports.data.lets_go import COLLAPSES, LOCAL, PLASTIC, Step, lets_go, steps
+from reports.data.lets_go import COLLAPSES, LOCAL, PLASTIC, LettingGo, lets_go, steps
 from reports.data.results import LugSketch, PinShape
 from reports.tables.strength.lets_go import (
     first_sentence,
@@ -53,7 +53,7 @@ tolerance = 0.3
 """
 
 
-def ladder_of(folder: Path, text: str) -> tuple[Step, ...]:
+def ladder_of(folder: Path, text: str) -> tuple[LettingGo, ...]:
     path = folder / "study.toml"
     path.write_text(text, encoding="utf-8")
     (pin,) = lets_go(pinstress.run(pinstress.load_study(path)))
@@ -61,20 +61,20 @@ def ladder_of(folder: Path, text: str) -> tuple[Step, ...]:
 
 
 @pytest.fixture(scope="module")
-def cantilevers(tmp_path_factory: pytest.TempPathFactory) -> dict[float, tuple[Step, ...]]:
+def cantilevers(tmp_path_factory: pytest.TempPathFactory) -> dict[float, tuple[LettingGo, ...]]:
     return {
         force: ladder_of(tmp_path_factory.mktemp("pin"), CANTILEVER.format(force=force))
         for force in (FORCE, 2.0 * FORCE)
     }
 
 
-def factor_of(ladder: tuple[Step, ...], what: str) -> float:
+def factor_of(ladder: tuple[LettingGo, ...], what: str) -> float:
     (factor,) = [step.load_factor for step in ladder if step.what == what]
     assert factor is not None
     return factor
 
 
-def test_closed_forms_of_a_cantilever(cantilevers: dict[float, tuple[Step, ...]]) -> None:
+def test_closed_forms_of_a_cantilever(cantilevers: dict[float, tuple[LettingGo, ...]]) -> None:
     ladder = cantilevers[FORCE]
     modulus, area = math.pi * DIAMETER**3 / 32.0, math.pi * DIAMETER**2 / 4.0
     bending = YIELD / (FORCE * ARM / modulus)
@@ -86,7 +86,7 @@ def test_closed_forms_of_a_cantilever(cantilevers: dict[float, tuple[Step, ...]]
 
 
 def test_twice_the_loads_halve_every_load_factor(
-    cantilevers: dict[float, tuple[Step, ...]],
+    cantilevers: dict[float, tuple[LettingGo, ...]],
 ) -> None:
     once, twice = cantilevers[FORCE], cantilevers[2.0 * FORCE]
     assert [(s.what, s.at, s.effect) for s in once] == [(s.what, s.at, s.effect) for s in twice]
@@ -96,7 +96,7 @@ def test_twice_the_loads_halve_every_load_factor(
         assert at_once.load_factor == pytest.approx(2.0 * (at_twice.load_factor or 0.0), rel=1e-6)
 
 
-def test_what_lets_go_first_comes_first(cantilevers: dict[float, tuple[Step, ...]]) -> None:
+def test_what_lets_go_first_comes_first(cantilevers: dict[float, tuple[LettingGo, ...]]) -> None:
     factors = [step.load_factor or 0.0 for step in cantilevers[FORCE]]
     assert len(factors) > 5
     assert factors == sorted(factors)
@@ -116,7 +116,7 @@ FREE = LugStress(
 )
 
 
-def made_up(lug: LugSketch) -> list[Step]:
+def made_up(lug: LugSketch) -> list[LettingGo]:
     """The steps of a pin of yield strength 700 with the places above, in such a lug."""
     places = Places("surface", SURFACE, SECTION, CONTACT)
     joint = replace(make_joint(), lugs=(FREE, replace(FREE, place="beneath", max_von_mises=1000.0)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from loads import JointAxes, Layout, Reading
+from loads import FileReading, JointAxes, Layout
 from pinstress.study.schema.cases import GivenCase
 from pinstress.study.schema.force_tables import ForceAxes, JointColumns, TableFile, matrix_of
 
@@ -26,7 +26,7 @@ def layout_of(case: GivenCase, table: TableFile, rows: str) -> Layout:
         unit_needed=frozenset() if case.table_units else _unit_needed(table),
         axes={"": _axes(table, table, None)}
         | {name: _axes(table, joint, joint) for name, joint in table.connections.items()},
-        reading=Reading(
+        reading=FileReading(
             table.sheet,
             table.header_line,
             table.separator,

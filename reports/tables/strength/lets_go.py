@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
 
-from reports.data.lets_go import PinSteps, Step, lets_go
+from reports.data.lets_go import LettingGo, PinSteps, lets_go
 from reports.data.results import PinResult, Results
 from reports.format.numbers import DASH, engineering, short
 from reports.tables.column import Column, Table, fields, read_only
@@ -31,7 +31,7 @@ class StepRow:
     """A step of a pin's row."""
 
     pin: PinResult
-    of: Step
+    of: LettingGo
 
 
 def _factor(row: StepRow) -> str:
@@ -102,12 +102,12 @@ def first_sentence(pin: PinSteps) -> str:
     return f"{text}."
 
 
-def _words(step: Step) -> str:
+def _words(step: LettingGo) -> str:
     at = f" ({step.at})" if step.at else ""
     return f"{step.what}{at} {step.effect}"
 
 
-def not_computed_words(steps: Sequence[Step]) -> list[str]:
+def not_computed_words(steps: Sequence[LettingGo]) -> list[str]:
     """Return a line for each thing that is missing, with what has no load factor without it."""
     by_need: dict[str, dict[str, None]] = {}
     for step in steps:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from loads import JointAxes, Layout, Reactions, Reading, TableError, read_reactions
+from loads import FileReading, JointAxes, Layout, Reactions, TableError, read_reactions
 from loads.tables import open_table, text_grid
 from loads.tables.grid import Source
 from tests.support.each import each
@@ -41,7 +41,7 @@ def read(
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
     columns = NAMES if columns is None else columns
     layout = {k: v for k, v in more.items() if k in ("units", "axes", "offset", "step")}
-    reading = Reading(**{k: v for k, v in more.items() if k not in layout})
+    reading = FileReading(**{k: v for k, v in more.items() if k not in layout})
     return read_reactions(
         path, Layout("case", columns, reading=reading, **layout), unit, {"B", "C"}
     )
@@ -160,7 +160,7 @@ def test_what_is_refused(tmp_path: Path, content: str | bytes, code: str, named:
 
 def test_which_tables_are_read_at_once() -> None:
     """Those with columns of numbers and of texts; not with a broken row or a doubtful comma."""
-    source, reading = Source("t.csv"), Reading()
+    source, reading = Source("t.csv"), FileReading()
     plain = ["t;Fx", "0;1", "1;2,5", ""]
     assert text_grid._of_numbers(source, plain, reading) is not None
     commented = text_grid._of_numbers(source, [*plain[:2], "# b", "", *plain[2:]], reading)

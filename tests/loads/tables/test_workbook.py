@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import xlsxwriter
 
-from loads import Layout, Reactions, Reading, TableError, read_reactions
+from loads import FileReading, Layout, Reactions, TableError, read_reactions
 from tests.support.each import each
 from tests.support.errors import raises
 
@@ -37,7 +37,7 @@ def read(path: Path, **reading: Any) -> Reactions:
     def unit(text: str, _: str) -> float:
         return {"ms": 1e-3, "kN": 1e3}.get(text, 1.0)
 
-    return read_reactions(path, Layout("case", NAMES, reading=Reading(**reading)), unit, {"B"})
+    return read_reactions(path, Layout("case", NAMES, reading=FileReading(**reading)), unit, {"B"})
 
 
 def test_numbers_come_back_to_the_last_digit(tmp_path: Path) -> None:
