@@ -202,10 +202,13 @@ class AssumedLugs:
     why: str = ""
 
 
-def assumed_lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> AssumedLugs:
+def assumed_lugs(
+    study: Study, pin: PinLike, clamps: tuple[str, ...], rise: float = 0.0
+) -> AssumedLugs:
     """Return a lug at every connection, and one of the structure at every clamped segment.
 
     Defaults fill in for values that the study omits.
+    rise: of temperature above that of the study's dimensions, K.
     """
     profile = body_of_revolution(pin)
     if profile is None:
@@ -221,8 +224,11 @@ def assumed_lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> Assumed
         return AssumedLugs(why="one band alone does not show how the pin is supported")
     made_of = material(study, table.material)
     try:
-        assumed = tuple(
+        cold = [
             _lug(study, profile, name, table.lug.get(name, LugTable()), made_of) for name in names
+        ]
+        assumed = tuple(
+            at_temperature(lug, made_of, profile.band(lug.connection).radius, rise) for lug in cold
         )
     except ArgumentError as error:
         return AssumedLugs(why=str(error))
