@@ -39,8 +39,10 @@ RANGE_REMARK = "the range is that of the joint as the study has it"
 
 
 def scalable(task: Task) -> bool:
-    """Return whether rows of a task may be scaled: those of a pin without cuts in its lugs."""
-    return bool(task.lugs) and isinstance(task.pin, Pin)
+    """Return whether rows of a task may be scaled: those of a pin without cuts in its lugs, all of
+    one strength.
+    """
+    return bool(task.lugs) and isinstance(task.pin, Pin) and not task.material.hardened
 
 
 def coarse(requirement: Requirement, lasting: bool) -> Requirement:

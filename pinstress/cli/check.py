@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from functools import partial
 
 from geometry import PinLike
-from loads import Linkage
+from loads import Linkage, jump_times
+from loads.forces.sharing import undetermined
 from loads.motion.four_bar import four_bar
 from pinstress.explore.sweep.correlations import correlations_of
 from pinstress.explore.sweep.parameters import parameters_of, require_laws
@@ -33,6 +34,8 @@ from pinstress.study.schema.pins import PinTable
 from pinstress.study.schema.require import RequireTable, level_of
 from pinstress.study.schema.units import UnitSystem
 from pinstress.study.schema.vary import VaryTable
+
+MAX_SHOWN_JUMPS = 6
 
 
 @dataclass(frozen=True)
@@ -220,8 +223,8 @@ def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
     mobility = determined(study, mechanism)
     lines = [
         f"mechanism: {len(mechanism.bodies)} bodies, {len(mechanism.joints)} joints, "
-        f"{len(mechanism.connections)} connections{_teeth(mechanism)}, driven by "
-        f"{', '.join(mechanism.driven)}"
+        f"{len(mechanism.connections)} connections{_teeth(mechanism)}, "
+        + (f"driven by {', '.join(mechanism.driven)}" if mechanism.driven else "no drive")
     ]
     counted = f"mobility {mobility.degrees}"
     if mobility.kutzbach != mobility.degrees:
@@ -231,11 +234,8 @@ def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
     if not mobility.redundant:
         return [*lines, counted]
     if mobility.shared and not mechanism.sharing:
-        raise study.error(
-            "mechanism: rigid-body statics does not determine the forces at "
-            f"{', '.join(mobility.shared)}; state how they share the load in [[mechanism.sharing]]",
-            code="statically-indeterminate",
-        )
+        error = undetermined(mechanism, mobility)
+        raise study.error(f"mechanism: {error}", code=error.code)
     rule = ", ".join(f"{'/'.join(s.connections)}" for s in mechanism.sharing)
     return [
         *lines,
@@ -252,7 +252,10 @@ def _teeth(mechanism: Linkage) -> str:
 def _words(study: Study, name: str, loads: CaseLoads) -> str:
     case, table, reactions = study.table.case[name], study.table.spatial_leg, loads.reactions
     if isinstance(case, GivenCase):
-        many = f"{len(reactions)} instants" if reactions.times is not None else "one instant"
+        many = "one instant"
+        if reactions.times is not None:
+            jumps = ", ".join(f"{t:g} s" for t in jump_times(reactions.times)[:MAX_SHOWN_JUMPS])
+            many = f"{len(reactions)} instants" + f", jump at t = {jumps}" * bool(jumps)
         return f"given, {many}, connections {', '.join(reactions.connections)}"
     if isinstance(case, LegCase):
         assert table is not None

@@ -50,8 +50,12 @@ def carried(pin: PinLike, lugs: Sequence[Lug], foundations: bool = False) -> Car
     return Carried(structure > 0, tilts or structure > 1, foundations and structure > 0, bool(lugs))
 
 
-def fitted(pin: Pin, material: Material, lugs: Sequence[Lug]) -> tuple[Lug, ...]:
+def fitted(
+    pin: Pin, material: Material, lugs: Sequence[Lug], in_contact: bool = True
+) -> tuple[Lug, ...]:
     """The lugs in the order of the pin's bands.
+
+    in_contact: whether contact with them is solved; formulas alone take any clearance.
 
     Raises: ArgumentError for a lug where no link bears, a band without one, or a lug that does not
     fit its band.
@@ -66,7 +70,7 @@ def fitted(pin: Pin, material: Material, lugs: Sequence[Lug]) -> tuple[Lug, ...]
     for lug in lugs:
         band = pin.band(lug.connection)
         _require_walls(lug, band)
-        _require_gap(lug, band)
+        _require_gap(lug, band, in_contact)
         if lug.shank is not None:
             lug.outline(band.radius)  # raises what is wrong with it
         _require_elastic(lug, band, bores[lug.connection] / 2.0, material)
@@ -98,12 +102,13 @@ def _require_walls(lug: Lug, band: Band) -> None:
         )
 
 
-def _require_gap(lug: Lug, band: Band) -> None:
+def _require_gap(lug: Lug, band: Band, in_contact: bool) -> None:
     what, d = f"lug {lug.connection}", 2.0 * band.radius
-    if lug.clearance > MAX_CLEARANCE * d:
+    if in_contact and lug.clearance > MAX_CLEARANCE * d:
         raise ArgumentError(
             f"{what}: its clearance is {lug.clearance / d:.3g} of the pin's diameter; at most "
-            f"{MAX_CLEARANCE:g} is a joint",
+            f"{MAX_CLEARANCE:g} is a joint whose contact can be solved; with joints = "
+            '"prescribed", formulas take any',
             "clearance-too-large",
         )
     if lug.edge_radius > band.length / 2.0:
@@ -205,4 +210,6 @@ def beyond_foundations(pin: Pin, lugs: Iterable[Lug]) -> str:
             return f"lug {lug.connection} has an interference, whose stress it does not include"
         if lug.bushing is not None:
             return f"lug {lug.connection} has a bushing, for which it has no stiffness"
+        if lug.friction:
+            return f"lug {lug.connection} has friction, which needs the pressures of contact"
     return ""

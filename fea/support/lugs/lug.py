@@ -114,6 +114,7 @@ class Lug:
     inf: guided, 0: free.
     bushing: the pin bears on it, if there is one.
     shank: None where only the eye is known, of which no stress is computed then.
+    friction: Coulomb's coefficient between pin and bore; contact itself is solved without it.
     range: of the uncertain properties of the lug.
 
     Raises: ArgumentError for impossible values; fea.support.lugs.fit checks those that depend on
@@ -130,6 +131,7 @@ class Lug:
     range: LugRange = LugRange()
     shank: Shank | None = None
     growth: float = 0.0
+    friction: float = 0.0
 
     def __post_init__(self) -> None:
         what = f"lug {self.connection}"
@@ -143,6 +145,9 @@ class Lug:
             raise ArgumentError(
                 f"{what}: the stiffness of its tilt must not be negative", "negative"
             )
+
+        if not 0.0 <= self.friction <= 1.0:
+            raise ArgumentError(f"{what}: its friction must be from 0 to 1", "friction-range")
 
     @property
     def bearing(self) -> Material:

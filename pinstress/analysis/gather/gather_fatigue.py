@@ -197,7 +197,10 @@ def _left_out(
         for task, outcome in zip(plan.tasks, outcomes, strict=True)
         if task.pin.name in elastic
         and any(
-            meets_limit(row.maximum, task.material.yield_strength or inf) is False
+            meets_limit(
+                row.maximum, row.maximum.yield_strength(task.material.yield_strength) or inf
+            )
+            is False
             for row in outcome.rows
         )
     ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 from fea.core.material import Material
 from fea.cut.inside import crosses_end
@@ -70,14 +71,16 @@ def given_lugs(
     profile = pin.profile
     if not given or profile is None:
         return ()
-    every = holding or _fitting(study, profile, f"pin.{pin.name}.lug", case)
+    every = holding or _fitting(study, profile, f"pin.{pin.name}.lug", case, in_contact=False)
     return tuple(lug for lug in every if lug.connection in given)
 
 
-def _fitting(study: Study, pin: Pin, at: str, case: str | None) -> tuple[Lug, ...]:
+def _fitting(
+    study: Study, pin: Pin, at: str, case: str | None, in_contact: bool = True
+) -> tuple[Lug, ...]:
     """Return one lug for every connection, and those of the structure.
 
-    at: their key. case: as of `lugs`.
+    at: their key. case: as of `lugs`. in_contact: as of `fitted`.
 
     Raises: InputError for impossible lugs.
     """
@@ -89,22 +92,28 @@ def _fitting(study: Study, pin: Pin, at: str, case: str | None) -> tuple[Lug, ..
             out.append(_lug(study, pin, connection, _given(table, connection), made_of))
         except ArgumentError as error:
             raise study.error(str(error), f"{at}.{connection}", error.code) from None
-    _require_fit(study, pin, out, at)
+    check = partial(_require_fit, study, pin, in_contact=in_contact)
+    check(out, at)
     if not (rise := rise_of(study, case)):
         return tuple(out)
     hot = at_case(study, pin, out, str(case))
     shown = temperature_words(study, rise)
     at = f"case.{case}.temperature"
-    _require_fit(study, pin, hot, at, f"{at}: pin {pin.name} at {shown}: ")
+    check(hot, at, f"{at}: pin {pin.name} at {shown}: ")
     return tuple(hot)
 
 
-def _require_fit(study: Study, pin: Pin, lugs: list[Lug], at: str, when: str = "") -> None:
-    """Raise InputError for lugs that do not fit a pin, also at the ends of their ranges."""
+def _require_fit(
+    study: Study, pin: Pin, lugs: list[Lug], at: str, when: str = "", in_contact: bool = True
+) -> None:
+    """Raise InputError for lugs that do not fit a pin, also at the ends of their ranges.
+
+    in_contact: as of `fitted`.
+    """
     made_of = material(study, study.table.pin[pin.name].material)
     try:
         for tried in (lugs, *_ends_of_clearance(lugs)):
-            fitted(on_structure(pin, tried), made_of, tried)
+            fitted(on_structure(pin, tried), made_of, tried, in_contact)
     except ArgumentError as error:
         raise study.error(f"{when}{error}", at, error.code) from None
 
@@ -224,9 +233,11 @@ def assumed_lugs(
         return AssumedLugs(why="one band alone does not show how the pin is supported")
     made_of = material(study, table.material)
     try:
-        cold = [
-            _lug(study, profile, name, table.lug.get(name, LugTable()), made_of) for name in names
-        ]
+        # Without friction, as this range is by a beam on foundations.
+        cold = (
+            replace(_lug(study, profile, name, _given(table, name), made_of), friction=0.0)
+            for name in names
+        )
         assumed = tuple(
             at_temperature(lug, made_of, profile.band(lug.connection).radius, rise) for lug in cold
         )
@@ -266,6 +277,7 @@ def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Mater
         bushing,
         _range(given.range, fit),
         None if given.shank is None else _shank(given.shank, outer),
+        given.friction,
     )
 
 

@@ -16,9 +16,9 @@ from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, PinLike
 from loads import Reactions
 from pinstress.study.model.cases import CaseLoads
+from pinstress.study.model.hardened import pin_material
 from pinstress.study.model.lugs import AssumedLugs, assumed_lugs, given_lugs, known_lugs, lugs
 from pinstress.study.model.moving_loads import MovingLoads
-from pinstress.study.model.pins import material
 from pinstress.study.model.temperature import rise_of
 from pinstress.study.reading.errors import Errors
 from pinstress.study.reading.file import Study
@@ -127,7 +127,7 @@ def _task(
 ) -> Task:
     """Return the task of a pin in cases that have these clamps and this rise of temperature."""
     constrained = {pin.surface(c) for c in clamps}
-    made_of = material(study, study.table.pin[pin.name].material)
+    made_of = pin_material(study, pin)
     cases: list[PinLoads] = []
     left_out: dict[str, tuple[str, ...]] = {}
     ranges: dict[str, PinLoads] = {}

@@ -58,6 +58,7 @@ class ShankTable(StrictTable):
         return self
 
 
+Friction = Annotated[Number, Field(ge=0.0, le=1.0)]
 Times = Annotated[Number, Field(gt=0.0)]
 
 
@@ -65,7 +66,7 @@ class LugFactorsTable(StrictTable):
     """Efficiency factors of a lug for the code "aircraft", read off the figures of its source."""
 
     K: Times | None = None
-    """Bearing: AFFDL-TR-69-42, figure 9-2 or 9-3."""
+    """Bearing: AFFDL-TR-69-42, figure 9-2."""
     K_n: Times | None = None
     """Net section: AFFDL-TR-69-42, figure 9-4."""
     k_br: Times | None = None
@@ -115,6 +116,9 @@ class LugTable(StrictTable):
     Default: the bending stiffness of an eye clamped at a distance of 0.8 outer diameters."""
     bushing: BushingTable | None = None
     """A bushing in the eye."""
+    friction: Friction = 0.0
+    """Coefficient of Coulomb friction between pin and bore, for bounds of the torque and of the
+    stress. It does not act on the mechanism, as `friction` of a joint does."""
     shank: ShankTable | None = None
     """The outline of the lug in its plane, which its own stress requires."""
     factors: LugFactorsTable = LugFactorsTable()

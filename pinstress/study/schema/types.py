@@ -80,7 +80,7 @@ PROVENANCE_PROPERTIES: dict[str, Any] = {
 }
 
 
-def _complete(schema: dict[str, Any], table: type["StrictTable"]) -> None:
+def complete_schema(schema: dict[str, Any], table: type["StrictTable"]) -> None:
     """Add descriptions and provenance to a table's JSON Schema."""
     for key, words in described(table).items():
         schema["properties"][table.model_fields[key].alias or key]["description"] = words
@@ -288,7 +288,7 @@ class StrictTable(BaseModel):
     """
 
     model_config = ConfigDict(
-        extra="forbid", frozen=True, allow_inf_nan=False, json_schema_extra=_complete
+        extra="forbid", frozen=True, allow_inf_nan=False, json_schema_extra=complete_schema
     )
 
     @model_validator(mode="before")
@@ -297,12 +297,12 @@ class StrictTable(BaseModel):
         known = [field.alias or name for name, field in cls.model_fields.items()]
         unknown = data.keys() - known if isinstance(data, dict) else ()
         if unknown:
-            wrong = [_unknown(key, known) for key in data if key in unknown]
+            wrong = [unknown_key(key, known) for key in data if key in unknown]
             raise ValidationError.from_exception_data(cls.__name__, wrong)
         return data
 
 
-def _unknown(key: object, known: list[str]) -> InitErrorDetails:
+def unknown_key(key: object, known: list[str]) -> InitErrorDetails:
     context: dict[str, Any] = {"text": f"unknown key {as_text(key)}; ", "key": key, "known": known}
     return InitErrorDetails(
         type=PydanticCustomError(UNKNOWN_KEY_ERROR, "{text}", context), input=None
