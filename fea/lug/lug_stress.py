@@ -16,7 +16,7 @@ there, as on the pin. Beside the contact they are.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -156,14 +156,14 @@ def bore_stresses(
     return tuple(_larger(bonded, stresses_of(slipping, eye, load)))
 
 
-def _larger(bonded: Iterable[BoreStress], slipping: Sequence[BoreStress]) -> Iterator[BoreStress]:
+def _larger(bonded: Iterable[BoreStress], slipping: Iterable[BoreStress]) -> Iterator[BoreStress]:
     """At each wall and place the larger of two stresses, with the other one."""
-    for one in bonded:
-        other = next((x for x in slipping if (x.wall, x.place) == (one.wall, one.place)), None)
-        if other is not None and other.von_mises + other.error > one.von_mises + one.error:
-            yield replace(other, interface="frictionless", other=one.von_mises)
-        else:
-            yield replace(one, interface="bonded", other=other.von_mises if other else None)
+    named = {(x.wall, x.place): replace(x, interface="bonded") for x in bonded}
+    others = {(x.wall, x.place): replace(x, interface="frictionless") for x in slipping}
+    for at in dict.fromkeys((*named, *others)):
+        both = [x for x in (named.get(at), others.get(at)) if x is not None]
+        largest = max(both, key=lambda x: x.von_mises + x.error)
+        yield replace(largest, other=next((x.von_mises for x in both if x is not largest), None))
 
 
 def stresses_of(

@@ -211,10 +211,13 @@ class AssumedLugs:
     why: str = ""
 
 
-def assumed_lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> AssumedLugs:
+def assumed_lugs(
+    study: Study, pin: PinLike, clamps: tuple[str, ...], rise: float = 0.0
+) -> AssumedLugs:
     """Return a lug at every connection, and one of the structure at every clamped segment.
 
     Defaults fill in for values that the study omits.
+    rise: of temperature above that of the study's dimensions, K.
     """
     profile = body_of_revolution(pin)
     if profile is None:
@@ -231,9 +234,12 @@ def assumed_lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> Assumed
     made_of = material(study, table.material)
     try:
         # Without friction, as this range is by a beam on foundations.
-        assumed = tuple(
+        cold = (
             replace(_lug(study, profile, name, _given(table, name), made_of), friction=0.0)
             for name in names
+        )
+        assumed = tuple(
+            at_temperature(lug, made_of, profile.band(lug.connection).radius, rise) for lug in cold
         )
     except ArgumentError as error:
         return AssumedLugs(why=str(error))

@@ -159,7 +159,7 @@ def _task(
             impulses[case] = PinImpulse(given.impulse.time, build(given.impulse.reactions))
     hot = cases[0].case if cases and rise else None
     in_lugs = lugs(study, pin, clamps, hot) if cases else ()
-    around = assumed_lugs(study, pin, clamps) if cases and not in_lugs else None
+    around = assumed_lugs(study, pin, clamps, rise) if cases and not in_lugs else None
     given_ones = given_lugs(study, pin, in_lugs, hot) if cases else ()
     return Task(
         pin, made_of, clamps, tuple(cases), left_out, ranges, between, in_lugs, around, impulses,

@@ -150,6 +150,14 @@ def test_pins_without_lugs_need_no_expansion() -> None:
     assert not task.lugs
 
 
+def test_the_lugs_around_prescribed_loads_are_at_the_temperature() -> None:
+    hot = tasks_of(changed(("[analysis]", '[analysis]\njoints = "prescribed"')))["hot"]
+    assert not hot.lugs
+    assert hot.surroundings is not None
+    for lugs in (hot.surroundings.lugs, hot.given):
+        assert [lug.clearance for lug in lugs] == pytest.approx([2e-5 + GROWTH] * 3)
+
+
 def test_a_pressed_bushing_that_holds_has_less_interference() -> None:
     text = changed((FIT, FIT + BUSHED.replace("0.02", "0.05")))
     bushing = tasks_of(text)["hot"].lugs[0].bushing
