@@ -83,7 +83,7 @@ def cut_solution(
     section = harmonic_solution(
         replace(problem, besides=tuple(dict.fromkeys(load for load, _ in moved))),
         level, LOCAL_MESH_RATIO, before,
-        np.concatenate([NO_POINTS, *points]), [_fine(piece, level) for piece in pieces],
+        np.concatenate([NO_POINTS, *points]), [fine_about(piece, level) for piece in pieces],
     )  # fmt: skip
     at = np.split(section.elsewhere, np.cumsum([len(p) for p in points]))
     units = _units(cases) or tuple((load, load.phases[0]) for load in section.fields.loads[:1])
@@ -108,7 +108,7 @@ def _supports(problem: SectionProblem) -> list[ClampReaction]:
     return sorted(reactions, key=lambda support: support.z)
 
 
-def _fine(piece: Piece, level: int) -> Grade:
+def fine_about(piece: Piece, level: int) -> Grade:
     """The fineness of the section about a piece's cuts."""
     radius = piece.profile.largest_diameter / 2.0
     low, high = zone(piece)

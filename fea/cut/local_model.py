@@ -196,6 +196,38 @@ class LocalModel:
         displaced = self.parities.everywhere(displaced)
         return Read(self.images.reshape(-1, 3), whole, changed, cut, displaced, moved)
 
+    @cached_property
+    def nodes_once(self) -> Ints:
+        """Node numbers of its faces, each once."""
+        return np.unique(self.nodes)
+
+    def reliefs(self, uncut: Floats) -> list[Floats]:
+        """The balanced nodal forces (3 N, L) that relieve the cuts of a stress of the uncut pin, by
+        class; none are zero.
+
+        uncut: as for `solve`, under loads that do not shear the bands they act on.
+
+        Raises: SolveError.
+        """
+        by_class, shears = self.parities.split(uncut), np.zeros(uncut.shape[3], dtype=bool)
+        forces = [self._forces(part) for part in by_class]
+        pressed = self._forces(_pressure(len(self.points)))
+        most = max(float(np.linalg.norm(f)) for f in (pressed, *forces))
+        whole = np.maximum(_size(pressed), np.sum([_size(f) for f in forces], axis=0))
+        out = []
+        for part, f, parity in zip(by_class, forces, self.parities.classes, strict=True):
+            if np.linalg.norm(f) <= MIN_CLASS_TRACTION * most:
+                out.append(np.zeros_like(f))
+                continue
+            modes = _rigid(self.space.nodes)[:, self.parities.rigid(parity)]
+            every = f + self._spread(part, parity, shears)[0]
+            out.append(self._balanced(every, modes, whole))
+        return out
+
+    def displaced(self, forces: Floats, parity: tuple[int, ...]) -> Floats:
+        """Displacements (3 N, L) of a class under balanced nodal forces (3 N, L)."""
+        return self._displace(forces, parity, _size(forces))
+
     def _moved(self, u: Floats, parity: tuple[int, ...]) -> Floats:
         """The rigid motions (2, 6, L) of both ends by displacements (3 N, L) of a class.
 

@@ -47,6 +47,14 @@ def displacement(
     amplitude = np.asarray(
         continuation(known, at) @ fields.displacement[..., columns].reshape(len(known), -1)
     ).reshape(len(at), 3, -1)
+    return vectors(amplitude, angle, units)
+
+
+def vectors(amplitude: Floats, angle: Floats, units: tuple[Unit, ...]) -> Floats:
+    """Displacements (P, 3, L) along x, y, z from amplitudes (P, 3, L) along r, theta and z.
+
+    angle: (P,) rad of the points.
+    """
     n, phase = (np.array(x) for x in ([load.n for load, _ in units], [p for _, p in units]))
     psi = n * angle[:, None] - phase * np.pi / 2.0
     radial, round_, along = np.moveaxis(amplitude, 1, 0)

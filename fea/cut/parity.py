@@ -65,6 +65,11 @@ class Parities:
         back = stress * self.stress_signs[:, None, :, None]
         return np.asarray(np.tensordot(self.characters, back, axes=1) / len(self.images))
 
+    def split_vectors(self, displacement: Floats) -> Floats:
+        """The part (C, P, 3, L) of each class in displacements at all images (G, P, 3, L)."""
+        back = displacement * self.images[:, None, :, None]
+        return np.asarray(np.tensordot(self.characters, back, axes=1) / len(self.images))
+
     def everywhere(self, displacement: Floats) -> Floats:
         """Displacements (G P, 3, L) at all images from those of each class, (C, P, 3, L)."""
         displaced = np.einsum(

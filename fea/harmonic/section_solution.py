@@ -114,7 +114,7 @@ def harmonic_solution(
 
     loads = _unit_loads(cases) + problem.besides
     rings = tuple(dict.fromkeys(name for load in loads for name, _ in load.parts))
-    finer += _at_rings(pin, rings)
+    finer += finer_at_rings(pin, rings)
     ends = _ends(pin, problem.clamps, loads)
 
     def solved(size: SectionSize, grades: list[Grade], quiet: tuple[int, ...]) -> MeridianFields:
@@ -175,7 +175,7 @@ def _at_high_stress(
     return Grade((place,), now, PATCH_ELEMENTS * coarse, FIRST_MESH_SIZE.growth)
 
 
-def _at_rings(pin: Pin, rings: tuple[str, ...]) -> list[Grade]:
+def finer_at_rings(pin: Pin, rings: tuple[str, ...]) -> list[Grade]:
     """The fineness of the mesh at the ends of rings of contact pressure.
 
     It is such that the elements that feel the steps of pressure (fea.core.pressed) lie beside them.

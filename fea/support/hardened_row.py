@@ -14,7 +14,8 @@ from typing import Literal
 
 import numpy as np
 
-from fea.core.hardened import StrengthPart
+from fea.core.hardened import StrengthPart, linear_strength
+from fea.core.material import Material
 from fea.core.mesh_result import Point
 from fea.core.over_time import Between, rise_between, through_time
 from fea.core.peak import ErrorParts, Maximum, Reason
@@ -22,9 +23,10 @@ from fea.core.pin_loads import PinLoads
 from fea.core.places import ContactPlace, PartPlace, Places
 from fea.core.verdict import Evidence, judge
 from fea.harmonic.field import HarmonicField
-from fea.harmonic.part_field import PartField
+from fea.harmonic.part_field import PartField, Where
 from fea.section.place import found_section
 from fea.section.section_stress import SectionField
+from fea.support.records import JointResult
 from fea.support.support import StressReading
 from geometry import Pin
 
@@ -105,24 +107,36 @@ class PartSearch:
 
     def of(self, parts: Sequence[StrengthPart]) -> list[FoundPart]:
         """The largest stresses of all parts, of field and sections."""
-        return [place for part in parts for place in (self.in_field(part), self._in_section(part))]
+        every = [place for part in parts for place in (self.in_field(part), self._in_section(part))]
+        if self.reading.loads.pressed is not None:
+            every += [self._beside_lugs(part) for part in parts if part.part == "core"]
+        return every
 
-    def in_field(self, part: StrengthPart, beneath: bool = False) -> FoundPart:
-        """The largest stress of a part in the field.
+    def _beside_lugs(self, part: StrengthPart) -> FoundPart:
+        """The largest stress of a core beneath free surface, also beside lugs.
 
-        beneath: only what lies beneath contact.
+        There the field has the stress of contact, too, which is no part of a row: so it is at most
+        that of the surface less what it falls linearly, which in a notch it does faster.
         """
+        core, radius = self.in_field(part, "beside"), self.pin.largest_diameter / 2.0
+        most = self.surface.value * (1.0 - part.least_depth / radius)
+        if core.value <= most:
+            return core
+        return replace(core, value=most, errors=self._errors(part, most, 0.0, False))
+
+    def in_field(self, part: StrengthPart, where: Where = "away") -> FoundPart:
+        """The largest stress of a part in the field; where: as of PartField."""
         answer = self.reading.answer
         assert isinstance(answer, HarmonicField)
-        field, loads, rise = PartField(answer, self.pin, part, beneath), self.reading.loads, 0.0
+        field, loads, rise = PartField(answer, self.pin, part, where), self.reading.loads, 0.0
         if self.between is not None and len(loads) > 1:
             loads = through_time(field, loads, self.between, self.tolerance)
             rise = rise_between(field, loads, self.between)
         top = field.maximum(loads)
         now = loads.at(np.array([top.instant]))
-        errors = self._errors(part, top.value, rise, beneath)
+        errors = self._errors(part, top.value, rise, where == "beneath")
         if isinstance(self.reading.coarser, HarmonicField):
-            coarse = PartField(self.reading.coarser, self.pin, part, beneath).largest(now)[0]
+            coarse = PartField(self.reading.coarser, self.pin, part, where).largest(now)[0]
             ratio = self.reading.mesh_ratio
             change = TWO_MESH_FACTOR * abs(top.value - coarse) / (ratio * ratio - 1.0)
             errors = replace(errors, mesh=max(errors.mesh, change))
@@ -234,7 +248,7 @@ def in_core(place: ContactPlace, search: PartSearch, parts: Sequence[StrengthPar
     or of what is not hardened, by its strength.
     """
     softer = [part for part in parts if part.part != "case"]
-    deepest = max((search.in_field(part, beneath=True) for part in softer), key=lambda x: x.use)
+    deepest = max((search.in_field(part, "beneath") for part in softer), key=lambda x: x.use)
     error = place.beneath_error / place.beneath if place.beneath else 0.0
     return replace(
         place,
@@ -244,3 +258,29 @@ def in_core(place: ContactPlace, search: PartSearch, parts: Sequence[StrengthPar
         beneath_time=deepest.time,
         strength=deepest.part.strength,
     )
+
+
+def range_of_row(
+    joint: JointResult | None, row: Maximum, material: Material, pin: Pin
+) -> JointResult | None:
+    """A range of the stress at the surface, which foundations give, as of the part that governs a
+    row: the stress over which case or core yield if it falls linearly to the axis. In notches it
+    falls faster, so that this is safe.
+    """
+    if joint is None or joint.range is None or row.strength is None:
+        return joint
+    parts = material.strength_parts(pin.length)
+    times = row.strength / linear_strength(parts, pin.largest_diameter / 2.0)
+
+    def ends(of: tuple[float, float]) -> tuple[float, float]:
+        return times * of[0], times * of[1]
+
+    over = tuple(
+        replace(
+            x, max_von_mises=times * x.max_von_mises,
+            interval=None if x.interval is None else ends(x.interval),
+        )
+        for x in joint.range.variations
+    )  # fmt: skip
+    span = ends(joint.range.max_von_mises)
+    return replace(joint, range=replace(joint.range, max_von_mises=span, variations=over))

@@ -80,7 +80,8 @@ class Layout:
         """How the file is read: also without a header, where all columns are stated by number."""
         columns = self.columns.values()
         numbered = bool(columns) and all(isinstance(c, int) for c in columns)
-        return replace(self.reading, numbered=numbered)
+        texts = frozenset(self.columns.get(meaning, meaning) for meaning in TEXT_COLUMNS)
+        return replace(self.reading, numbered=numbered, texts=texts)
 
     def axes_of(self, connection: str) -> JointAxes:
         """How the force of a connection is written."""

@@ -22,7 +22,7 @@ from loads.tables.force_columns import (
     column_index,
     force_columns,
 )
-from loads.tables.grid import Grid
+from loads.tables.grid import Grid, text_of
 from loads.tables.numbers import Numbers
 from loads.tables.open_table import open_table, rows_by_case
 from pinbase.arrays import Floats
@@ -120,7 +120,7 @@ def _by_connection(
         groups: dict[str, list[int]] = {}
         cells = grid.columns[at]
         for k in range(len(cells)) if rows is None else rows:
-            groups.setdefault(_text(cells[k]), []).append(k)
+            groups.setdefault(text_of(cells[k]), []).append(k)
         every = {of_labels.get(label, label): (some, components) for label, some in groups.items()}
     others_skipped = bool(layout.labels) or set(grid.names) >= OWN_TABLE_COLUMNS
     for name, (some, _) in every.items():
@@ -132,13 +132,6 @@ def _by_connection(
                 "unknown-connection",
             )
     return {name: part for name, part in every.items() if name in known}
-
-
-def _text(cell: object) -> str:
-    """The text of a cell; 12.0 of a workbook is 12."""
-    if isinstance(cell, float) and cell.is_integer():
-        return str(int(cell))
-    return str(cell).strip()
 
 
 @dataclass(frozen=True)

@@ -40,6 +40,7 @@ class Reading:
     separator, decimal: None: as the file shows.
     encoding: of a text; None: UTF-8, or what its byte order mark says.
     numbered: whether columns are stated by number, so that no header is needed.
+    texts: headers and numbers of columns with names, even if these look like numbers.
     """
 
     sheet: str | None = None
@@ -48,6 +49,7 @@ class Reading:
     decimal: Decimal | None = None
     encoding: str | None = None
     numbered: bool = False
+    texts: frozenset[str | int] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -131,6 +133,13 @@ def is_number(cell: Cell) -> bool:
     if isinstance(cell, str):
         return NUMBER_PATTERN.fullmatch(cell.strip()[:MAX_SHOWN_CHARACTERS]) is not None
     return isinstance(cell, float)
+
+
+def text_of(cell: object) -> str:
+    """The text of a cell; 12.0 of a workbook is 12."""
+    if isinstance(cell, float) and cell.is_integer():
+        return str(int(cell))
+    return str(cell).strip()
 
 
 def grid_of(rows: Rows, numbered: bool) -> Grid:

@@ -6,7 +6,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from loads.tables.csv_table import TableError, read_content
-from loads.tables.grid import Grid, Reading, Source, grid_of
+from loads.tables.grid import Grid, Reading, Source, grid_of, text_of
 from loads.tables.sent_files import stamp
 from loads.tables.text_grid import text_grid
 from loads.tables.text_rows import text_lines
@@ -59,5 +59,5 @@ def _open(path: Path, _: str, reading: Reading) -> Grid:
 def _by_case(path: Path, _: str, reading: Reading, column: int) -> dict[str, list[int]]:
     cases: dict[str, list[int]] = {}
     for k, cell in enumerate(open_table(path, reading).columns[column]):
-        cases.setdefault(str(cell).strip(), []).append(k)
+        cases.setdefault(text_of(cell), []).append(k)
     return cases

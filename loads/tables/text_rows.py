@@ -59,11 +59,11 @@ def text_lines(source: Source, content: bytes, encoding: str | None) -> list[str
 def text_rows(source: Source, lines: list[str], reading: Reading) -> Rows:
     """The rows of a text table. Raises: TableError for a file that is not a table."""
     start = (reading.header_line or 1) - 1
-    first = next((k for k in range(start, len(lines)) if _has_cells(lines[k])), None)
+    first = next((k for k in range(start, len(lines)) if has_cells(lines[k])), None)
     if first is None:
         return Rows(source, [], [])
     separator = _separator(lines[first], reading)
-    body = [line if _has_cells(line) else "" for line in lines[first:]]
+    body = [line if has_cells(line) else "" for line in lines[first:]]
     try:
         if separator == " ":
             places, cells = _blank_separated(source, body, first, reading.numbered)
@@ -78,7 +78,7 @@ def text_rows(source: Source, lines: list[str], reading: Reading) -> Rows:
     return Rows(source, places, cells, comma, heading, separator)
 
 
-def _has_cells(line: str) -> bool:
+def has_cells(line: str) -> bool:
     """Whether a line is neither blank nor a comment."""
     text = line.lstrip()
     return bool(text) and not text.startswith(COMMENT_MARKS)

@@ -148,27 +148,33 @@ def _of_pin(row: PinResult) -> Iterator[tuple[Step, bool]]:
         step = Step("pin", "", LOCAL, row.safety_factor, low, high, required, clause=CLAUSE)
         yield step, True
         return
-    at_surface = _of_stress(places.surface.max_von_mises, places.surface.error_estimate, strength)
+    surface, outside = places.surface, places.surface.strength or strength
+    at_surface = _of_stress(surface.max_von_mises, surface.error_estimate, outside)
     if row.safety_factor_interval and places.governs == "surface":
         at_surface = row.safety_factor or 0.0, *factor_ends(row)
     yield Step("surface of the pin", "", LOCAL, *at_surface, required, clause=CLAUSE), True
     if (section := places.section) is not None and section.max_von_mises:
-        ends = _of_stress(section.max_von_mises, section.error_estimate, strength)
+        there = section.strength or strength
+        ends = _of_stress(section.max_von_mises, section.error_estimate, there)
         yield Step("section of the pin", "", YIELDS, *ends, required, clause=CLAUSE), True
         if section.plastic_utilisation:
             factor = 1.0 / section.plastic_utilisation
             yield Step("section of the pin", "", PLASTIC, factor), True
+    for part in (x for x in places.hardened if x.part == "core"):
+        ends = _of_stress(part.max_von_mises, part.error_estimate, part.strength)
+        yield Step("core of the pin", "", LOCAL, *ends, required, clause=CLAUSE), True
     if (contact := places.contact) is None:
         return
     if contact.beneath:
-        ends = _of_stress(contact.beneath, contact.beneath_error, strength)
+        there = contact.strength or strength
+        ends = _of_stress(contact.beneath, contact.beneath_error, there)
         yield Step("pin beneath the contact", "", LOCAL, *ends, required, clause=CLAUSE), True
     at_edges: dict[str, float] = {}
     for edge in contact.edges:
         at_edges[edge.band] = max(at_edges.get(edge.band, 0.0), edge.max_von_mises or 0.0)
     for band, stress in at_edges.items():
         if stress > 0.0:
-            yield Step(UNDER_EDGE, band, LOCAL, strength / stress), True
+            yield Step(UNDER_EDGE, band, LOCAL, outside / stress), True
 
 
 def _of_lugs(row: PinResult) -> Iterator[tuple[Step, bool]]:

@@ -58,6 +58,7 @@ def test_friction_is_an_open_value_that_only_lowers_the_factor() -> None:
     pin = with_friction(1.8, 0.8, 1.3)
     pin = replace(pin, depends_on=depends_on(pin))
     ((_, value),) = (row for unknown in unknowns([pin]) for row in unknown.rows)
-    assert (value.what, value.high) == ("friction", pytest.approx(1.8))
+    assert value.what == "friction"
+    assert value.high == pytest.approx(1.8)
     assert value.low == pytest.approx(1.8 / 1.3)
     assert value.flips is not None

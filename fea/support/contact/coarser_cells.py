@@ -36,9 +36,7 @@ def on_coarser_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
     # cells.
     sectors = model.cells.sectors // 2
     coarse = mean.T @ model.flexibility[: COUPLED_HARMONICS_PER_SECTOR * sectors] @ belongs
-    tilt = [lug.tilt for lug in model.lugs]
-    problem = ContactProblem(bands, coarse, model.tail[first], tilt, sectors)
-    return problem, belongs
+    return model.problem(bands, coarse, model.tail[first], sectors, belongs), belongs
 
 
 def _pairs(model: ContactModel) -> Ints:

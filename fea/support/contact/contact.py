@@ -166,6 +166,7 @@ class ContactProblem:
     sectors: M, of equal angles, the first about x.
     besides: (U, U) m/N, further displacement of cells under forces on cells, of a body that is not
     alike in all directions.
+    gone: (U,) the cells that are not there.
     """
 
     def __init__(
@@ -176,6 +177,7 @@ class ContactProblem:
         tilt: Sequence[float],
         sectors: int,
         besides: Floats | None = None,
+        gone: Mask | None = None,
     ) -> None:
         self.bands, self.sectors = bands, sectors
         self.angles = 2.0 * np.pi * np.arange(sectors) / sectors
@@ -189,6 +191,8 @@ class ContactProblem:
         self._fixed = self._of_cells(flexibility, tail)
         if besides is not None:
             self._fixed = self._fixed + besides
+        # A gap as wide as the pin never closes.
+        self._beyond = 0.0 if gone is None else gone * bands.radius.max()
         self._fit(bands, tilt)
 
     def cells_area(self, bands: Bands) -> Floats:
@@ -203,7 +207,7 @@ class ContactProblem:
 
     def _fit(self, bands: Bands, tilt: Sequence[float]) -> None:
         self.bands = bands
-        self._open = np.repeat(bands.gap, self.sectors)
+        self._open = np.repeat(bands.gap, self.sectors) + self._beyond
         self._motions, tilts = self.rigid(bands, tilt)
         self._compliance = self._fixed + tilts @ tilts.T if tilts.size else self._fixed
         self._soft = SOFT_SPRING_STIFFNESS / np.abs(self._compliance).max()

@@ -26,7 +26,7 @@ from fea.core.places import CaseCrushing
 from fea.core.requirement import Requirement
 from fea.core.verdict import Evidence
 from fea.cut.field import CutField
-from fea.cut.region import RingedCutPin
+from fea.cut.region import RingedCutPin, refusal
 from fea.harmonic.beneath import beneath
 from fea.harmonic.field import HarmonicField
 from fea.section.place import FoundSection, found_section
@@ -34,7 +34,7 @@ from fea.section.row import row_of, with_contact
 from fea.support.cell_pressure import CellPressure
 from fea.support.contact.case_crushing import case_crushing, pressed_most
 from fea.support.contact.contact_place import contact_place
-from fea.support.contact.cut_in_lugs import neglected, with_neglected
+from fea.support.contact.cut_in_lugs import cuts_in_lugs, error_of, with_cuts_in_lugs
 from fea.support.contact.friction import band_torques, rubs
 from fea.support.contact.pressed_cases import Candidates, Compared, PressedCases
 from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
@@ -97,10 +97,12 @@ class ContactSupport:
         if self.alone:
             unit, memo = self.alone == "unit", problem.memo or Memo()
             model = unit_model(*of, self.cells, memo, together=not unit)
+            model = _seeing(model, problem.pin)
             patterns = unit_patterns(model) if unit else None
             contact = PressedCases(model, left, between, {}, cut, patterns)
         else:
             model = ContactModel(*of, self.cells, problem.memo)
+            model = _seeing(model, problem.pin)
             progress(f"pin {problem.pin.name}, contact")
             contact = PressedCases(model, left, between, also, cut)
         if not contact.instants.keys() <= near.keys():
@@ -119,6 +121,16 @@ class ContactSupport:
         pressed = tuple(starts.values())
         rigid, _, notes = balanced(held.pin, problem.material, pressed, "harmonic")
         return replace(held, failures=held.failures | rigid, notes=notes)
+
+
+def _seeing(model: ContactModel, pin: PinLike) -> ContactModel:
+    """The model that sees the cuts of a pin, if it has any with which stress can be solved.
+
+    (Others are refused when it is.)
+    """
+    if not isinstance(pin, CutPin) or refusal(pin, (), pin.connections) is not None:
+        return model
+    return model.seeing(pin)
 
 
 def profile_of(pin: PinLike) -> Pin:
@@ -259,11 +271,10 @@ class HeldContact:
         if self.cut is None:
             section = self._section(case, known.section.cells.section, requirement)
             links = links_at(self.problem, case, section.time)
-        elif isinstance(answer, CutField):
-            cuts = neglected(self.cut, material, at_surface, _pressure(at_surface), answer)
-            variations = known.row.range(surface.value).variations
-            surface = with_neglected(surface, cuts, answer, variations)
-            error += cuts.error(surface.value, False, variations) / (surface.value or 1.0)
+        else:
+            places = cuts_in_lugs(self.cut, (lug.connection for lug in model.lugs))
+            surface = with_cuts_in_lugs(surface, places)
+            error += error_of(places)
         peak = row_of(surface, section, material, requirement.tolerance, links)
         search: PartSearch | None = None
         if material.hardened:

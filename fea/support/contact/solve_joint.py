@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -37,12 +37,13 @@ from fea.support.contact.pressure_loads import (
     amplitudes,
     pressure_modes,
 )
+from fea.support.contact.seen_cuts import SeenCuts, seen_cuts
 from fea.support.lugs.changes import with_stiffness
 from fea.support.lugs.fit import fitted, on_structure
 from fea.support.lugs.links import link_forces, link_numbers
 from fea.support.lugs.lug import Bushing, Lug
 from fea.support.lugs.rings import annulus, beside_fillets, ring_ends, ringed, rings
-from geometry import Pin
+from geometry import CutPin, Pin
 from pinbase.arrays import Ints
 from pinbase.memo import Memo
 
@@ -137,6 +138,7 @@ class ContactModel:
     first: its first mesh for stress, None where nothing is solved on it again.
     on_pin, on_lugs: the meshes of the flexibilities, one for equal lugs.
     memo: of flexibilities and meshes, shared with other models.
+    cuts: of the pin, as contact sees them; None: of a pin without cuts.
 
     Raises: ArgumentError for lugs that do not fit the pin; MeshError, SolveError.
     """
@@ -150,6 +152,7 @@ class ContactModel:
         memo: Memo | None = None,
     ) -> None:
         self.first: FirstMesh | None = FirstMesh(memo)
+        self.cuts: SeenCuts | None = None
         self.cells, self._memo = cells, memo or Memo()
         self._shape(pin, material, lugs)
         self.on_pin, self.of_pin = self._pin_flexibility()
@@ -161,6 +164,21 @@ class ContactModel:
             self.on_lugs[key], low, wavy = self._lug_flexibility(lug, ends)
             for rows, *_ in equal:
                 self.of_lugs[:, rows, rows], self.wavy[:, :, rows, rows] = low, wavy
+
+    def seeing(self, cut: CutPin) -> ContactModel:
+        """The model of the pin with cuts, which its contact sees.
+
+        Raises: MeshError, SolveError.
+        """
+        other, whole = copy.copy(self), replace(cut, profile=self.whole)
+        other.__dict__.pop("contact", None)
+
+        def make() -> SeenCuts:
+            return seen_cuts(whole, self.pin, self.rings, self.material, self.cells.highest)
+
+        key = "cuts", whole, self.pin, self.rings, elastic(self.material)
+        other.cuts = self._memo.get((*key, self.cells.highest), make)
+        return other
 
     def _pin_flexibility(self) -> tuple[RingBody, Floats]:
         """The pin's rings on a mesh and their flexibility, solved once for each shape."""
@@ -298,8 +316,28 @@ class ContactModel:
     @cached_property
     def contact(self) -> ContactProblem:
         """The contact problem, ready for any loads."""
+        return self.problem(self.bands, self.flexibility, self.tail, self.cells.sectors)
+
+    def problem(
+        self,
+        bands: Bands,
+        flexibility: Floats,
+        tail: Floats,
+        sectors: int,
+        groups: Floats | None = None,
+    ) -> ContactProblem:
+        """The contact problem on cells of some bands, with the cuts of the pin.
+
+        flexibility, tail, sectors: as of ContactProblem.
+        groups: (R, C) 1 where a ring of the model belongs to one of the bands; all equal by
+        default.
+        """
         tilt = [lug.tilt for lug in self.lugs]
-        return ContactProblem(self.bands, self.flexibility, self.tail, tilt, self.cells.sectors)
+        if self.cuts is None:
+            return ContactProblem(bands, flexibility, tail, tilt, sectors)
+        groups = np.eye(len(self.rings)) if groups is None else groups
+        added, gone = self.cuts.added(bands, sectors, groups), self.cuts.gone(bands, sectors)
+        return ContactProblem(bands, flexibility, tail, tilt, sectors, added, gone)
 
     @cached_property
     def bands(self) -> Bands:
@@ -382,17 +420,18 @@ class ContactModel:
 
     def pressed(self, loads: PinLoads, problem: ContactProblem | None = None) -> list[ContactState]:
         """The contact at each instant of the loads, on cells that turn with the largest force of a
-        link.
+        link, unless the pin has cuts.
 
-        Loads that differ by a rotation share one solution. Each starts from that under the most
-        similar loads; without any initial gap, loads in proportion share one solution, too.
+        Loads that differ by a rotation then share one solution. Each starts from that under the
+        most similar loads; without any initial gap, loads in proportion share one solution, too.
         problem: with other cells than this model's.
 
         Raises: SolveError as `solve`.
         """
         contact = problem or self.contact
         forces, couples = self.forces(loads), self.couples(loads)
-        angles = _directions(forces)
+        cuts = self.cuts
+        angles = _directions(forces) if cuts is None else [cuts.angle] * len(forces)
         turns = np.stack([rotation(angle) for angle in angles])
         forces, couples = forces @ turns, np.einsum("ta,tab->tb", couples, turns)
         sizes = np.abs(forces).max(axis=(1, 2))

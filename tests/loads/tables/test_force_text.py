@@ -159,11 +159,17 @@ def test_what_is_refused(tmp_path: Path, content: str | bytes, code: str, named:
 
 
 def test_which_tables_are_read_at_once() -> None:
-    """Those of numbers alone; not one with a comment, a text or a doubtful comma."""
+    """Those with columns of numbers and of texts; not with a broken row or a doubtful comma."""
     source, reading = Source("t.csv"), Reading()
     plain = ["t;Fx", "0;1", "1;2,5", ""]
     assert text_grid._of_numbers(source, plain, reading) is not None
-    for line in ("# b", "2;x", "2;1.5", '"2";1', "2", "2;1;3", "2;nan", ""):
+    commented = text_grid._of_numbers(source, [*plain[:2], "# b", "", *plain[2:]], reading)
+    assert commented is not None
+    assert list(commented.places) == [2, 5]
+    named = text_grid._of_numbers(source, ["t;Fx;n", "0;1;A", "1;2,5;B, C"], reading)
+    assert named is not None
+    assert named.columns[2] == ["A", "B, C"]
+    for line in ("2;1.5", '"2";1', "2", "2;1;3", "2;nan"):
         assert text_grid._of_numbers(source, [*plain[:3], line, "3;1"], reading) is None
     assert text_grid._of_numbers(source, ["t;Fx", "0;1", "1;2,500"], reading) is None
 

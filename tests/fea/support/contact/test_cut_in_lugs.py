@@ -8,13 +8,18 @@ import numpy as np
 import pytest
 
 from fea.core.material import Material
+from fea.core.peak import ErrorParts
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
+from fea.core.verdict import Evidence
 from fea.cut.region import RingedCutPin
 from fea.solve.solve import solve_in_lugs
-from fea.support.contact.cut_in_lugs import NeglectedCuts
+from fea.support.contact.cut_in_lugs import (
+    CUT_CONTACT_ERROR,
+    cuts_in_lugs,
+    with_cuts_in_lugs,
+)
 from fea.support.lugs.lug import Lug
-from fea.support.records import Variation
 from fea.support.support import PinProblem
 from geometry import CutPin, Hole, Pin, Segment, Slot
 
@@ -31,24 +36,17 @@ CLEVIS = Pin(
 LUGS = tuple(Lug(n, 0.05, STEEL, 0.0, 0.0, 2.1e5) for n in "ABC")
 
 
-def test_what_is_neglected() -> None:
-    """A pin softer by 1 % is one in lugs stiffer by 1 %: with stress that falls to 0.8 in lugs of
-    half the stiffness, 0.32 % of it; the pressure on a mouth counts at the hole alone. What is lost
-    on it and what moves away from it are the same force.
-    """
-    left = NeglectedCuts(0.01, 5e6, 0.02, 0.015, {"hole 1": "B"})
-    over = (
-        Variation("stiffness of the lugs", "half", 0.8e8),
-        Variation("clearance", "none", 0.5e8),
-    )
-    share = 0.01 * np.log(1.25) / np.log(2.0) + 0.02
-    assert left.error(1e8, False, over) == pytest.approx(share * 1e8)
-    assert left.error(1e8, True, over) == pytest.approx(share * 1e8 + 5e6)
-    moved = replace(left, moved=0.1)
-    assert moved.error(1e8, False, over) == pytest.approx((share + 0.08) * 1e8)
-    assert left.note.codes == ("cut-in-lug",)
-    assert "2.0% of the force of a lug" in left.note.text
-    assert not NeglectedCuts(0.01, 0.0, 0.0, 0.0, {}).note.text
+def test_cuts_in_lugs_have_an_error_and_a_note() -> None:
+    """One in a lug has both; one between lugs, which contact sees whole, has none."""
+    inside, outside = Hole(0.023, 0.15 * D), Hole(0.001, 0.0006)
+    evidence = Evidence("P", "pull", "harmonic+local", 1e8, ErrorParts(1e6), (0.0, 0.0, 0.023))
+    places = cuts_in_lugs(CutPin(CLEVIS, (inside, outside)), "ABC")
+    assert places == {"hole 1": "B"}
+    judged = with_cuts_in_lugs(evidence, places)
+    assert judged.parts.model == pytest.approx(CUT_CONTACT_ERROR["hole"] * 1e8)
+    assert "hole 1 in lug B" in judged.remarks.text
+    assert "cut-in-lug" in judged.remarks.codes
+    assert with_cuts_in_lugs(evidence, {}) == evidence
 
 
 def test_a_ringed_pin_weighs_what_contact_balances() -> None:
@@ -110,8 +108,8 @@ def test_the_crest_at_a_hole_is_found_between_samples() -> None:
 
 @pytest.mark.slow
 def test_a_grease_hole_at_the_extreme_fibre() -> None:
-    """3.1 times the bending stress of contact without the hole (four-point bending: 3.10), a little
-    less where the moment falls towards the hole's sides; contact itself is not changed.
+    """3.1 times the bending stress of its joint (four-point bending: 3.10), whose moment is a
+    little less than that without the hole, as the mouth does not press.
     """
     forces = F * np.array([[[-0.5, 0.0, 0.0], [1.0, 0.0, 0.0], [-0.5, 0.0, 0.0]]])
     loads = PinLoads("pull", ("A", "B", "C"), forces)
@@ -120,26 +118,31 @@ def test_a_grease_hole_at_the_extreme_fibre() -> None:
     (holed,) = solve_in_lugs(PinProblem(cut, STEEL, LUGS, (loads,)), Requirement(0.05))
     assert plain.joint is not None
     assert holed.joint is not None
-    assert holed.joint.bending_moment == plain.joint.bending_moment
     assert plain.joint.bending_moment is not None
-    nominal = 32.0 * plain.joint.bending_moment / (np.pi * D**3)
+    assert holed.joint.bending_moment is not None
+    assert 0.95 < holed.joint.bending_moment / plain.joint.bending_moment < 0.99
+    nominal = 32.0 * holed.joint.bending_moment / (np.pi * D**3)
     peak = holed.peak
     assert peak.model == "harmonic+local"
     assert peak.max_von_mises is not None
     assert peak.max_von_mises == pytest.approx(3.1 * nominal, rel=0.04)
     assert peak.parts is not None
-    assert 0.0 < peak.parts.model < 0.2 * peak.max_von_mises
+    assert peak.parts.model == pytest.approx(CUT_CONTACT_ERROR["hole"] * peak.max_von_mises)
     assert "cut-in-lug" in peak.reasons
 
 
 @pytest.mark.slow
-def test_a_keyway_that_faces_the_load_loses_its_pressure() -> None:
-    """What presses on it, by the contact of the round pin: the cosine about it, to some per cent.
-    Turned away from the load it loses none, and contact is the same.
+def test_a_keyway_that_faces_the_load_moves_its_pressure() -> None:
+    """What pressed on it presses beside it and before its ends, so that the moment falls; turned
+    away from the load it changes the joint by its softness alone. The lug has its force in both.
+    (Contact by whole solids, with clearance: 0.968 of the moment, which is 1.7 % less.)
     """
     forces = F * np.array([[[-0.5, 0.0, 0.0], [1.0, 0.0, 0.0], [-0.5, 0.0, 0.0]]])
     loads = PinLoads("pull", ("A", "B", "C"), forces)
-    long, wide, models, moments = 0.01, 0.004, [], []
+    long, wide, moments = 0.01, 0.004, []
+    (plain,) = solve_in_lugs(PinProblem(CLEVIS, STEEL, LUGS, (loads,)), Requirement(0.1))
+    assert plain.joint is not None
+    assert plain.joint.bending_moment is not None
     for angle in (0.0, np.pi):
         key = Slot(0.023 - long / 2, 0.023 + long / 2, wide, 0.0025, angle, 0.0008, False)
         pin = CutPin(CLEVIS, slots=(key,))
@@ -147,13 +150,10 @@ def test_a_keyway_that_faces_the_load_loses_its_pressure() -> None:
         peak = found.peak
         assert found.joint is not None
         assert peak.model == "harmonic+local"
-        assert peak.parts is not None
         assert "slot 1 in lug B" in peak.note
-        models.append(peak.parts.model / (peak.max_von_mises or 1.0))
-        moments.append(found.joint.bending_moment)
+        assert found.joint.bending_moment is not None
+        moments.append(found.joint.bending_moment / plain.joint.bending_moment)
         (band,) = (b for b in found.joint.bands if b.name == "B")
         assert band.force == pytest.approx(F, rel=1e-9)
-    assert moments[0] == moments[1]
-    cosine = 2.0 / np.pi * wide / D * long / 0.02 * 2.0  # 4 p0 / pi on the crest, even along it
-    assert models[0] < 0.02
-    assert 0.5 * cosine < models[1]
+    assert moments[0] == pytest.approx(1.0, abs=0.008)
+    assert 0.96 < moments[1] < moments[0] - 0.005

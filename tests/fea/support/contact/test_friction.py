@@ -23,7 +23,7 @@ from fea.support.lugs.lug import Lug
 from fea.support.support import PinProblem, Solution
 from geometry import ArgumentError
 from pinbase.arrays import Floats
-from tests.fea.support.contact.test_solve_in_lugs import LUGS, PIN, STEADY, STEEL, D
+from tests.fea.support.contact.test_solve_in_lugs import FORCE, LUGS, PIN, STEADY, STEEL, D, pull
 
 MU, R, LENGTH, SECTORS = 0.2, 0.01, 0.03, 720
 
@@ -116,6 +116,20 @@ def test_torsion_by_friction_adds_to_bending_as_by_hand(rubbing: Solution) -> No
     assert turning.what == "friction"
     assert expected <= turning.max_von_mises / peak.max_von_mises <= 1.02 * expected
     assert joint.range.max_von_mises[1] >= turning.max_von_mises
+
+
+def test_the_torque_is_the_largest_over_all_instants(rubbing: Solution) -> None:
+    """Without clearance it grows with the load: that of the third instant, which is the steady one
+    in another direction.
+    """
+    lugs = tuple(replace(lug, friction=0.15) for lug in LUGS)
+    along = FORCE * np.array([[0.4, 0.0], [0.0, 0.7], [0.0, 1.0], [-0.3, 0.2]])
+    moving = pull(along, np.arange(4.0))
+    (solution,) = solve_in_lugs(PinProblem(PIN, STEEL, lugs, (moving,)), Requirement(tolerance=0.1))
+    assert solution.joint is not None
+    assert rubbing.joint is not None
+    for band, steady in zip(solution.joint.bands, rubbing.joint.bands, strict=True):
+        assert band.friction_torque == pytest.approx(steady.friction_torque, rel=1e-9)
 
 
 def test_friction_changes_nothing_else(rubbing: Solution) -> None:

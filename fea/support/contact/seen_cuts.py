@@ -1,0 +1,107 @@
+"""The cuts of a pin as its contact with lugs sees them.
+
+Cells of which a cut takes nearly all press no more. On the others the compliance grows by what the
+cuts add under pressures of single rings, harmonic by harmonic (fea.cut.compliance): the pin bends
+more, is squeezed oval over a hole, and yields beside a mouth. Cells that are taken in part press as
+whole ones, by the force on what is left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fea.core.material import Material
+from fea.core.pin_loads import UnitLoad
+from fea.cut.compliance import added_compliance
+from fea.cut.region import loaded_bands, pieces
+from fea.support.bands import Bands
+from fea.support.contact.pressure_loads import waves_of_sectors
+from geometry import CutPin, Pin
+from pinbase.arrays import Floats, Mask
+
+CELL_POINTS = 8  # along each side of a cell, at which it is seen whether a cut takes it
+MIN_CELL_LEFT = 0.15  # of a cell's area: a cell with less presses no more; chosen by judgement
+
+
+@dataclass(frozen=True)
+class SeenCuts:
+    """The cuts of a pin, and what they add to the work of pressures on its rings.
+
+    work: (K, K) N m, of unit pressures: by harmonic, ring and phase.
+    of: (K, 3) harmonic, ring and phase of each.
+    """
+
+    cut: CutPin
+    work: Floats
+    of: Floats
+
+    @cached_property
+    def angle(self) -> float:
+        """The middle of the first cell, rad, at which cells are like the first cut on both sides.
+
+        Cells do not turn with the loads, as they do on a pin that is alike all around.
+        """
+        return next(iter(self.cut.cuts.values())).angle
+
+    def gone(self, bands: Bands, sectors: int) -> Mask:
+        """A mask (U,) of the cells that cuts take."""
+        part = (np.arange(CELL_POINTS) + 0.5) / CELL_POINTS - 0.5
+        turns = (np.arange(sectors)[:, None] + part).ravel() * 2.0 * np.pi / sectors + self.angle
+        out = []
+        for z, length, radius in zip(bands.z, bands.length, bands.radius, strict=True):
+            along, around = np.meshgrid(z + part * length, turns)
+            x = np.stack([radius * np.cos(around), radius * np.sin(around), along], axis=-1)
+            taken = np.zeros(x.size // 3, dtype=bool)
+            for cut in self.cut.cuts.values():
+                low, high = cut.opens
+                if low < z + 0.5 * length and high > z - 0.5 * length:
+                    taken |= cut.takes(x.reshape(-1, 3), float(radius))
+            out.append(taken.reshape(sectors, -1).mean(axis=1) > 1.0 - MIN_CELL_LEFT)
+        return np.concatenate(out)
+
+    def added(self, bands: Bands, sectors: int, groups: Floats) -> Floats:
+        """What the cuts add to the displacement of cells under forces on cells, (U, U) m/N.
+
+        groups: (R, C) 1 where a ring of the pin belongs to a ring of the cells.
+        """
+        waves = waves_of_sectors(sectors, int(self.of[:, 0].max()), self.angle)
+        n, ring, phase = self.of.T
+        on_cells = groups[ring][:, :, None] * waves[n, :, phase][:, None, :]
+        area = bands.length * bands.radius * 2.0 * np.pi / sectors
+        amounts = (on_cells / area[:, None]).reshape(len(self.of), -1)
+        here = ~self.gone(bands, sectors)
+        # Forces of all cells are in balance. What the unit loads do otherwise, closed by tractions
+        # on all bands, is left out: it would move the pin rigidly at most.
+        turns = 2.0 * np.pi * np.arange(sectors) / sectors
+        e_r = np.tile(np.stack([np.cos(turns), np.sin(turns)], axis=1), (len(bands.z), 1))
+        z = np.repeat(bands.z - bands.z.mean(), sectors)[:, None] / np.ptp(bands.z)
+        motions = np.hstack([e_r, z * e_r]) * here[:, None]
+        amounts *= here
+        share = np.linalg.solve(motions.T @ motions, motions.T)
+        balanced = amounts - (amounts @ motions) @ share
+        return np.asarray(balanced.T @ self.work @ balanced)
+
+
+def seen_cuts(
+    cut: CutPin, ringed: Pin, rings: Sequence[str], material: Material, highest: int
+) -> SeenCuts:
+    """The cuts of a pin in contact with its lugs.
+
+    cut: with the bands of the lugs. ringed: the pin without cuts, its bands cut into rings.
+    highest: harmonic of the pressures.
+
+    Raises: MeshError, SolveError.
+    """
+    bands = loaded_bands(cut, cut.connections)
+    number = {name: k for k, name in enumerate(rings)}
+    loads = [
+        tuple(UnitLoad("", "pressure", n, ((name, 1.0),)) for name in rings)
+        for n in range(highest + 1)
+    ]
+    units, work = added_compliance(ringed, material, pieces(cut, (), bands=bands), bands, loads)
+    of = np.array([(load.n, number[load.parts[0][0]], phase) for load, phase in units])
+    return SeenCuts(cut, work, of)
