@@ -4,7 +4,7 @@ LOCKBIN := .venv-lock/bin
 
 .DEFAULT_GOAL := help
 .PHONY: help setup demo test test-rest test-all test-browser test-peers test-portable coverage mutants check types \
-	bench docs wheel lock clean
+	bench evidence docs wheel lock clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 12
@@ -73,6 +73,9 @@ types: setup ## check types
 bench: setup ## run all benchmarks and write their tables into docs/measured (about 17 minutes)
 	$(BIN)/pip install --quiet --require-hashes -r requirements-bench.lock
 	$(BIN)/python -m benchmarks --record
+
+evidence: setup ## predict tests and printed examples, and write docs/evidence.md (about ten minutes)
+	$(BIN)/python -m benchmarks.evidence
 
 docs: setup ## build the documentation into build/docs; a warning is an error
 	$(BIN)/sphinx-build --quiet --nitpicky --fail-on-warning --keep-going -b html docs build/docs

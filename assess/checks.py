@@ -22,11 +22,12 @@ from assess.clauses import (
     melcon_hoblit,
 )
 from assess.clauses.lug_checks import lug_checks
-from assess.clauses.lug_collapse import lug_collapse
+from assess.clauses.lug_collapse import lug_collapse, lug_rupture
 from assess.codes import DEFAULT_CODES, Code
 from assess.margin import Margin, for_comparison
 from assess.situation import Situation
 from assess.strength import eurocode_pins
+from assess.strength.case_crushing import crushed_case
 from assess.strength.collapse import collapse
 from assess.strength.fatigue_life import fatigue_life
 from assess.strength.hand_checks import (
@@ -44,9 +45,11 @@ from assess.strength.section_forces import with_section_forces
 CHECKS: tuple[Check, ...] = (
     model_yield,
     model_rupture,
+    crushed_case,
     lug_stress,
     collapse,
     lug_collapse,
+    lug_rupture,
     mean_shear,
     neutral_axis_shear,
     double_shear,
@@ -77,6 +80,7 @@ AIRCRAFT: tuple[Check, ...] = (
     melcon_hoblit.transverse,
     melcon_hoblit.transverse_yield,
     melcon_hoblit.oblique,
+    melcon_hoblit.oblique_yield,
     ekvall.ekvall_transverse,
     ekvall.ekvall_bore_stress,
     affdl_joint.affdl_joint,

@@ -49,9 +49,11 @@ class Judgement:
 def against_yield(peak: Maximum, strength: float | None, required: float | None) -> Judgement:
     """Return the judgement of a maximum.
 
-    strength: yield strength, Pa, None for a material without one.
+    strength: yield strength, Pa, None for a material without one; of a pin with a hardened surface
+    that where the maximum is counts instead.
     required: factor of safety.
     """
+    strength = peak.yield_strength(strength)
     if strength is None:
         return Judgement(required=required)
     interval = None

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 class LugFactors:
     """Factors of a lug without units, None where the study does not give them.
 
-    K, K_n: of AFFDL-TR-69-42, figures 9-2 (and 9-3) and 9-4. k_br, k_t: of Melcon and Hoblit for
+    K, K_n: of AFFDL-TR-69-42, figures 9-2 and 9-4. k_br, k_t: of Melcon and Hoblit for
     shear-bearing and tension, C: of the yield load; k_tru, k_try: for transverse loads, ultimate
     and yield.
     """

@@ -1,8 +1,9 @@
 """Pages that show a terminal: their commands are run, and their output is compared.
 
-In a page's ```toml and ```python blocks the first line is `# FILE`, or `# FILE, continued`; in its
-```console blocks lines after `$ ` are commands, the others what they print on stdout and then on
-stderr, where `...` stands for any lines. Numbers may differ by a hundredth, and round-off by more.
+In a page's ```toml, ```python and ```text blocks the first line is `# FILE`, or `# FILE,
+continued`, if they are files; in its ```console blocks lines after `$ ` are commands, the others
+what they print on stdout and then on stderr, where `...` stands for any lines. Numbers may differ
+by a hundredth, and round-off by more.
 
     python -m docs.sessions docs/tutorial.md
 
@@ -21,7 +22,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-BLOCK = re.compile(r"^```(toml|python|console)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+BLOCK = re.compile(r"^```(toml|python|text|console)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FILE = re.compile(r"# (?P<name>[\w.-]+)(?P<more>, continued)?$")
 NUMBER = re.compile(r"[-−]?\d[\d,]*\.?\d*(?:e[-+]?\d+)?")
 CLOSE, ROUND_OFF = 0.01, 1e-12

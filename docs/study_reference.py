@@ -49,8 +49,15 @@ def sections(study: Schema) -> Iterator[Section]:
             yield section
 
 
+def _keys(table: Schema) -> Iterator[tuple[str, Schema]]:
+    """The keys of a table and what they take; NAME for keys that the user chooses."""
+    yield from table["properties"].items()
+    if table.get("additionalProperties"):
+        yield "NAME", table["additionalProperties"]
+
+
 def _below(study: Schema, table: Schema, path: str) -> Iterator[Section]:
-    for key, value in table["properties"].items():
+    for key, value in _keys(table):
         if key in EVERYWHERE:
             continue
         for where, names in _places(value, f"{path}.{key}" if path else key):
@@ -115,7 +122,7 @@ def takes(value: Schema) -> str:
 def _default(key: str, table: Schema) -> str:
     if key in table.get("required", []):
         return "**required**"
-    default = table["properties"][key].get("default")
+    default = table["properties"].get(key, {}).get("default")
     if default in (None, [], {}) or isinstance(default, dict):
         return "–"
     return f"`{json.dumps(default)}`"
@@ -124,7 +131,8 @@ def _default(key: str, table: Schema) -> str:
 def reference(study: Schema) -> str:
     """All sections as Markdown. study: the JSON Schema that `pinstress schema` prints."""
     every = list(sections(study))
-    anchors = {s.path: s.anchor for s in reversed(every)}  # of several the first
+    # Of several the first; without brackets, as a place may take a list or one.
+    anchors = {s.path.removesuffix("[]"): s.anchor for s in reversed(every)}
     return "\n".join(_written(section, anchors) for section in every)
 
 
@@ -140,11 +148,13 @@ def _written(section: Section, anchors: dict[str, str]) -> str:
         "| key | type | default | description |",
         "| --- | --- | --- | --- |",
     ]
-    for key, value in table["properties"].items():
+    for key, value in _keys(table):
         if key not in EVERYWHERE:
             told = takes(value)
-            for path, _ in _places(value, f"{section.path}.{key}" if section.path else key):
-                told = told.replace("table", f"[table](#{anchors[path]})")
+            places = _places(value, f"{section.path}.{key}" if section.path else key)
+            # A table or a list of them: both have one section.
+            for anchor in {anchors[path.removesuffix("[]")] for path, _ in places}:
+                told = told.replace("table", f"[table](#{anchor})")
             lines.append(f"| `{key}` | {told} | {_default(key, table)} | {value['description']} |")
     return "\n".join([*lines, ""])
 

@@ -5,6 +5,7 @@ All quantities are in SI units. Of the other packages here, it imports only `pin
 
 from loads.forces.acting import Applied, ForceLaw, Load, Spring, Varying
 from loads.forces.curve import ForceTable
+from loads.forces.holding import locked
 from loads.forces.inverse_dynamics import Dynamics, motion_reactions
 from loads.forces.measures import Clock, Distance, Measure, Position
 from loads.forces.over_time import (
@@ -17,7 +18,7 @@ from loads.forces.over_time import (
     require_possible,
 )
 from loads.forces.power_balance import Energy, Ledger, energy, ledger
-from loads.forces.reactions import Reactions, given_reactions, read_reactions
+from loads.forces.reactions import Reactions, given_reactions, read_reactions, tabled_reactions
 from loads.forces.spatial_leg import Contact, LegDynamics, LegMotion, SpatialLeg, leg_dynamics
 from loads.landing.impulse import impulse_force
 from loads.linkage.drives import (
@@ -51,7 +52,9 @@ from loads.motion.motion import Course, Motion, at_rest, move
 from loads.motion.refine import Resolved, resolved
 from loads.motion.singular_positions import MotionBlocked
 from loads.tables.csv_table import TableError, read_table
-from loads.tables.force_table import Layout, table_cases
+from loads.tables.force_columns import JointAxes, Layout
+from loads.tables.force_table import jump_times, table_cases
+from loads.tables.grid import Reading
 from loads.tables.regular_file import MB, FileError, read_regular, require_regular
 from loads.tables.sent_files import noted_files, on_disk, sent_files
 from pinbase.errors import ArgumentError, CodedError
@@ -81,6 +84,7 @@ __all__ = [
     "Gear",
     "JammingError",
     "Joint",
+    "JointAxes",
     "Law",
     "Layout",
     "Ledger",
@@ -100,6 +104,7 @@ __all__ = [
     "Position",
     "Rack",
     "Reactions",
+    "Reading",
     "Resolved",
     "Sharing",
     "Slider",
@@ -116,8 +121,10 @@ __all__ = [
     "gear_pair",
     "given_reactions",
     "impulse_force",
+    "jump_times",
     "ledger",
     "leg_dynamics",
+    "locked",
     "mobility",
     "motion_reactions",
     "move",
@@ -134,4 +141,5 @@ __all__ = [
     "resolved",
     "sent_files",
     "table_cases",
+    "tabled_reactions",
 ]

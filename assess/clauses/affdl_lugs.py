@@ -9,10 +9,11 @@ ultimate load. The efficiency factors K and K_n are those of figures 9-2 to 9-4,
 gives: the study states them. The yield strength of the bushing stands for that in compression, and
 that of the lug for the one across the grain.
 
-For e/D of at least 1.5 the manual has K F (equations 9-1b and 9-2b), which a/D = 1 gives here.
+The example of the manual has e/D up to 1.5, a/D = 1. Beyond that a/D is kept at 1, on the safe side
+of the formula; what the manual has there was not read, nor are K and K_n beyond the example.
 
-Source: AFFDL-TR-69-42, Stress Analysis Manual (reprint of October 1986), 9.3, equations 9-1 to 9-9;
-M. A. Melcon & F. M. Hoblit, Product Engineering, June 1953.
+Source: AFFDL-TR-69-42, Stress Analysis Manual (reprint of October 1986), equations 9-2a, 9-3b, 9-6
+and 9-9 as in its example, 9.6 (docs/evidence.md), after the method of Melcon and Hoblit.
 """
 
 from __future__ import annotations
@@ -38,7 +39,8 @@ ULTIMATE_OVER_YIELD = 1.304  # 1.5 / 1.15 as the manual has it
 STRENGTH_FORMULA = "min({F_tu}, 1.304 × {F_ty})"
 LUG_OMITS = (
     "Not covered: loads across the shank, elongations under 5 %, strength across the grain other "
-    "than the material's, bending of the lug, fatigue."
+    "than the material's, bending of the lug, fatigue. By the manual's example; for e/D above 1.5 "
+    "a/D is kept at 1, which is not verified against the manual."
 )
 
 
@@ -160,9 +162,11 @@ def _margins(
     """instead: the factor by which another check covers the same, where only that is given."""
     margins = []
     for x in loaded_eyes(s):
+        if not x.axial.any():
+            continue
         capacity = capacity_of(s, x)
         if not isinstance(capacity, list):
-            margins += [eye_margin(text, s, x, x.axial, capacity, "width")] * bool(x.axial.any())
+            margins.append(eye_margin(text, s, x, x.axial, capacity, "width"))
         elif getattr(s.factors_of(x.connection), instead) is None:
             margins.append(text.lacks(s, *capacity))
     return margins

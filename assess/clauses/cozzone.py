@@ -8,8 +8,8 @@ of Ramberg and Osgood up to the strain at the ultimate strength. k_b is read off
 that states it (`bending_factor` of the pin) does without the strain. For solid round pins 1.44,
 1.50 and 1.56 are in use.
 
-Source: F. P. Cozzone, Bending Strength in the Plastic Range, J. Aero. Sci. 10 (1943); E. F. Bruhn,
-Analysis and Design of Flight Vehicle Structures, C3; W. Ramberg & W. R. Osgood, NACA TN 902 (1943).
+Source: a worked example by J. C. Banks (docs/evidence.md) after E. F. Bruhn, Analysis and Design of
+Flight Vehicle Structures, C3.3, and F. P. Cozzone, J. Aero. Sci. (1943), which were not read.
 """
 
 from __future__ import annotations

@@ -22,6 +22,7 @@ from assess.situation import Situation
 from assess.work import Work, work
 
 EKVALL = "Ekvall, J. Aircraft 23 (1986) 438"
+BORE_EXPONENT = -0.675  # of W/D - 1 in the stress at the bore
 TESTED_WIDTHS = 1.33, 4.5  # W/D of the tests
 SYMMETRY_TOLERANCE = 0.01  # by which 2 e/W may differ from 1 for the factor of a symmetric lug
 SCATTER = (
@@ -51,7 +52,7 @@ def transverse_load(eye: PlateEye, ultimate: float) -> Work:
 
 def bore_factor(eye: PlateEye) -> float:
     """K_tb, the elastic stress at the bore over F / (D t), of a straight lug pulled axially."""
-    return float(2.75 * (eye.width / eye.hole - 1.0) ** -0.675)
+    return float(2.75 * (eye.width / eye.hole - 1.0) ** BORE_EXPONENT)
 
 
 def bore_stress(eye: PlateEye, force: float) -> Work:
@@ -64,7 +65,7 @@ def bore_stress(eye: PlateEye, force: float) -> Work:
     )  # fmt: skip
 
 
-@check("Ekvall transverse", f"{EKVALL}, figure 4", kind="clause", takes="loads", level="ultimate",
+@check("Ekvall transverse", f"{EKVALL}, K_BR", kind="clause", takes="loads", level="ultimate",
        dimension="force", scatter=SCATTER, omits=OMITS)  # fmt: skip
 def ekvall_transverse(text: CheckText, s: Situation) -> list[Margin]:
     """The force across the shank of every symmetric lug against K_BR F_tu D t."""

@@ -17,8 +17,8 @@ from the centre of the bore; their length is e - D/2 cos 40 where that is straig
 compared with yield, in shear with yield over sqrt(3) (von Mises); yield as the strength in bearing
 is a convention. Neither the stress concentration at the bore nor a load across the link is in them.
 
-Source: ASME BTH-1, Design of Below-the-Hook Lifting Devices, 3-3.3, equations 3-45 to 3-47 (net
-section), by D. Duerr, J. Struct. Eng. 132(2), 2006, 182-194; R. G. Budynas & J. K. Nisbett,
+Source: ASME BTH-1-2005, equations 3-45 to 3-51 (net section; by spreadsheets, docs/evidence.md),
+after D. Duerr, J. Struct. Eng. 132(2), 2006, 182-194; R. G. Budynas & J. K. Nisbett,
 Shigley's Mechanical Engineering Design, 8-12 (edge shear, bearing); E. F. Bruhn, Analysis and
 Design of Flight Vehicle Structures, D1 (planes at 40 degrees); ANSI/AISC 360, J7 (the same area in
 bearing).
@@ -40,7 +40,7 @@ from assess.situation import Situation
 from assess.strength.hand_checks import BEARING_SOURCE, SHIGLEY_JOINTS, shear_yield
 from assess.work import Work, WorkQuantity, scaled, work
 
-BTH1 = "ASME BTH-1, 3-3.3; Duerr 2006"
+BTH1 = "ASME BTH-1-2005, eq. 3-45 to 3-51; Duerr 2006"
 BRUHN = "Bruhn, Analysis and Design of Flight Vehicle Structures, D1"
 NET_SECTION_FORMULA = "F / (C_r 2 t b_eff)"
 SHEAR_OUT_FORMULA = "F / (2 t (sqrt(e^2 - (D/2 sin 40°)^2) - D/2 cos 40°))"

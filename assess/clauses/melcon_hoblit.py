@@ -13,8 +13,8 @@ them. `average_area` is the ratio with which the figure of the transverse ones i
 The study has one ultimate and one yield strength of a material; those across the grain (F_tux,
 F_tyx) are to be stated there where they are lower.
 
-Source: M. A. Melcon & F. M. Hoblit, Developments in the Analysis of Lugs and Shear Pins, Product
-Engineering, June 1953; M. C. Y. Niu, Airframe Stress Analysis and Sizing, 9.8.
+Source: M. C. Y. Niu, Airframe Stress Analysis and Sizing, 9.8, pp. 329-336, after Melcon & Hoblit,
+whose paper was not read.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from assess.situation import Situation
 from assess.work import Work, work
 from pinbase.arrays import Floats
 
-NIU = "Melcon & Hoblit; Niu, Airframe Stress Analysis, 9.8"
+NIU = "Niu, Airframe Stress Analysis, 9.8, after Melcon & Hoblit"
 OBLIQUE_EXPONENT = 1.6  # of the interaction; 0.625 is its inverse
 OMITS = (
     "Not covered: elongations under 5 %, strength across the grain other than the material's, "
@@ -201,13 +201,41 @@ def _oblique(text: CheckText, s: Situation, x: LoadedEye) -> Margin:
         return text.lacks(s, *lacking, *(m for m in strengths_of(x.lug).missing if "ultim" in m))
     along = shear_bearing_load(x.eye, k.k_br, fu), tension_load(x.eye, k.k_t, fu)
     axial = min(load.result.value for load in along)
-    across = transverse_load(k.k_tru, fu, x.eye)
-    used = oblique_ratio(x.axial / axial, x.transverse / across.result.value)
+    return _combined(text, s, x, axial, (*along, transverse_load(k.k_tru, fu, x.eye)))
+
+
+@check("Melcon-Hoblit oblique yield", NIU, kind="clause", takes="loads", dimension=RATIO_DIMENSION,
+       omits=OMITS)  # fmt: skip
+def oblique_yield(text: CheckText, s: Situation) -> list[Margin]:
+    """The same at yield, of every eye whose factors of ultimate load are given."""
+    return [
+        _oblique_yield(text, s, x)
+        for x in loaded_eyes(s)
+        if (x.axial * x.transverse).any() and s.factors_of(x.connection).k_br is not None
+    ]
+
+
+def _oblique_yield(text: CheckText, s: Situation, x: LoadedEye) -> Margin:
+    k, strengths = s.factors_of(x.connection), strengths_of(x.lug)
+    fy, fu = strengths.yields, strengths.ultimate
+    if k.k_br is None or k.k_t is None or k.C is None or k.k_try is None or strengths.missing:
+        return text.lacks(s, *_lacking(s, x, *AXIAL_KEYS, "C", "k_try"), *strengths.missing)
+    loads = shear_bearing_load(x.eye, k.k_br, fu), tension_load(x.eye, k.k_t, fu)
+    axial = yield_load(min(load.result.value for load in loads), k.C, fy, fu)
+    across = transverse_yield_load(k.k_try, fy, x.eye)
+    return _combined(text, s, x, axial.result.value, (*loads, axial, across))
+
+
+def _combined(
+    text: CheckText, s: Situation, x: LoadedEye, axial: float, works: tuple[Work, ...]
+) -> Margin:
+    """The margin of both parts of a force. axial: what the eye carries along its shank, N; works:
+    of the loads that it carries, that across its shank the last.
+    """
+    across = works[-1].result.value
+    used = oblique_ratio(x.axial / axial, x.transverse / across)
     t = int(used.argmax())
-    place, (R_a, R_tr) = (
-        place_of(s, x, t),
-        (x.axial[t] / axial, x.transverse[t] / across.result.value),
-    )
+    place, R_a, R_tr = place_of(s, x, t), x.axial[t] / axial, x.transverse[t] / across
     both = work(
         "R", used[t], RATIO_DIMENSION, "({R_a}^1.6 + {R_tr}^1.6)^0.625", R_a=(R_a, "1"),
         R_tr=(R_tr, "1"),
@@ -215,7 +243,7 @@ def _oblique(text: CheckText, s: Situation, x: LoadedEye) -> Margin:
     return Margin(
         text.method, text.clause, text.kind, text.level, s.factors.at(text.level), float(used[t]),
         1.0, RATIO_DIMENSION, x.connection, place.z, place.time, x.lug.name, x.basis,
-        work=(*along, across, both), omits=text.omits,
+        work=(*works, both), omits=text.omits,
     )  # fmt: skip
 
 

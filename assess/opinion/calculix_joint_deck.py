@@ -30,6 +30,8 @@ FACE_CORNERS = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
 LAST_INCREMENT_ONLY = "FREQUENCY=1000000"  # of the increments, at which results are written
 # Of Young's modulus times the pin's length: springs that hold what has no contact
 WEAK_SPRING_STIFFNESS = 1e-7
+STICK_STIFFNESS_RATIO = 0.1  # of the contact's stiffness: that against sliding
+FRICTION_INCREMENTS = "0.5, 1, 0.02, 0.5"  # of a step with friction: first, all, least, most
 
 
 @dataclass(frozen=True)
@@ -82,6 +84,9 @@ class JointDeck:
     half.
     dialect: the program that reads it; Abaqus has no total force CF in *CONTACT PRINT, and takes
     elements, not nodes, in *EL FILE.
+    friction: Coulomb's coefficient.
+    history: the fractions of the forces at the ends of the steps; with friction each of these takes
+    several increments.
     """
 
     pin: Part
@@ -89,6 +94,8 @@ class JointDeck:
     stiffness: float
     half: bool
     dialect: Dialect = "calculix"
+    friction: float = 0.0
+    history: tuple[float, ...] = (1.0,)
 
     def lines(self) -> Iterator[str]:
         """The text of the deck."""
@@ -98,7 +105,8 @@ class JointDeck:
         yield from self._surfaces(first)
         yield from self._contact()
         yield from self._holding(first)
-        yield from self._step(first)
+        for fraction in self.history:
+            yield from self._step(first, fraction)
 
     def write(self, path: Path) -> None:
         """Write the deck."""
@@ -145,6 +153,9 @@ class JointDeck:
         yield "*SURFACE INTERACTION, NAME=DRY"
         yield "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"
         yield real(self.stiffness)
+        if self.friction:
+            yield "*FRICTION"
+            yield f"{real(self.friction)}, {real(STICK_STIFFNESS_RATIO * self.stiffness)}"
         for eye in self.eyes:
             for k in range(len(eye.rings)):
                 yield "*CONTACT PAIR, INTERACTION=DRY, TYPE=SURFACE TO SURFACE"
@@ -215,15 +226,16 @@ class JointDeck:
             if not self.half:
                 yield from ("*EQUATION", "2", f"{start + one}, 2, 1., {start + other}, 2, -1.")
 
-    def _step(self, first: list[tuple[int, int]]) -> Iterator[str]:
+    def _step(self, first: list[tuple[int, int]], fraction: float) -> Iterator[str]:
         yield "*STEP"
         yield "*STATIC"
-        yield "1, 1"
+        yield FRICTION_INCREMENTS if self.friction else "1, 1"
         yield "*CLOAD"
         for b, eye in enumerate(self.eyes):
             if b:
                 for axis in self.axes:
-                    yield f"{self._auxiliary(b)[0]}, {axis}, {real(float(eye.force[axis - 1]))}"
+                    force = fraction * float(eye.force[axis - 1])
+                    yield f"{self._auxiliary(b)[0]}, {axis}, {real(force)}"
         for eye in self.eyes if self.dialect == "calculix" else ():
             for k in range(len(eye.rings)):
                 pair = f"SLAVE={slave(eye.part.name, k)}, MASTER=BORE{eye.part.name}"

@@ -95,10 +95,13 @@ class LimitLoad:
 class LugCollapse:
     """The limit load of a lug, N, that its pin pulls along the shank, between lower and upper.
 
-    needs: what is missing where there is none.
+    needs: what is missing where there is none. ultimate: the load at which it breaks, of a material
+    with a failure strain; breaks_by: what ends it, or what is missing.
     """
 
     connection: str
     lower: Force | None = None
     upper: Force | None = None
     needs: str = ""
+    ultimate: Force | None = None
+    breaks_by: str = ""

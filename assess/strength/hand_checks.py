@@ -33,6 +33,7 @@ from assess.situation import ForcesKind, NominalStress, Situation
 from assess.work import Work, scaled, work
 from fea.beam.line_load import acting, shares
 from fea.beam.timoshenko import SHEAR, stepped_beam
+from fea.core.hardened import linear_strength
 from fea.core.material import Material
 
 SHIGLEY = "Budynas & Nisbett, Shigley's Mechanical Engineering Design"
@@ -127,10 +128,16 @@ def bearing(text: CheckText, s: Situation) -> list[Margin]:
 
 @check(*BENDING_TEXTS["even"], kind="hand", takes="section forces")
 def bending(text: CheckText, s: Situation) -> list[Margin]:
-    """The elastic bending stress M c / I, with each kind of section forces."""
+    """The elastic bending stress M c / I, with each kind of section forces.
+
+    With a hardened surface against that at which the case yields, or the core beneath it.
+    """
     method, clause = BENDING_TEXTS[s.forces.kind]
     named = replace(text, method=method, clause=clause)
-    return _along(named, s, s.forces.bending(), s.material.yield_strength, BENDING_FORMULA)
+    strength, pin = s.material.yield_strength, s.pin
+    if parts := s.material.strength_parts(pin.length):
+        strength = linear_strength(parts, pin.largest_diameter / 2.0)
+    return _along(named, s, s.forces.bending(), strength, BENDING_FORMULA)
 
 
 def _along(

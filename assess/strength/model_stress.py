@@ -28,7 +28,8 @@ def model_yield(text: CheckText, s: Situation) -> list[Margin]:
     """
     if s.row is None:
         return []
-    margin = _margin(text, s, s.row.peak, "yield", s.material.yield_strength)
+    peak = s.row.peak
+    margin = _margin(text, s, peak, "yield", peak.yield_strength(s.material.yield_strength))
     return [replace(margin, factor=max(margin.factor, s.row.required or 0.0))]
 
 
@@ -37,7 +38,13 @@ def model_rupture(text: CheckText, s: Situation) -> list[Margin]:
     """The margin against rupture at ultimate load."""
     if s.row is None:
         return []
-    return [_margin(text, s, s.row.peak, "ultimate", s.material.ultimate_strength)]
+    margin = _margin(text, s, s.row.peak, "ultimate", s.material.ultimate_strength)
+    places = s.row.peak.places
+    if margin.demand is None or places is None or not places.hardened:
+        return [margin]
+    # Yield governs where the factor is least, rupture where stress is largest.
+    largest = max(part.max_von_mises + part.error_estimate for part in places.hardened)
+    return [replace(margin, demand=max(margin.demand, largest))]
 
 
 def _margin(
@@ -61,4 +68,6 @@ def _margin(
 def _basis(peak: Maximum) -> str:
     if peak.verdict == "singular":
         return "outside the excluded zones, upper end of its interval"
-    return f"maximum with its error ({peak.verdict})"
+    parts = peak.places.hardened if peak.places else ()
+    part = f", {parts[0].part}" if parts else ""
+    return f"maximum with its error ({peak.verdict}){part}"

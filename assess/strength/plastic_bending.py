@@ -4,7 +4,10 @@
 
 W_pl is exact for a perfectly plastic section (fea.beam.round_section). A_v is the shear area 2 A /
 pi of a circular hollow section, or that at which V Q / (I t) reaches yield, which is safe, too, and
-larger for thick ones: 3 A / 4 if solid. Both together: (M / M_pl)^2 + (V / V_pl)^2 <= 1 in every
+larger for thick ones: 3 A / 4 if solid. With a hardened surface M_pl is the sum of the moments of
+case and core, and V_pl that of the core's strength.
+
+Both together: (M / M_pl)^2 + (V / V_pl)^2 <= 1 in every
 section, whose root is the utilisation, at ultimate load with the yield strength: a hinge is no
 permissible state at limit load. Shear at one stress tau everywhere leaves sqrt(f_y^2 - 3 tau^2) for
 bending, which gives this circle. Axial force and torque are not in it: assess.plastic.hinge has
@@ -26,6 +29,7 @@ from assess.check import CheckText, check
 from assess.margin import RATIO_DIMENSION, Margin, strength_key
 from assess.situation import Situation
 from fea.beam.round_section import Circle
+from fea.section.section_stress import cased_rings
 
 INTERACTION_RULE = "(M/M_pl)^2 + (V/V_pl)^2 <= 1, without axial force and torque"
 
@@ -34,6 +38,16 @@ def plastic_shear(section: Circle, strength: float) -> float:
     """V_pl, N, of a yield strength in Pa."""
     area = section.area * max(2.0 / math.pi, 1.0 / section.vq_it)
     return area * strength / math.sqrt(3.0)
+
+
+def _moment(s: Situation, z: float, section: Circle) -> float:
+    """M_pl, N m, of a section at z, m; with a hardened surface the moments of case and core."""
+    material, strength = s.material, s.material.yield_strength or 0.0
+    cases = [case for case in material.hardened if case.start <= z <= case.end]
+    rings = [cased_rings(section, case) for case in cases]
+    if not cases or (material.unhardened and any(z in (c.start, c.end) for c in cases)):
+        rings.append(((section, material.unhardened or strength),))
+    return min(sum(fy * ring.plastic_modulus for ring, fy in both) for both in rings)
 
 
 @check(
@@ -51,7 +65,7 @@ def plastic_bending(text: CheckText, s: Situation) -> list[Margin]:
         return []
     if fy is None:
         return [text.lacks(s, strength_key(s.material.name, "yield"))]
-    M = fy * forces.of_sections("plastic_modulus")
+    M = np.array([_moment(s, *at) for at in zip(forces.z, forces.sections, strict=True)])
     V = np.array([plastic_shear(section, fy) for section in forces.sections])
     used = np.hypot(forces.moment / M, forces.shear / V)
     return [text.along(s, used, np.ones(used.shape[1]), INTERACTION_RULE)]

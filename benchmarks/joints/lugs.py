@@ -22,7 +22,7 @@ from benchmarks.timing import Floats, table
 from fea.core.material import Material
 from geometry.shape.lug_outline import LugOutline
 
-TESTS = ROOT / "tests" / "validation" / "moore1948.csv"
+TESTS = ROOT / "studies" / "evidence" / "moore1948.csv"
 INCH, KSI, LBF = 0.0254, 6.894757e6, 4.4482216
 BORE, WIDTH = 0.5 * INCH, 2.0 * INCH
 FITTED_ON = "TN 1503"

@@ -70,14 +70,32 @@ def line_loads(
         elif loads_sections(load):
             out[..., k] = _spread(pin, stations, tractions_of(pin, load), load.n, load.phases[0])
     if closed:
-        _close(pin, stations, loads, out)
+        couples = np.diff(stations) @ line_couples(pin, stations, loads)
+        _close(pin, stations, loads, out, couples)
+    return out
+
+
+def line_couples(pin: Pin, stations: Floats, loads: tuple[UnitLoad, ...]) -> Floats:
+    """Couples per length (C, K), N m/m, of K unit loads between stations (C + 1,), m.
+
+    A traction Z cos(theta) along the axis turns the pin about y by - pi Z R^2 per length.
+    """
+    out = np.zeros((len(stations) - 1, len(loads)))
+    middles = 0.5 * (stations[1:] + stations[:-1])
+    for k, load in enumerate(loads):
+        if load.kind != "axial" or load.n != 1:
+            continue
+        for t in tractions_of(pin, load):
+            band = pin.band(t.surface)
+            on = (middles > band.z0) & (middles < band.z1)
+            out[on, k] -= math.pi * band.radius**2 * t.mean[2]
     return out
 
 
 def per_length(radius: float, amplitudes: Floats, n: int, phase: int) -> Floats:
     """Load per length (...) of traction amplitudes (..., 3), Pa, on a cylinder of `radius` (m)."""
     r, t, z = np.moveaxis(amplitudes, -1, 0)
-    if n == 1:
+    if n == 1:  # a traction along the axis is a couple per length (line_couples)
         return np.asarray(math.pi * radius * (r - t))
     return np.asarray(2.0 * math.pi * radius * (-radius * t if phase else z))
 
@@ -105,8 +123,13 @@ def resultants(stations: Floats, w: Floats) -> tuple[Floats, Floats]:
     return force.sum(axis=0), moment.sum(axis=0)
 
 
-def _close(pin: Pin, stations: Floats, loads: tuple[UnitLoad, ...], w: Floats) -> None:
-    """Subtract from each load, in place, the closing tractions that balance it."""
+def _close(
+    pin: Pin, stations: Floats, loads: tuple[UnitLoad, ...], w: Floats, couples: Floats
+) -> None:
+    """Subtract from each load, in place, the closing tractions that balance it.
+
+    couples: by which each load turns the pin besides, (K,) N m.
+    """
     if not pin.connections:
         raise ArgumentError(
             f"pin {pin.name}: it is not clamped and no connection bears on it; add either",
@@ -121,4 +144,6 @@ def _close(pin: Pin, stations: Floats, loads: tuple[UnitLoad, ...], w: Floats) -
         rows = slice(None) if n else slice(1)  # moments across count for n = 1 alone
         of_basis = np.stack(resultants(stations, basis))[rows]
         of_loads = np.stack(resultants(stations, w[..., columns]))[rows]
+        if n:
+            of_loads[1] += couples[columns]
         w[..., columns] -= basis @ np.linalg.solve(of_basis, of_loads)

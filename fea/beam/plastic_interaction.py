@@ -10,12 +10,16 @@ A solid section, with c = a sin t, has M/Mp = cos^3 t and N/Np = (2 t + sin 2 t)
 section can carry is within this curve, which is convex: its chords are inside, and the lines along
 M + c N, by which it flows, outside. So both are given, closer than 1e-4 of each other.
 
+A section with a hardened surface is two concentric rings, each of its own strength, whose M and N
+are added.
+
 Source: B. G. Neal, The Plastic Methods of Structural Analysis (1977), section 6.2, for the way.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -25,13 +29,20 @@ from pinbase.arrays import Floats
 CURVE_POINTS = 201  # points of the curve, whose chords and tangents are within 1e-4 of it
 
 
+Ring = tuple[Circle, float]  # a concentric part of a section, and its yield strength
+
+
 def bending_and_axial_use(section: Circle, moment: Floats, axial: Floats) -> tuple[Floats, Floats]:
     """The use of the interaction curve by bending and axial force, an upper and a lower estimate.
 
     moment: M/Mp (...), axial: N/Np (...), not negative. The upper one is by a chord, the lower one
     by tangents.
     """
-    lever, on_m, on_n = _curve(section)
+    return _use(((section, 1.0),), moment, axial)
+
+
+def _use(rings: Sequence[Ring], moment: Floats, axial: Floats) -> tuple[Floats, Floats]:
+    lever, on_m, on_n = _curve(rings)
     slope = np.arctan2(on_n, on_m)
     first = np.searchsorted(slope, np.arctan2(axial, moment), side="right") - 1
     first = np.clip(first, 0, CURVE_POINTS - 2)
@@ -44,22 +55,25 @@ def bending_and_axial_use(section: Circle, moment: Floats, axial: Floats) -> tup
 
 
 def plastic_use(
-    section: Circle, shear: float, moment: float, axial: float, torque: float, strength: float
+    rings: Sequence[Ring], shear: float, moment: float, axial: float, torque: float
 ) -> float:
     """The part of what a fully plastic section carries that these forces use, at most.
 
     It is sqrt(g^2 + (V/Vs + T/Tp)^2), as in assess.plastic.hinge.
+    Shear forces are carried as in elasticity, with the least strength of the rings.
+    rings: of the section from outside, with their yield strengths, Pa.
     shear, moment, axial, torque: N and N m, not negative.
-    strength: yield, Pa.
     """
     M, N = (
-        np.array([moment / (strength * section.plastic_modulus)]),
-        np.array([axial / (strength * section.area)]),
+        np.array([moment / sum(strength * ring.plastic_modulus for ring, strength in rings)]),
+        np.array([axial / sum(strength * ring.area for ring, strength in rings)]),
     )
-    bent = float(bending_and_axial_use(section, M, N)[0][0]) if moment or axial else 0.0
-    in_shear = strength / math.sqrt(3.0)
+    bent = float(_use(rings, M, N)[0][0]) if moment or axial else 0.0
+    section = Circle(rings[0][0].outer, rings[-1][0].inner)
+    in_shear = min(strength for _, strength in rings) / math.sqrt(3.0)
     sheared = shear * section.vq_it / (section.area * in_shear)
-    return math.hypot(bent, sheared + torque / (in_shear * plastic_torque(section)))
+    twisted = sum(strength / math.sqrt(3.0) * plastic_torque(ring) for ring, strength in rings)
+    return math.hypot(bent, sheared + torque / twisted)
 
 
 def plastic_torque(section: Circle) -> float:
@@ -67,13 +81,16 @@ def plastic_torque(section: Circle) -> float:
     return 2.0 / 3.0 * math.pi * (section.outer**3 - section.inner**3)
 
 
-def _curve(section: Circle) -> tuple[Floats, Floats, Floats]:
+def _curve(rings: Sequence[Ring]) -> tuple[Floats, Floats, Floats]:
     """c Np / Mp, M/Mp and N/Np, (CURVE_POINTS,) each, from pure bending to pure tension."""
-    a, b = section.outer, section.inner
-    c = a * np.sin(np.linspace(0.0, np.pi / 2.0, CURVE_POINTS))
-    bending = (_power(a, c) - _power(b, c)) / (a**3 - b**3)
-    pulling = (_within(a, c) - _within(b, c)) / section.area
-    return c * section.area / section.plastic_modulus, bending, pulling
+    c = rings[0][0].outer * np.sin(np.linspace(0.0, np.pi / 2.0, CURVE_POINTS))
+    shares = [(ring.outer, ring.inner, strength) for ring, strength in rings]
+    bending = sum(s * (_power(a, c) - _power(b, c)) for a, b, s in shares)
+    pulling = sum(s * (_within(a, c) - _within(b, c)) for a, b, s in shares)
+    axial = sum(s * ring.area for ring, s in rings)
+    moment = sum(s * ring.plastic_modulus for ring, s in rings)
+    cubes = sum(s * (a**3 - b**3) for a, b, s in shares)
+    return c * axial / moment, np.asarray(bending / cubes), np.asarray(pulling / axial)
 
 
 def _power(radius: float, c: Floats) -> Floats:

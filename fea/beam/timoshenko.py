@@ -25,7 +25,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.line_load import line_loads
+from fea.beam.line_load import line_couples, line_loads
 from fea.beam.round_section import Circle, thinnest_section
 from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
@@ -111,6 +111,7 @@ def stepped_beam(
     q = np.zeros((len(sections), 2, 4, len(loads)))  # by the force whose slope it makes
     for k, load in enumerate(loads):
         q[:, :, SHEAR if load.n else (AXIAL, TORQUE)[load.phases[0]], k] = w[:, :, k]
+    q[:, 0, MOMENT] = line_couples(pin, stations, loads)
     out = np.zeros((len(sections), 4, 4, len(loads)))
     spans = _spans(stations, constrained)
     lengths, soft = np.diff(stations), np.array([compliances(s, material) for s in sections])
@@ -216,5 +217,6 @@ def _march(lengths: Floats, q: Floats, start: Floats) -> Floats:
         out[c, 1] = -q[c, 0]
         out[c, 2] = -q[c, 1] / 2.0
         out[c, 1:, MOMENT] = -out[c, :3, SHEAR] / np.array([1.0, 2.0, 3.0])[:, None]
+        out[c, 1, MOMENT] -= q[c, 0, MOMENT]  # couples
         start = np.einsum("p,pqk->qk", h ** np.arange(4), out[c])
     return out

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from fea.core.hardened import Hardened, StrengthPart, strength_parts
 from geometry import ArgumentError
 from pinbase.arrays import Floats
 
@@ -17,7 +18,12 @@ class Material:
 
     youngs_modulus, strengths: Pa; shear_strength and bearing_strength are ultimate ones.
     density: kg/m^3.
+    thermal_expansion: mean coefficient, 1/K.
     ultimate_strain: total strain at the ultimate strength.
+    hardened: stretches of a pin whose surface is hardened, in the order of z. The yield strength is
+    then that of the weakest core or of what is not hardened, for all that takes one alone.
+    unhardened: the yield strength of what is not hardened, Pa, beside such stretches.
+    failure_strain: equivalent plastic strain at which a lug breaks.
     hardening: equivalent plastic strains and yield stresses (Pa) there, linear between them from
     the yield strength on and constant after the last.
 
@@ -35,6 +41,10 @@ class Material:
     bearing_strength: float | None = None
     hardening: tuple[tuple[float, float], ...] = ()
     ultimate_strain: float | None = None
+    hardened: tuple[Hardened, ...] = ()
+    unhardened: float | None = None
+    failure_strain: float | None = None
+    thermal_expansion: float | None = None
 
     def __post_init__(self) -> None:
         if not 0.0 < self.youngs_modulus < np.inf:
@@ -59,6 +69,12 @@ class Material:
             return False
         points = ((0.0, self.yield_strength), *self.hardening)
         return all(a < b and s <= t < np.inf for (a, s), (b, t) in pairwise(points))
+
+    def strength_parts(self, length: float) -> tuple[StrengthPart, ...]:
+        """The parts of a pin of this length (m) with hardened stretches; none without any."""
+        if not self.hardened:
+            return ()
+        return strength_parts(self.hardened, self.unhardened, length)
 
     @property
     def lame(self) -> tuple[float, float]:

@@ -114,6 +114,7 @@ class Maximum:
     load, and the couple over that load times the length.
     solids: between which z, m, local solids are, of a pin with cuts.
     places: surface, section and contact, of which the maximum is the larger of the first two.
+    strength: yield strength where the maximum is, of a pin with a hardened surface; None elsewhere.
     """
 
     pin: str
@@ -134,6 +135,7 @@ class Maximum:
     imbalance: tuple[float, float] | None = None
     solids: tuple[tuple[Length, Length], ...] = ()
     places: Places | None = None
+    strength: Stress | None = None
 
     @property
     def time(self) -> float | None:
@@ -160,6 +162,10 @@ class Maximum:
             return self.interval[0]
         return (self.max_von_mises or 0.0) - (self.error_estimate or 0.0)
 
+    def yield_strength(self, of_material: float | None) -> float | None:
+        """The yield strength where the maximum is, by default that of the material, Pa."""
+        return of_material if self.strength is None else self.strength
+
     @property
     def own_error(self) -> float | None:
         """The error of meshes and instants, Pa, without the effect of the excluded distance."""
@@ -176,7 +182,10 @@ class Maximum:
         return sum(step.seconds for step in self.history)
 
     def safety_factor(self, yield_strength: float | None) -> float | None:
-        """Yield strength (Pa) over the maximum; None without either."""
+        """Yield strength there, by default `yield_strength` (Pa), over the maximum; None without
+        either.
+        """
+        yield_strength = self.yield_strength(yield_strength)
         if not self.max_von_mises or yield_strength is None:
             return None
         return yield_strength / self.max_von_mises

@@ -29,7 +29,7 @@ from fea.core.pressed import PressedArcs
 from geometry import ArgumentError
 
 Floats = NDArray[np.float64]
-Kind = Literal["force", "moment", "pressure", "body", "shift", "turn"]
+Kind = Literal["force", "moment", "pressure", "axial", "body", "shift", "turn"]
 Distribution = Literal["uniform", "cosine"]
 
 BODY_SURFACE = ""  # the `surface` of a load on the whole pin
@@ -41,7 +41,8 @@ class UnitLoad(NamedTuple):
     Per N, N m, or (kind "body") m/s^2; kinds "shift" and "turn" are distributed as "force" and
     "moment" but are motions of a clamp, per m and rad about the pin's origin.
     n: the harmonic.
-    parts: instead of one surface, those of a pressure on several, each with its amplitude, Pa.
+    parts: instead of one surface, those of a pressure, or a traction along the axis ("axial"), on
+    several, each with its amplitude, Pa.
     """
 
     surface: str

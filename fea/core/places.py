@@ -6,7 +6,8 @@ section    sqrt(s^2 + 3 t^2) by axial force, bending, shear and torsion, the lar
            sections. Judged by yield.
 contact    What only contact has: the field of a lug's edge, and what lies beneath the pressure.
 
-A row's number is the larger of surface and section. It is safe only if what lies beneath the
+A row's number is the larger of surface and section; of a pin with a hardened surface that of the
+part with the least factor (fea.core.hardened). It is safe only if what lies beneath the
 contact, farther than BENEATH_DISTANCE from it, meets the required factor too.
 
 Source: ASME BPVC VIII-2, part 5, for judging kinds of stress apart (membrane, bending, peak;
@@ -15,12 +16,13 @@ bearing by itself).
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from pinbase.dimensions import Force, Length, Moment, Point, Stress
 
-Place = Literal["surface", "section"]
+Place = Literal["surface", "section", "core"]
 
 # Of the diameter: farther from every pressed cell a point lies beneath the contact
 BENEATH_DISTANCE = 0.1
@@ -33,6 +35,7 @@ class SurfacePlace:
     location: (x, y, z).
     time: s.
     verdict: as that of fea.core.peak.Maximum.
+    strength: yield strength there, of a pin with a hardened surface; None elsewhere.
     """
 
     max_von_mises: Stress
@@ -40,6 +43,7 @@ class SurfacePlace:
     verdict: str
     location: Point
     time: float | None = None
+    strength: Stress | None = None
 
 
 @dataclass(frozen=True)
@@ -50,6 +54,7 @@ class SectionPlace:
     plastic_utilisation: the used part of what a fully plastic section carries
     (assess.plastic.hinge); None without a yield strength.
     course: pairs of z and the largest stress of the section there, along the pin at that instant.
+    strength: as of SurfacePlace.
     """
 
     max_von_mises: Stress
@@ -63,6 +68,7 @@ class SectionPlace:
     torque: Moment
     plastic_utilisation: float | None = None
     course: tuple[tuple[Length, Stress], ...] = ()
+    strength: Stress | None = None
 
 
 @dataclass(frozen=True)
@@ -110,6 +116,25 @@ class BandPressure:
 
 
 @dataclass(frozen=True)
+class CaseCrushing:
+    """The largest von Mises stress in the core beneath the pressure of a band alone, as if on a
+    half-space (fea.support.contact.case_crushing).
+
+    band, z: where.
+    depth: of that stress, beneath the surface.
+    max_pressure: of the ring there.
+    strength: yield strength of the core.
+    """
+
+    band: str
+    z: Length
+    max_von_mises: Stress
+    depth: Length
+    max_pressure: Stress
+    strength: Stress
+
+
+@dataclass(frozen=True)
 class ContactPlace:
     """The stress beneath contact, the reach of high stress, and the pressures of a pin's lugs.
 
@@ -120,6 +145,8 @@ class ContactPlace:
     edges, bands: at the row's instant.
     depths: pairs of a stress and the distance from pressed cells that it reaches, stresses falling
     and distances growing, down to the least stress for which an outcome may ask.
+    strength: as of SurfacePlace; of a pin with a hardened surface `beneath` is in its core.
+    crushing: of the case of such a pin.
     """
 
     beneath: Stress
@@ -131,6 +158,8 @@ class ContactPlace:
     edges: tuple[ContactEdge, ...]
     bands: tuple[BandPressure, ...]
     depths: tuple[tuple[Stress, Length], ...] = ()
+    strength: Stress | None = None
+    crushing: CaseCrushing | None = None
 
     @property
     def upper_end(self) -> float:
@@ -143,14 +172,40 @@ class ContactPlace:
 
 
 @dataclass(frozen=True)
+class PartPlace:
+    """The largest stress of a part of one yield strength of a pin with a hardened surface.
+
+    part: its case, its core, or what is not hardened.
+    place: whether it is of the stress field ("surface") or of a section ("section").
+    depth: at which it is, beneath the hardened surface; None for what is not hardened.
+    """
+
+    part: Literal["case", "core", "unhardened"]
+    strength: Stress
+    place: Literal["surface", "section"]
+    max_von_mises: Stress
+    error_estimate: Stress
+    location: Point
+    depth: Length | None = None
+    time: float | None = None
+
+    @property
+    def safety_factor(self) -> float:
+        """Yield strength over the largest stress."""
+        return self.strength / self.max_von_mises if self.max_von_mises else math.inf
+
+
+@dataclass(frozen=True)
 class Places:
     """The three places of a pin in a case, each at its own governing instant.
 
     section: None for a body that is no beam.
     contact: None where no lugs press on the pin.
+    hardened: the parts of a pin with a hardened surface, the one with the least factor first.
     """
 
     governs: Place
     surface: SurfacePlace
     section: SectionPlace | None = None
     contact: ContactPlace | None = None
+    hardened: tuple[PartPlace, ...] = ()

@@ -50,7 +50,8 @@ def tractions_of(pin: PinLike, load: UnitLoad) -> tuple[Traction, ...]:
     """The tractions of a unit load on bands; none for a body load or a motion of a clamp."""
     if load.parts:
         bands = [(pin.band(name), amplitude) for name, amplitude in load.parts]
-        return tuple(Traction(b.name, b.middle, x * INWARDS, _NO_TRACTION) for b, x in bands)
+        way = ALONG_Z if load.kind == "axial" else INWARDS
+        return tuple(Traction(b.name, b.middle, x * way, _NO_TRACTION) for b, x in bands)
     return () if load.kind in ("body", "shift", "turn") else (traction(pin, load),)
 
 

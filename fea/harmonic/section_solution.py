@@ -8,6 +8,7 @@ from functools import lru_cache, partial
 
 import numpy as np
 
+from fea.core.hardened import core_boundary
 from fea.core.material import Material
 from fea.core.mesh_result import FEATURE_READING_DISTANCE, MeshMaximum
 from fea.core.pin_loads import PinLoads, UnitLoad
@@ -118,7 +119,8 @@ def harmonic_solution(
 
     def solved(size: SectionSize, grades: list[Grade], quiet: tuple[int, ...]) -> MeridianFields:
         places = spots(factor)
-        read = np.concatenate([elsewhere, _rims(pin, singularities), just_beneath(pin, rings)])
+        inside = _rims(pin, singularities), just_beneath(pin, rings)
+        read = np.concatenate([elsewhere, *inside, core_boundary(pin, material.hardened)])
 
         def model() -> HarmonicModel:
             section = meridian_mesh(pin, size, places, grades, quiet)

@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 
 from fea.lug.lug_stress import BoreStress, LugInPlane, LugLoad, bore_stresses
+from fea.lug.slipping import SlippingBushing
 from fea.lug.through_thickness import EyeStress, eye_stress
 from fea.support.contact.pressed_cases import PressedCases
 from fea.support.lugs.lug import Lug
@@ -68,9 +69,12 @@ def lug_stresses(
         eye = _eye(contact, lug, ends, memo)
         assumed = ALONG_FORCE if given is None else given.assumed
         middles = band.z0 + 0.5 * (ends[1:] + ends[:-1])
+        bonded = partial(LugInPlane, *of, memo=memo)
+        pressed = lug.bushing is not None and lug.bushing.pressed
+        slipping = partial(SlippingBushing, *of, memo=memo) if pressed else None
         out += [
             _record(lug, stress, float(middles[stress.ring]), assumed)
-            for stress in bore_stresses(partial(LugInPlane, *of, memo=memo), eye, load)
+            for stress in bore_stresses(bonded, eye, load, slipping)
         ]
     return tuple(out)
 
@@ -107,4 +111,6 @@ def _record(lug: Lug, stress: BoreStress, z: float, assumed: str) -> LugStress:
         sampling=stress.sampling,
         yield_strength=stress.material.yield_strength,
         assumed=assumed,
+        interface=stress.interface,
+        other_interface=stress.other,
     )

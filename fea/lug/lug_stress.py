@@ -16,14 +16,15 @@ there, as on the pin. Beside the contact they are.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fea.core.material import Material
 from fea.lug.plane_contact import PlaneContact
-from fea.lug.plane_fields import Elasticity, PlaneFields, plane_fields, waves
+from fea.lug.plane_fields import Elasticity, PlaneFields, plane_fields
+from fea.lug.slipping import SlippingBushing, TwoWalls
 from fea.lug.through_thickness import EyeStress
 from fea.support.lugs.lug import Lug
 from pinbase.arrays import Floats
@@ -70,6 +71,8 @@ class BoreStress:
     von_mises, hoop: Pa. hoop: the largest tension; von_mises is at `angle`.
     angle: from the shank, rad. ring: number of the ring. instant, time: of the largest.
     mesh, rings, sampling: parts of the error of von_mises, Pa.
+    interface: of a pressed bushing, "bonded" or "frictionless", whichever gives the larger stress;
+    other: von_mises with the other one, Pa. Empty and None otherwise.
     """
 
     wall: str
@@ -84,6 +87,8 @@ class BoreStress:
     mesh: float = 0.0
     rings: float = 0.0
     sampling: float = 0.0
+    interface: str = ""
+    other: float | None = None
 
     @property
     def error(self) -> float:
@@ -115,9 +120,8 @@ class LugInPlane:
         self.contact = PlaneContact(
             self.fields, E, lug.bearing, pin, inner, radius, lug.clearance, around
         )
-        bushing = lug.bushing
-        interference = 0.0 if bushing is None else bushing.interference
-        self.misfit = interference / outline.hole * E
+        misfit = 0.0 if lug.bushing is None else lug.bushing.misfit
+        self.misfit = misfit / outline.hole * E
 
     def amounts(self, pressures: Floats) -> Floats:
         """The amounts (T, K) of the unit loads under pressures (T, M), Pa, and the misfit."""
@@ -133,14 +137,39 @@ def _elasticity(lug: Lug) -> Elasticity:
 
 
 def bore_stresses(
-    make: Callable[..., LugInPlane], eye: EyeStress, load: LugLoad
+    make: Callable[..., LugInPlane],
+    eye: EyeStress,
+    load: LugLoad,
+    slipping: Callable[..., SlippingBushing] | None = None,
 ) -> tuple[BoreStress, ...]:
     """The largest stress at the walls of a lug over the instants of a load.
 
     make: gives the plane lug by `around`, its elements around the bore. eye: of its annulus.
+    slipping: gives the same with a pressed bushing that slips; friction is between this and the
+    bonded one, and the larger stress counts.
 
     Raises: MeshError, SolveError.
     """
+    bonded = stresses_of(make, eye, load)
+    if slipping is None:
+        return bonded
+    return tuple(_larger(bonded, stresses_of(slipping, eye, load)))
+
+
+def _larger(bonded: Iterable[BoreStress], slipping: Sequence[BoreStress]) -> Iterator[BoreStress]:
+    """At each wall and place the larger of two stresses, with the other one."""
+    for one in bonded:
+        other = next((x for x in slipping if (x.wall, x.place) == (one.wall, one.place)), None)
+        if other is not None and other.von_mises + other.error > one.von_mises + one.error:
+            yield replace(other, interface="frictionless", other=one.von_mises)
+        else:
+            yield replace(one, interface="bonded", other=other.von_mises if other else None)
+
+
+def stresses_of(
+    make: Callable[..., LugInPlane | SlippingBushing], eye: EyeStress, load: LugLoad
+) -> tuple[BoreStress, ...]:
+    """The largest stress at the walls with one kind of bushing; as `bore_stresses`."""
     usual, coarse = (make(around=x) for x in (USUAL_AROUND, USUAL_AROUND // COARSER))
     out = []
     for stress in _walls(usual, eye, load):
@@ -202,23 +231,28 @@ def _beyond(times: Floats, values: Floats) -> float:
     return float(-0.25 * slope * slope / bend) if bend < 0.0 else 0.0
 
 
-def _walls(plane: LugInPlane, eye: EyeStress, load: LugLoad) -> list[BoreStress]:
+def _walls(plane: LugInPlane | SlippingBushing, eye: EyeStress, load: LugLoad) -> list[BoreStress]:
     """The largest stress at each wall, without the parts of its error but that of sampling."""
-    lug, bushing = plane.lug, plane.lug.bushing
+    bushing, lug = plane.lug.bushing, plane.lug
     forces = _along_shank(load)
     size = np.hypot(*forces.T)
     strong = size > MIN_FORCE_SHARE * size.max()
-    pressure = np.zeros((len(forces), plane.contact.sectors))
-    pressure[strong] = plane.contact.pressures(forces[strong])
-    amounts = plane.amounts(pressure)
+    if isinstance(plane, SlippingBushing):
+        hole: _Around | None
+        bore, hole = _slipping(plane, eye, load, plane.pressures_where(forces, strong))
+    else:
+        pressure = np.zeros((len(forces), plane.contact.sectors))
+        pressure[strong] = plane.contact.pressures(forces[strong])
+        amounts = plane.amounts(pressure)
+        bore = _bore(plane, eye, load, pressure, amounts)
+        hole = _hole(plane, eye, load, amounts) if bushing else None
     wall, material = ("bushing", bushing.material) if bushing else ("bore", lug.material)
-    free, beneath = _bore(plane, eye, load, pressure, amounts)
+    free, beneath = bore
     out = [
         *free.largest(wall, "free", material, load.times),
         *beneath.largest(wall, "beneath", material, load.times),
     ]
-    if bushing:
-        hole = _hole(plane, eye, load, amounts)
+    if hole:
         out += hole.largest("hole", "bushing", lug.material, load.times)
     return out
 
@@ -247,10 +281,20 @@ def _bore(
 ) -> tuple[_Around, _Around]:
     """The stress of the wall on which the pin bears, where it is free and beneath the pin."""
     wall = plane.fields.bore
-    pressed = np.vstack([waves(wall.angles), np.zeros((1, len(wall.angles)))])
-    total = (amounts @ (wall.hoop + pressed))[:, None] + _added(eye, load, wall.angles)
+    total = (amounts @ (wall.hoop - wall.radial))[:, None] + _added(eye, load, wall.angles)
+    return _of_wall(plane.lug, load, wall.angles, total, pressure)
+
+
+def _of_wall(
+    lug: Lug, load: LugLoad, angles: Floats, total: Floats, pressure: Floats
+) -> tuple[_Around, _Around]:
+    """The stress of the wall on which the pin bears, where it is free and beneath the pin.
+
+    total: hoop stress plus pressure (T, R, P) at angles (P,), two to a sector. pressure: on the
+    sectors, (T, P / 2), as the mean of the rings.
+    """
     # At the middles of sectors; two points of a wall a sector.
-    middles, here = wall.angles[::2], pressure[:, None] * _shares(load)[:, :, None]
+    middles, here = angles[::2], pressure[:, None] * _shares(load)[:, :, None]
     at_middles = np.broadcast_to(middles, pressure.shape)
     hoop = total[:, :, ::2] - here
     # And free where contact ends, of which there are two at most at most instants.
@@ -261,7 +305,7 @@ def _bore(
     free = np.concatenate([open_hoop, beside], axis=2)
     angle = np.hstack([at_middles, at * (middles[1] - middles[0])])
     read = np.broadcast_to(pressure[:, None] > 0.0, hoop.shape).copy()
-    if not plane.lug.edge_radius and len(load.length) > MIN_RINGS_OF_SHARP_BORE:
+    if not lug.edge_radius and len(load.length) > MIN_RINGS_OF_SHARP_BORE:
         read[:, [0, -1]] = False
     under = np.sqrt(hoop * hoop + hoop * here + here * here)
     unread = np.full_like(hoop, -np.inf)
@@ -269,6 +313,26 @@ def _bore(
         _Around(angle, free, np.where(np.isfinite(free), np.abs(free), -np.inf)),
         _Around(at_middles, np.where(read, hoop, unread), np.where(read, under, unread)),
     )
+
+
+def _slipping(
+    plane: SlippingBushing, eye: EyeStress, load: LugLoad, pressures: TwoWalls
+) -> tuple[tuple[_Around, _Around], _Around]:
+    """The stress of a slipping bushing's bore, and of the hole about it."""
+    angles = plane.angles
+    bore, hole = (x[:, None] for x in plane.stress_and_pressure(pressures))
+    walls = _of_wall(plane.lug, load, angles, bore + _added(eye, load, angles), pressures.bore)
+    # Beneath the bushing the press fit is even through the thickness; where it opens, as at a bore
+    total, pressed = hole + _added(eye, load, angles, hole=True), pressures.hole[:, None]
+    edge, known = _ends_of_contact(pressures.hole)
+    at = np.where(known, edge, 0.0)
+    beside = np.where(known[:, None], _between(total, 2.0 * at), 0.0)
+    hoop = np.concatenate([total[:, :, ::2] - pressed, beside], axis=2)
+    middles = np.broadcast_to(angles[::2], pressures.hole.shape)
+    angle = np.hstack([middles, at * (angles[2] - angles[0])])
+    pressed = np.concatenate([pressed, np.zeros((*pressed.shape[:2], beside.shape[2]))], axis=2)
+    von_mises = np.sqrt(hoop * hoop + hoop * pressed + pressed * pressed)
+    return walls, _Around(angle, hoop, von_mises)
 
 
 def _shares(load: LugLoad) -> Floats:

@@ -11,6 +11,7 @@ Source: fea.beam.round_section, for the shear.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -19,10 +20,11 @@ from numpy.typing import NDArray
 
 from fea.beam.error_model import between_clamps
 from fea.beam.line_load import acting, shares
-from fea.beam.plastic_interaction import plastic_use
+from fea.beam.plastic_interaction import Ring, plastic_use
 from fea.beam.round_section import Circle, thinnest_section
 from fea.beam.stress import RZ, TZ, ZZ, section_stress
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
+from fea.core.hardened import Hardened, StrengthPart
 from fea.core.material import Material
 from fea.core.pin_loads import LoadAmounts, Loads
 from fea.harmonic.at_each import crest_of_each
@@ -63,19 +65,30 @@ class AtSection:
     section: Circle
     course: tuple[tuple[float, float], ...] = ()
 
-    def plastic_use(self, strength: float) -> float:
+    def plastic_use(self, strength: float, hardened: Sequence[Hardened] = ()) -> float:
         """The part of the fully plastic section's resistance that is used.
 
-        strength: yield strength, Pa.
+        strength: yield strength, Pa, of a section without a hardened surface.
+        hardened: the hardened stretches of the pin.
         """
         forces = self.shear_force, self.bending_moment, abs(self.axial_force), abs(self.torque)
-        return plastic_use(self.section, *forces, strength)
+        rings: tuple[Ring, ...] = ((self.section, strength),)
+        for case in (x for x in hardened if x.start <= self.z <= x.end):
+            rings = cased_rings(self.section, case)
+        return plastic_use(rings, *forces)
+
+
+def cased_rings(section: Circle, case: Hardened) -> tuple[Ring, ...]:
+    """The case and the core of a hardened section."""
+    core = section.outer - case.depth
+    return (Circle(section.outer, core), case.surface), (Circle(core, section.inner), case.core)
 
 
 class SectionField:
     """The stress of a pin's sections under any combination of the unit loads of some cases.
 
-    The pin is clamped at surfaces (by its own names), or in balance (fea.core.solution: Answer).
+    The pin is clamped at surfaces (by its own names), or in balance (fea.core.solution: Answer). It
+    may be of one part alone of a pin with a hardened surface (`of_part`).
 
     Raises: as fea.beam.timoshenko.stepped_beam.
     """
@@ -92,13 +105,24 @@ class SectionField:
         part = np.tile(np.linspace(0.0, 1.0, SECTIONS_BETWEEN_STATIONS), len(free))
         self._z = stations[self._cells] + part * np.diff(stations)[self._cells]
         self._near_points: dict[int, NearSections] = {}
+        self._part: StrengthPart | None = None
+
+    def of_part(self, part: StrengthPart) -> SectionField:
+        """The stress of the same sections where they belong to a part of one yield strength.
+
+        In its core they are read up to the depth at which it begins, beneath the case.
+        """
+        other = copy(self)
+        other.__dict__.pop("fields", None)
+        other._near_points, other._part = {}, part
+        return other
 
     @cached_property
     def fields(self) -> MeridianFields:
         """Stress of each unit load at points of the sections, section by section."""
         inside = self.forces.inside(self._cells, self._z)
         sections = sections_at(self.pin, self.forces, self._cells, self._z)
-        by_section = {s: _at_radii(s, WALL_FRACTIONS, self.nu) for s in set(sections)}
+        by_section = {s: self._at_radii(s, WALL_FRACTIONS) for s in set(sections)}
         radii = np.array([by_section[s][0] for s in sections])
         per_force = np.array([by_section[s][1] for s in sections])
         stress = np.einsum("srcq,sqk->srck", per_force, inside)
@@ -131,7 +155,9 @@ class SectionField:
 
     @property
     def all(self) -> Mask:
-        """A mask of all points of the sections."""
+        """A mask of all points of the sections, or of the part."""
+        if self._part is not None:
+            return self._part.along(self.fields.points[:, 1])
         return np.ones(len(self.fields.points), dtype=bool)
 
     def around(self, loads: Loads) -> Circumference:
@@ -197,6 +223,14 @@ class SectionField:
         (span,) = (s for s in spans if s.first <= at.cell < s.last)
         return between_clamps(self.forces, span)
 
+    def _at_radii(self, section: Circle, parts: Floats) -> tuple[Floats, Floats]:
+        """Radii (R,), m, at parts of the way from bore to outside, or to where the part begins, and
+        the stress there per V, M, N, T, (R, 6, 4).
+        """
+        beneath = self._part.least_depth if self._part else 0.0
+        radii = section.inner + parts * (section.outer - beneath - section.inner)
+        return radii, section_stress(section, radii, self.nu)
+
     def _near(self, point: int) -> NearSections:
         """The sections near a point, by its number, between the same stations, and points of them
         near it.
@@ -212,7 +246,7 @@ class SectionField:
             sections = sections_at(self.pin, self.forces, cells, z_of)
             walls = WALL_FRACTIONS[max(number - 1, 0) : number + 2]
             parts = np.linspace(walls[0], walls[-1], CLOSER_POINTS)
-            by_section = {s: _at_radii(s, parts, self.nu) for s in set(sections)}
+            by_section = {s: self._at_radii(s, parts) for s in set(sections)}
             self._near_points[point] = NearSections(
                 cell,
                 z_of,
@@ -265,14 +299,6 @@ class NearSections:
         radius, turn = np.divmod(highest, len(turns))
         value = np.sqrt(np.maximum(square[at, highest], 0.0))
         return value, self.radii[at, radius], turns[turn]
-
-
-def _at_radii(section: Circle, parts: Floats, nu: float) -> tuple[Floats, Floats]:
-    """Radii (R,), m, at parts of the way from bore to outside, and the stress there per V, M, N, T,
-    (R, 6, 4).
-    """
-    radii = section.inner + parts * (section.outer - section.inner)
-    return radii, section_stress(section, radii, nu)
 
 
 def sections_at(

@@ -102,11 +102,12 @@ def rungs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
             "not-axisymmetric",
         )
     prescribed = PrescribedSupport()
-    if isinstance(pin, Pin) and model in ("auto", "beam"):
+    beam = isinstance(pin, Pin) and not problem.material.hardened
+    if beam and model in ("auto", "beam"):
         yield Rung(prescribed, _beam)
     if isinstance(pin, Pin) and model in ("auto", "harmonic"):
-        yield Rung(prescribed, _harmonic, trial=model == "auto")
-    if isinstance(pin, Pin) and model == "auto":
+        yield Rung(prescribed, _harmonic, trial=beam and model == "auto")
+    if beam and model == "auto":
         yield Rung(prescribed, _beam_instead)
     if isinstance(pin, CutPin) and not pin.revolved and model == "auto":
         yield Rung(prescribed, _local, trial=True)
@@ -119,6 +120,14 @@ def _in_lugs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
     from fea.support.foundation.held import FoundationSupport
 
     joints, foundation = requirement.joints, FoundationSupport()
+    if problem.material.hardened:  # which foundations give no stress beneath the surface for
+        if joints == "foundation":
+            raise ArgumentError(
+                f"pin {problem.pin.name} has a hardened surface, beneath which only contact gives "
+                'the stress: use joints = "contact"',
+                "hardened-model",
+            )
+        joints = "contact"
     if joints == "foundation":
         yield Rung(foundation, _foundation_requested)
     elif requirement.cells == "unit" or requirement.cells == "alone":

@@ -116,7 +116,7 @@ def refine(
                 break
         progress(f"pin {held.pin.name}, {model.name} model, mesh {level + 1}")
         start = time.perf_counter()
-        mesh = model.solve(posed, level, before)
+        mesh, below = model.solve(posed, level, before), before
         # The first mesh shows between which instants of a motion the maximum may lie; these are
         # added for all meshes.
         if not level:
@@ -136,7 +136,11 @@ def refine(
         loads, history = _at_crest(mesh, case, seen[case.case], between)
         evidence = evidence_of(history, mesh.zones, notes.get(case.case, NO_REASON))
         evidence = replace(evidence, why=why + met(requirement, material, history))
-        out[case.case] = held.finished(_reading(evidence, mesh, loads, history), requirement)
+        reading = _reading(evidence, mesh, loads, history)
+        if material.hardened and below is not None and below.solution is not None:
+            coarser = below.solution.field(case.case)
+            reading = replace(reading, coarser=coarser, mesh_ratio=meshes.ratio)
+        out[case.case] = held.finished(reading, requirement)
     return out
 
 

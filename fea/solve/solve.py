@@ -12,7 +12,7 @@ from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.solve.choose import Attempt, rungs
 from fea.support.support import HeldPin, PinProblem, Progress, Solution, silent
-from geometry import GeometryError, PinLike
+from geometry import ArgumentError, GeometryError, Pin, PinLike
 from geometry.mesh.solid_mesh import MeshError
 
 DEFAULT_REQUIREMENT = Requirement()
@@ -28,6 +28,10 @@ def solve(
     Raises: ArgumentError for a model that does not apply to the pin, and for lugs that do not fit;
     MeshError, SolveError.
     """
+    if problem.material.hardened:
+        # Each of its parts has a limit of its own, so meshes are refined for the value.
+        require_turned(problem, requirement)
+        requirement = replace(requirement, goal="value")
     done: dict[str, Solution] = {}
     held: HeldPin | None = None
     failure: Exception | None = None
@@ -49,6 +53,19 @@ def solve(
                 raise
             failure = error
     return tuple(done[case.case] for case in problem.cases)
+
+
+def require_turned(problem: PinProblem, requirement: Requirement) -> None:
+    """Raise ArgumentError for a pin with a hardened surface where no stress field is known by
+    depth.
+    """
+    pin, model = problem.pin, requirement.model
+    if not isinstance(pin, Pin) or model not in ("auto", "harmonic"):
+        raise ArgumentError(
+            f"pin {pin.name} has a hardened surface, whose stress by depth only the harmonic model "
+            "of a body of revolution without cuts gives",
+            "hardened-model",
+        )
 
 
 def solve_pin(

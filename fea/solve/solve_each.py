@@ -40,7 +40,8 @@ def superposable(problem: PinProblem, requirement: Requirement) -> bool:
     """
     (loads,) = problem.cases
     pin = problem.pin
-    if not isinstance(pin, Pin) or problem.lugs or problem.between or numerous_fillets(pin):
+    whole = problem.lugs or problem.between or problem.material.hardened
+    if not isinstance(pin, Pin) or whole or numerous_fillets(pin):
         return False
     plain = len(loads) == 1 and loads.times is None and loads.pressed is None
     return plain and requirement.goal == "value" and requirement.model in ("auto", "harmonic")

@@ -16,6 +16,7 @@ from fea.core.verdict import judge
 from fea.section.place import found_section
 from fea.section.row import row_of
 from fea.section.section_stress import SectionField
+from fea.support.hardened_row import PartSearch, hardened_row
 from fea.support.support import HeldPin, PinProblem, Progress, Solution, StressReading, silent
 from geometry import PinLike, body_of_revolution
 
@@ -97,11 +98,21 @@ class HeldPrescribed:
             between = self.problem.between.get(case)
             section = found_section(stress, given, between, requirement.tolerance)
         peak = row_of(evidence, section, material, requirement.tolerance)
-        in_section = peak.places is not None and peak.places.governs == "section"
-        if section is not None and in_section and loads.times is not None:
-            loads = loads.merged(section.loads)
+        now = None
+        if section is not None and peak.places is not None and peak.places.governs == "section":
+            now = section.loads
+        if material.hardened and profile is not None:
+            search = PartSearch(
+                reading, profile, between, evidence, stress, (given, between), requirement.tolerance
+            )
+            found = search.of(material.strength_parts(profile.length))
+            tolerance = requirement.tolerance
+            peak = hardened_row(profile, peak, evidence, found, tolerance, lambda x: x.loads)
+            now = peak.governing
+        if now is not None and now.times is not None and loads.times is not None:
+            loads = loads.merged(now)
             assert loads.times is not None
-            instant = int(np.searchsorted(loads.times, section.time or 0.0))
+            instant = int(np.searchsorted(loads.times, now.times[0]))
         return Solution(peak, reading.answer, loads, instant, self)
 
 

@@ -9,6 +9,7 @@ from pinbase.dimensions import Force, Forces, Length, Lengths, Moments, Stress, 
 
 LineLoad = Annotated[float, "force length^-1"]
 Couple = Annotated[float, "moment"]
+FRICTION = "friction"  # the property of a joint whose range only adds to the stress
 
 
 @dataclass(frozen=True)
@@ -24,6 +25,8 @@ class BandContact:
     ends: z of the rings' ends, one more than there are rings; empty where load is not given by
     rings.
     mean_pressure: the force over diameter and length.
+    friction: coefficient of the lug. friction_torque: the largest torque between pin and lug by it,
+    over all instants; None without friction.
     """
 
     name: str
@@ -35,6 +38,8 @@ class BandContact:
     clearance: Length
     outer_diameter: Length
     ends: tuple[Length, ...] = ()
+    friction: float = 0.0
+    friction_torque: Couple | None = None
 
 
 @dataclass(frozen=True)
@@ -60,6 +65,8 @@ class Variation:
 class JointRange:
     """The range of the maximum over the uncertain properties of the joint.
 
+    max_von_mises: its ends; friction only raises the upper one, since what it takes off the stress
+    while a load grows is not relied on.
     model: "contact" or "foundation", whose error is included.
     assumed: whether no lugs were given.
     """
@@ -82,6 +89,8 @@ class LugStress:
     error_estimate: of max_von_mises, the sum of its parts: mesh and sectors, rings through the
     thickness, sampling in time.
     assumed: what the study does not state.
+    interface: of a pressed bushing in its hole, "bonded" or "frictionless": friction is between
+    the two, and the larger stress counts. other_interface: the stress with the other one.
     """
 
     connection: str
@@ -99,6 +108,8 @@ class LugStress:
     sampling: Stress
     yield_strength: Stress | None = None
     assumed: str = ""
+    interface: str = ""
+    other_interface: Stress | None = None
 
     @property
     def safety_factor(self) -> float | None:

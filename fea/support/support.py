@@ -136,12 +136,16 @@ class StressReading:
     answer: the stress on the last mesh.
     loads: on the pin, with the instants added to find the maximum.
     instant: index of the governing one.
+    coarser: the stress on the mesh before the last, None where only one was solved.
+    mesh_ratio: element size of that mesh over that of the last.
     """
 
     evidence: Evidence
     answer: StressField
     loads: PinLoads
     instant: int
+    coarser: StressField | None = None
+    mesh_ratio: float = 2.0
 
 
 @dataclass(frozen=True)

@@ -8,14 +8,14 @@ actuators: for a single actuator it is its force; several in parallel divide it 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from loads.linkage.linkage import Linkage, LinkageError, Parallel, Slider, Turn
 from loads.motion.as_drawn import RANK_TOLERANCE
 from loads.motion.least_squares import Factors, elimination
-from loads.motion.mobility import moving_bodies
+from loads.motion.mobility import mobility, moving_bodies
 from loads.motion.motion import Motion
 from pinbase.arrays import Floats
 
@@ -61,7 +61,7 @@ def holding(motion: Motion, hold: Sequence[str] = ()) -> Holding:
     if not hold and not linkage.parallel:
         return Holding(actuators, weights, motion.factors)
     if hold:
-        _require_count(motion, hold, len(sets))
+        _require_count(motion.mobility.degrees, hold, len(sets))
     # By virtual work, the row of a set is the sum of its actuators' rows, weighted by their forces.
     J = loops.jacobian(motion.pose)
     rows = np.stack([loops.along(a) / loops.unit(a) for a in actuators])
@@ -70,6 +70,23 @@ def holding(motion: Motion, hold: Sequence[str] = ()) -> Holding:
     if factors.weakest.min() < RANK_TOLERANCE:
         raise _loose(motion, J[int(factors.weakest.argmin())], [a.name for a in actuators])
     return Holding(actuators, weights, factors)
+
+
+def locked(linkage: Linkage, hold: Sequence[str]) -> Linkage:
+    """A linkage without drives, in which the locks that hold it as drawn stand for them.
+
+    hold: names of sliders and turns; of several in parallel one stands for all.
+
+    Raises: LinkageError when these cannot hold the linkage, or are too many.
+    """
+    sets = _sets(linkage, hold)
+    freedom = mobility(linkage)
+    _require_count(freedom.degrees, hold, len(sets))
+    rules = tuple(rule for _, rule in sets if rule is not None)
+    held = replace(linkage, driven=tuple(names[0] for names, _ in sets), parallel=rules)
+    if mobility(held).free:
+        raise _cannot_hold(hold, mobility(held).loose)
+    return held
 
 
 def require_closed(held: Holding, forces: Floats) -> None:
@@ -121,9 +138,8 @@ def _weights(motion: Motion, actuators: Sequence[Slider | Turn], rule: Parallel 
     return shares * displacements
 
 
-def _require_count(motion: Motion, hold: Sequence[str], count: int) -> None:
+def _require_count(degrees: int, hold: Sequence[str], count: int) -> None:
     """Raises: LinkageError unless there are as many sets as degrees of freedom."""
-    degrees = motion.mobility.degrees
     if count > degrees:
         raise LinkageError(
             f"hold = {', '.join(hold)}: {count} for {degrees} degree(s) of freedom, and statics "
@@ -144,9 +160,14 @@ def _loose(motion: Motion, J: Floats, names: Sequence[str]) -> LinkageError:
     loops = motion.loops
     _, singular, right = np.linalg.svd(J)
     free = right[singular < RANK_TOLERANCE * singular[0]] / loops.scale
-    bodies = ", ".join(moving_bodies(loops, motion.pose[:1], free))
+    return _cannot_hold(names, moving_bodies(loops, motion.pose[:1], free))
+
+
+def _cannot_hold(names: Sequence[str], bodies: Sequence[str]) -> LinkageError:
+    """The error of actuators that leave bodies free."""
+    loose = ", ".join(bodies) or "it"
     return LinkageError(
-        f"{', '.join(names)} cannot hold the mechanism in this position: {bodies or 'it'} can "
+        f"{', '.join(names)} cannot hold the mechanism in this position: {loose} can "
         "still move; name what stops that motion",
         "hold-free",
     )

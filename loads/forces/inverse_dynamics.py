@@ -22,7 +22,7 @@ from loads.linkage.friction import MAX_ENUMERATED_CONTACTS, JammingError, contac
 from loads.linkage.linkage import GROUND, LinkageError, Point, Slider, Turn
 from loads.motion.joint_forces import connection_members, slider_couple, slider_members
 from loads.motion.loop_equations import cross, number, pairs
-from loads.motion.motion import Motion
+from loads.motion.motion import Motion, side_by_side
 from pinbase.arrays import Complex, Floats
 
 MIN_SLIDING_SPEED = 1e-13  # of the fastest coordinate of the course: a slider this slow is at rest
@@ -75,9 +75,7 @@ class Dynamics:
     @property
     def course(self) -> tuple[Floats, Floats, Floats]:
         """Position (m or rad) of every actuator and its rates, (T, A) each."""
-        histories = [self.motion.coordinate(a) for a in self.actuators]
-        position, speed, rate = (np.stack([h[k] for h in histories], axis=1) for k in range(3))
-        return position, speed, rate
+        return side_by_side([self.motion.coordinate(a) for a in self.actuators], len(self.motion))
 
     def shaking(self, about: Point) -> tuple[Floats, Floats]:
         """Shaking force (T, 2) N and moment (T,) N m of the linkage on its ground.
@@ -245,7 +243,7 @@ class _Balance:
         closing = [self._closing(null[:, :, i]) for i in range(null.shape[2])]
         loose = np.stack([self._everywhere(no_forces, c) for c in closing], axis=2)
         forces = self._everywhere(needed, self._closing(f, spread))
-        amounts = shares(self.loops.linkage, forces, loose, self.shared)
+        amounts = shares(self.loops.linkage, forces, loose, self.motion.mobility)
         return f + (null @ amounts[..., None])[..., 0]
 
     def _everywhere(self, needed: Complex, closing: Complex) -> Complex:

@@ -239,6 +239,8 @@ def _efforts(
     """
     effort, power = dense.effort, dense.power
     D = len(effort)
+    if not D:  # of a structure
+        return ()
     drives = dense.quantities.quantities(slice(-2 * D, None))
 
     def efforts(values: Floats) -> Floats:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from loads.tables.csv_table import TableError
-from loads.tables.force_table import Layout, Unit, read_forces
+from loads.tables.force_columns import Layout, Unit
+from loads.tables.force_table import TabledForces, read_forces
 from pinbase.arrays import Floats
 
+TIME_TOLERANCE = 1e-9  # of the largest time: files of one run state times with 9 digits or more
 Components = dict[str, tuple[float, ...]]
 
 
@@ -98,34 +101,56 @@ def read_reactions(path: Path, layout: Layout, unit: Unit, known: set[str]) -> R
 
     Raises: TableError; also where a connection has no row at one of the times.
     """
-    data: dict[float | None, dict[str, list[float]]] = {}
-    for row in read_forces(path, layout, unit, known):
-        instant = data.setdefault(row.time, {})
-        if row.connection in instant:
+    table = read_forces(path, layout, unit, known)
+    return _tabled(layout.case, table)
+
+
+def tabled_reactions(
+    case: str, files: Sequence[tuple[Path, Layout]], unit: Unit, known: set[str]
+) -> Reactions:
+    """Reactions of a case from one or several tables, each with some of the connections.
+
+    files: paths and layouts.
+    unit, known: as of `read_reactions`.
+
+    Raises: TableError; also where a connection is in two tables, or the times differ.
+    """
+    tables = [(path, read_forces(path, layout, unit, known)) for path, layout in files]
+    (first_path, first), *others = tables
+    for path, table in others:
+        twice = set(first.connections) & set(table.connections)
+        if twice:
             raise TableError(
-                f"{row.where}: connection {row.connection} is given twice at the same time; keep "
-                "one row",
+                f"{path}: connection {min(twice)} is in another table of the case, too; keep one",
                 "duplicate-row",
             )
-        instant[row.connection] = row.values
-    if not data:
-        raise TableError(f"{path}: no row belongs to a connection of a pin", "no-rows")
-    names = list(next(iter(data.values())))
-    for time, instant in data.items():
-        missing = set(names).symmetric_difference(instant)
-        if missing or (time is None and len(data) > 1):
+        if not same_times(first.times, table.times):
             raise TableError(
-                f"{path}: connection {sorted(missing or names)[0]} has no row at time "
-                f"{(time or 0.0) / unit('', 'time'):g}; every connection needs one at every time",
+                f"{path}: has other times than {first_path}; all tables of a case need the same",
                 "missing-row",
             )
-    first = given_reactions(layout.case, dict.fromkeys(names, (0.0, 0.0)))
-    order = sorted(data, key=lambda t: t or 0.0)
-    forces, moments = np.split(np.array([[data[t][n] for n in names] for t in order]), 2, axis=2)
+        first = replace(
+            first,
+            connections=first.connections + table.connections,
+            values=np.concatenate([first.values, table.values], axis=1),
+        )
+    return _tabled(case, first)
+
+
+def same_times(times: Floats | None, others: Floats | None) -> bool:
+    """Whether two tables have the same times (T,) s, to rounding."""
+    if times is None or others is None:
+        return times is others
+    near = TIME_TOLERANCE * float(np.abs(times).max())
+    return len(times) == len(others) and bool((np.abs(times - others) <= near).all())
+
+
+def _tabled(case: str, table: TabledForces) -> Reactions:
+    first = given_reactions(case, dict.fromkeys(table.connections, (0.0, 0.0)))
     return replace(
         first,
-        times=None if order == [None] else np.array(order, dtype=float),
-        forces=forces,
-        moments=moments,
-        turn=np.zeros(forces.shape[:2]),
+        times=table.times,
+        forces=table.values[:, :, :3],
+        moments=table.values[:, :, 3:],
+        turn=np.zeros(table.values.shape[:2]),
     )

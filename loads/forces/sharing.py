@@ -2,30 +2,69 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import combinations
+
 import numpy as np
 
 from loads.linkage.linkage import Linkage, LinkageError
+from loads.motion.mobility import Mobility
 from pinbase.arrays import Complex, Floats
 
 
-def shares(linkage: Linkage, forces: Complex, loose: Complex, shared: tuple[str, ...]) -> Floats:
+def undetermined(linkage: Linkage, freedom: Mobility) -> LinkageError:
+    """The error of connections whose forces rigid-body statics leaves open, without a rule."""
+    text = (
+        f"{_open(freedom)}; state how they share the load: [[mechanism.sharing]] with connections "
+        "= [...] and stiffness = [...], one entry for each degree of redundancy"
+    )
+    for (one, other), pins in _joined_twice(linkage, freedom.shared):
+        text += (
+            f". Pins {' and '.join(pins)} join {one} and {other}; if these are one part, "
+            f"write welded_to instead of the pins"
+        )
+    if linkage.driven and not freedom.degrees:
+        text += (
+            f". As drawn it is a structure that cannot move: remove the drive of "
+            f"{', '.join(linkage.driven)}, which holds it once more; if it should move, correct "
+            "the joints of the links that prevent it"
+        )
+    return LinkageError(text, "statically-indeterminate")
+
+
+def _joined_twice(
+    linkage: Linkage, shared: tuple[str, ...]
+) -> Iterator[tuple[tuple[str, str], list[str]]]:
+    """Pairs of bodies that several pins join, and the pins, of which some connection is shared."""
+    pins: dict[tuple[str, str], list[str]] = {}
+    for joint in linkage.joints:
+        bodies = [
+            *([joint.fixed_in] if joint.fixed_in else []),
+            *(c.body for c in joint.connections),
+        ]
+        if any(c.name in shared for c in joint.connections):
+            for pair in combinations(sorted(bodies), 2):
+                pins.setdefault(pair, []).append(joint.name)
+    return ((pair, names) for pair, names in pins.items() if len(names) > 1)
+
+
+def _open(freedom: Mobility) -> str:
+    return f"rigid-body statics does not determine the forces at {', '.join(freedom.shared)}"
+
+
+def shares(linkage: Linkage, forces: Complex, loose: Complex, freedom: Mobility) -> Floats:
     """Amounts (T, k) of self-equilibrated forces that make connections share as springs do.
 
     They minimise the sum of force^2 / stiffness over the connections and teeth of the rules.
     forces: (T, C) N, complex, without self-equilibrated ones.
     loose: (T, C, k) N, the k self-equilibrated sets of forces.
-    shared: connections whose force is undetermined, for messages.
+    freedom: mobility of the linkage, which names the connections whose force is undetermined.
 
     Raises: LinkageError without a rule, or with rules that leave a force undetermined.
     """
     names = [name for name, _ in linkage.forces]
-    open_ = f"rigid-body statics does not determine the forces at {', '.join(shared)}"
     if not linkage.sharing:
-        raise LinkageError(
-            f"{open_}; state how they share the load: [[mechanism.sharing]] with connections = "
-            "[...] and stiffness = [...], one entry for each degree of redundancy",
-            "statically-indeterminate",
-        )
+        raise undetermined(linkage, freedom)
     members = [p for s in linkage.sharing for p in zip(s.connections, s.stiffness, strict=True)]
     which = [names.index(name) for name, _ in members]
     weight = np.tile([1.0 / stiffness for _, stiffness in members], 2)
@@ -34,8 +73,8 @@ def shares(linkage: Linkage, forces: Complex, loose: Complex, shared: tuple[str,
     G = np.swapaxes(N, 1, 2) @ (weight[:, None] * N)
     if np.linalg.eigvalsh(G).min() < 1e-9 * weight.min():
         raise LinkageError(
-            f"{open_}, nor does the sharing over {', '.join(name for name, _ in members)}; name "
-            "connections on each redundant path",
+            f"{_open(freedom)}, nor does the sharing over {', '.join(name for name, _ in members)}"
+            "; name connections on each redundant path",
             "sharing-incomplete",
             ("sharing",),
         )

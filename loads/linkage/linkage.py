@@ -51,12 +51,14 @@ class Body:
     centre: centre of mass in world axes, m.
     inertia: about the centre of mass, kg m^2; a body without inertia is a particle with a single
     connection, at `centre`, or slides on the ground.
+    welded: the body, or GROUND, to which it is fixed.
     """
 
     name: str
     mass: float
     centre: Point
     inertia: float | None = None
+    welded: str | None = None
 
 
 @dataclass(frozen=True)
@@ -203,7 +205,7 @@ class Parallel:
 class Linkage:
     """Bodies, joints, sliders and turns in the position in which they are drawn.
 
-    driven: names of the sliders and turns that drives prescribe.
+    driven: names of the sliders and turns that drives prescribe; none of a structure.
     gravity: acceleration of free fall, world axes, m/s^2.
 
     Raises: LinkageError where the parts contradict each other.
@@ -257,6 +259,17 @@ class Linkage:
         """Number of each item by its name; the ground comes after the last."""
         rows = {item.name: i for i, item in enumerate(self.items)}
         return rows | {GROUND: len(rows)}
+
+    @cached_property
+    def rigid(self) -> dict[str, tuple[str, ...]]:
+        """Of each body and the ground, all that are welded together with it, itself included."""
+        names = [*(b.name for b in self.bodies), GROUND]
+        groups: dict[str, tuple[str, ...]] = {name: (name,) for name in names}
+        for body in self.bodies:
+            if body.welded is not None and body.welded not in groups[body.name]:
+                merged = groups[body.name] + groups[body.welded]
+                groups |= dict.fromkeys(merged, merged)
+        return groups
 
     def joint(self, name: str) -> Joint:
         """The joint of this name."""
@@ -336,6 +349,7 @@ def _contradictions(linkage: Linkage) -> Iterator[Contradiction]:
                 yield text, "unknown-connection", ("sharing",)
     for rule in linkage.parallel:
         yield from _parallel_contradictions(linkage, rule, coordinates)
+    yield from _weld_contradictions(linkage, bodies)
     for body in linkage.bodies:
         if body.inertia is None:
             yield from _particle_contradictions(linkage, body)
@@ -352,7 +366,7 @@ def _parallel_contradictions(
         if sum(name in other.members for other in linkage.parallel) > 1:
             yield f"sharing: {name} is in two rules; keep one", "shared-twice", at
     driven = [name for name in rule.members if name in linkage.driven]
-    if len(driven) != 1:
+    if linkage.driven and len(driven) != 1:
         text = f"sharing over {names}: exactly one of them must be driven, not {len(driven)}"
         yield f"{text}; the others follow it", "one-must-drive", at
 
@@ -395,6 +409,20 @@ def _slider_contradictions(linkage: Linkage, bodies: dict[str, Body]) -> Iterato
         if slider.axis == (0.0, 0.0):
             text = "its two points coincide, so they define no direction; give direction = [x, y]"
             yield f"slider {slider.name}: {text}", "no-direction", ("slider", slider.name)
+
+
+def _weld_contradictions(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[Contradiction]:
+    """Contradictions of welded bodies. bodies: by name."""
+    for body in linkage.bodies:
+        what, key = f"body {body.name}", ("body", body.name, "welded_to")
+        if body.welded == body.name:
+            yield f"{what}: it cannot be welded to itself; name another body", "same-body", key
+        elif body.welded is not None and body.welded not in (GROUND, *bodies):
+            yield f"{what}: there is no body {body.welded!r} to weld it to", "unknown-body", key
+        for end in () if body.welded is None else (body.name, body.welded):
+            if end in bodies and bodies[end].inertia is None:
+                text = f"body {end}: it is welded; give its inertia (0 is allowed)"
+                yield text, "missing-inertia", ("body", end)
 
 
 def _particle_contradictions(linkage: Linkage, body: Body) -> Iterator[Contradiction]:

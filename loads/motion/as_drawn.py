@@ -36,6 +36,11 @@ def singular_as_drawn(loops: Loops) -> Singular | None:
     return "dead point" if any(ranks[1] > total_rank for ranks in nearby) else None
 
 
+def moves_nearby(loops: Loops) -> bool:
+    """Whether the linkage, with free drives, has positions near the drawing, other than it."""
+    return bool(_nearby(loops))
+
+
 def _ranks(loops: Loops, q: Floats) -> tuple[int, int]:
     """Rank of the loop equations at coordinates q (n,), without the drives' and with them."""
     J = loops.jacobian(loops.pose(q[None]))[0]

@@ -48,6 +48,8 @@ def four_bar(linkage: Linkage) -> FourBar | None:
     driven by its angle.
     """
     bodies = [b.name for b in linkage.bodies if b.inertia is not None]
+    if any(b.welded for b in linkage.bodies):
+        return None
     if len(bodies) != 3 or linkage.sliders or len(linkage.joints) != 4 or len(linkage.turns) != 1:
         return None
     ring = {name: [j.name for j in linkage.joints_on(name)] for name in (*bodies, GROUND)}

@@ -112,7 +112,7 @@ class Loops:
         self.drawn_drives = np.array([d.drawn for d in linkage.drives])
         fixed = [row(self.linkage, self.frame, t) for t in linkage.teeth]
         fixed += [self.along(d) for d in linkage.drives]
-        self._fixed_rows = np.array(fixed).reshape(-1, self.columns)
+        self._fixed_rows = np.array(fixed).reshape(len(fixed), self.columns)
 
     @property
     def columns(self) -> int:

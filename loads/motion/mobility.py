@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from loads.linkage.linkage import GROUND, Linkage, LinkageError
-from loads.motion.as_drawn import rank, singular_as_drawn
+from loads.motion.as_drawn import moves_nearby, rank, singular_as_drawn
 from loads.motion.joint_forces import connection_members
 from loads.motion.loop_equations import Loops, Pose
 from pinbase.arrays import Floats
@@ -61,14 +61,17 @@ def mobility(linkage: Linkage) -> Mobility:
 def kutzbach(linkage: Linkage) -> int:
     """Degrees of freedom by Kutzbach: 3 (links - 1) - 2 (pins and sliders) - pairs of teeth.
 
-    A pin at which k links meet counts k - 1 times; particles do not count.
+    A pin at which k links meet counts k - 1 times; particles do not count. Welded bodies are one
+    link.
     """
-    links = {b.name for b in linkage.bodies if not is_particle(linkage, b.name)} | {GROUND}
+    names = [b.name for b in linkage.bodies if not is_particle(linkage, b.name)] + [GROUND]
+    link = {name: linkage.rigid[name][0] for name in names}
     pins = 0
     for joint in linkage.joints:
-        meeting = {c.body for c in joint.connections} | {joint.fixed_in}
-        pins += max(len(meeting & links) - 1, 0)
-    return 3 * (len(links) - 1) - 2 * (pins + len(linkage.sliders)) - len(linkage.teeth)
+        meeting = (*(c.body for c in joint.connections), joint.fixed_in or "")
+        pins += max(len({link[name] for name in meeting if name in link}) - 1, 0)
+    links = len({*link.values()})
+    return 3 * (links - 1) - 2 * (pins + len(linkage.sliders)) - len(linkage.teeth)
 
 
 def is_particle(linkage: Linkage, name: str) -> bool:
@@ -142,6 +145,8 @@ def require_determined(linkage: Linkage) -> Mobility:
 def _unconstrained(linkage: Linkage, freedom: Mobility) -> LinkageError:
     """The error of bodies that can move with the drives locked: singular as drawn, or unguided."""
     loose = ", ".join(freedom.loose)
+    if not linkage.driven:
+        return _undriven_error(linkage, freedom, loose)
     match singular_as_drawn(Loops(linkage)):
         case "change point":
             return LinkageError(
@@ -160,6 +165,24 @@ def _unconstrained(linkage: Linkage, freedom: Mobility) -> LinkageError:
         f"with the drives locked the linkage still has {freedom.free} degree(s) of freedom: "
         f"{loose} can move; add the missing connection or drive",
         "underconstrained",
+    )
+
+
+def _undriven_error(linkage: Linkage, freedom: Mobility, loose: str) -> LinkageError:
+    """The error of a linkage without drives that can move, or is at the limit of its form."""
+    if not moves_nearby(Loops(linkage)):
+        return LinkageError(
+            f"as drawn {loose} can give way a little although nothing is missing (joints in line, "
+            "or links that meet in one point), so that no finite force holds a load; draw it in "
+            "another form, or add a connection",
+            "unstable-form",
+        )
+    count = f"{freedom.free} degree{'s' * (freedom.free > 1)} of freedom ({loose} can move)"
+    return LinkageError(
+        f"there is no drive, but {count}; add as many [[mechanism.drive]], or the connection that "
+        "makes it a structure, or name the locks that hold it in every case: hold = [...]",
+        "underconstrained",
+        ("drive",),
     )
 
 

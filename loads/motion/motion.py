@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from loads.linkage.drives import Law, StateDrive
+from loads.linkage.drives import Law, StateDrive, Values
 from loads.linkage.linkage import Connection, Joint, Linkage, LinkageError, Point, Slider, Turn
 from loads.motion.as_drawn import RANK_TOLERANCE
 from loads.motion.least_squares import Factors
@@ -195,6 +195,17 @@ class Motion:
         return np.concatenate([_condition(part) for part in self.parts])
 
 
+def side_by_side(histories: Sequence[Values], count: int) -> Values:
+    """N values and their first two derivatives, (T,) each, as three arrays (T, N).
+
+    histories: one for each value; a structure has none. count: number of instants T.
+    """
+    none = np.zeros((count, 0))
+    values, speeds, rates = (np.stack([h[k] for h in histories], axis=1) if histories else none
+                             for k in range(3))  # fmt: skip
+    return values, speeds, rates
+
+
 def _condition(part: Motion) -> Floats:
     """Condition numbers of a batch of instants, (T,).
 
@@ -254,9 +265,7 @@ class Course:
             close = CORNER_TIME_TOLERANCE * (self.last - self.first)
             k = np.clip(np.searchsorted(self.corners, times - close), 0, len(self.corners) - 1)
             times = np.where(np.abs(times - self.corners[k]) <= close, times - 3.0 * close, times)
-        histories = [law(times) for law in self.laws]
-        values, speeds, rates = (np.stack([h[k] for h in histories], axis=1) for k in range(3))
-        return values, speeds, rates
+        return side_by_side([law(times) for law in self.laws], len(times))
 
     def at(self, times: Floats) -> Motion:
         """The motion at times (T,) s, in any order. Raises: MotionBlocked."""

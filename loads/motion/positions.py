@@ -205,7 +205,7 @@ class Path:
     @staticmethod
     def _furthest(start: Floats, ahead: Floats) -> Floats:
         """Those of the drives' values ahead (M, D) that are furthest from `start` (D,)."""
-        return np.asarray(ahead[int(np.abs(ahead - start).max(axis=1).argmax())])
+        return np.asarray(ahead[int(np.abs(ahead - start).max(axis=1, initial=0.0).argmax())])
 
     def _crossed(
         self, times: tuple[float, float], q: Floats, q1: Floats, drives: Drives, ahead: Floats

@@ -124,7 +124,7 @@ def motion_blocked(
     force, motion = left[:, last], right[last]
     drives = len(loops.linkage.driven)
     # At a dead point the drive force is unbounded too; at a change point it is not.
-    unbounded = float(np.abs(force[len(force) - drives :]).max()) > 1e-3
+    unbounded = float(np.abs(force[len(force) - drives :]).max(initial=0.0)) > 1e-3
     kind: Kind = "dead point" if unbounded else "change point"
     return MotionBlocked(
         loops.linkage,

@@ -40,16 +40,24 @@ def ends_of(linkage: Linkage, slides: bool, which: int) -> tuple[int, int]:
     return linkage.index[c.body], linkage.index[linkage.carrier(joint)]
 
 
+def _welds(linkage: Linkage) -> list[tuple[int, int]]:
+    """Numbers of the items at the two ends of every weld."""
+    index = linkage.index
+    return [(index[b.name], index[b.welded]) for b in linkage.bodies if b.welded is not None]
+
+
 def frames(linkage: Linkage) -> tuple[int, Ints]:
     """Number of frames, and the frame of every item, (items + ground,); 0 is the ground's.
 
-    Items that slide on each other share a frame. Pins and particles have no angle and are given the
-    ground's frame, on which their positions do not depend.
+    Items that slide on each other or are welded share a frame. Pins and particles have no angle and
+    are given the ground's frame, on which their positions do not depend.
     """
     index = linkage.index
     joined = _Sets(len(index))
     for s in linkage.sliders:
         joined.join(index[s.base], index[s.moving])
+    for body, base in _welds(linkage):
+        joined.join(body, base)
     ground = joined.of(index[GROUND])
     frame = np.zeros(len(index), dtype=np.int64)
     numbers: dict[int, int] = {ground: 0}
@@ -109,18 +117,20 @@ class _Sets:
 def spanning_tree(linkage: Linkage) -> tuple[tuple[LoopEdge, ...], tuple[tuple[bool, int], ...]]:
     """Edges of a spanning tree, from the ground outwards, and the members that close loops.
 
-    The latter are pairs (slides, which). Sliders are taken into the tree first, so that bodies of
-    one frame are joined by sliders, and a loop equation contains no rotation of a frame against
-    itself.
+    The latter are pairs (slides, which). Welds and sliders are taken into the tree first, so that
+    bodies of one frame are joined by them, and a loop equation contains no rotation of a frame
+    against itself. Welds are in neither list, as nothing moves there.
 
     Raises: LinkageError for bodies that nothing joins to the ground.
     """
     index = linkage.index
-    members = [(True, k, *ends_of(linkage, True, k)) for k in range(len(linkage.sliders))]
+    members: list[tuple[bool | None, int, int, int]]
+    members = [(None, k, *ends) for k, ends in enumerate(_welds(linkage))]
+    members += [(True, k, *ends_of(linkage, True, k)) for k in range(len(linkage.sliders))]
     members += [(False, k, *ends_of(linkage, False, k)) for k in range(len(linkage.connections))]
     joined = _Sets(len(index))
     inside = [m for m in members if joined.join(m[2], m[3])]
-    closing = tuple((m[0], m[1]) for m in members if m not in inside)
+    closing = tuple((m[0], m[1]) for m in members if m not in inside and m[0] is not None)
     ground = index[GROUND]
     adrift = [
         item.name for i, item in enumerate(linkage.items) if joined.of(i) != joined.of(ground)
@@ -131,11 +141,11 @@ def spanning_tree(linkage: Linkage) -> tuple[tuple[LoopEdge, ...], tuple[tuple[b
             "not-joined",
         )
     # Breadth-first from the ground, for the order of the edges.
-    neighbours: dict[int, list[tuple[tuple[bool, int, int, int], int]]] = {}
+    neighbours: dict[int, list[tuple[tuple[bool | None, int, int, int], int]]] = {}
     for m in inside:
         neighbours.setdefault(m[2], []).append((m, m[3]))
         neighbours.setdefault(m[3], []).append((m, m[2]))
-    order: list[tuple[tuple[bool, int, int, int], int, int]] = []
+    order: list[tuple[tuple[bool | None, int, int, int], int, int]] = []
     seen, queue = {ground}, [ground]
     for inner in queue:
         for m, outer in neighbours.get(inner, ()):
@@ -148,5 +158,7 @@ def spanning_tree(linkage: Linkage) -> tuple[tuple[LoopEdge, ...], tuple[tuple[b
     for _, inner, outer in reversed(order):
         if inner != ground:
             away[inner] |= away[outer]
-    edges = tuple(LoopEdge(m[0], m[1], frozenset(away[o]), m[2] == o) for m, _, o in order)
+    edges = tuple(
+        LoopEdge(m[0], m[1], frozenset(away[o]), m[2] == o) for m, _, o in order if m[0] is not None
+    )
     return edges, closing

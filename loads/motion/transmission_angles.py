@@ -72,14 +72,16 @@ def _angles(
 def _links(motion: Motion, rates: Floats, still: set[str]) -> dict[str, tuple[Joint, Joint]]:
     """Links with a transmission angle, and their two joints.
 
-    They are the moving bodies that have exactly two joints and slide on nothing, whose joints touch
-    no body at rest, and which turn relative to another body at both joints.
+    They are the moving bodies that have exactly two joints, slide on nothing and are welded to
+    nothing, whose joints touch no body at rest, and which turn relative to another body at both
+    joints.
     """
     linkage, out = motion.linkage, {}
     for body in linkage.bodies:
         joints = linkage.joints_on(body.name)
         slides = any(body.name in (s.base, s.moving) for s in linkage.sliders)
-        if body.name in still or len(joints) != 2 or slides:
+        fixed = slides or len(linkage.rigid[body.name]) > 1
+        if body.name in still or len(joints) != 2 or fixed:
             continue
         if all(not set(_bodies(j)) & still and _turns_at(motion, rates, body, j) for j in joints):
             out[body.name] = (joints[0], joints[1])
@@ -139,10 +141,10 @@ def _reached(
 
 
 def _neighbours(linkage: Linkage) -> dict[str, set[str]]:
-    """The bodies that a joint, a slider or teeth connect with each body."""
+    """The bodies that a joint, a slider, a weld or teeth connect with each body."""
     groups = [_bodies(joint) for joint in linkage.joints]
     groups += [[s.base, s.moving] for s in linkage.sliders]
-    groups += [[*t.bodies] for t in linkage.teeth]
+    groups += [[*t.bodies] for t in linkage.teeth] + [[*g] for g in linkage.rigid.values()]
     beside: dict[str, set[str]] = {}
     for group in groups:
         for body in group:

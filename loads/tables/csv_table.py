@@ -8,7 +8,6 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import chain
 from pathlib import Path
 from typing import TextIO
 
@@ -38,25 +37,21 @@ class TableLine:
 
     where: file and line, for messages.
     cells: text by column, without surrounding blanks.
-    comma: whether numbers may have a decimal comma.
     """
 
     where: str
     cells: dict[str, str]
-    comma: bool = False
 
     def number(self, column: str) -> float:
         """The number in a cell. Raises: TableError unless finite and at most MAX_CELL_VALUE."""
         text = self.cells[column]
-        if self.comma and DECIMAL_COMMA_PATTERN.fullmatch(text):
-            text = text.replace(",", ".")
-        what = f"{self.where}: {column} = {text[:40]}"
+        what = f"{self.where}: {column} = {text[:MAX_SHOWN_CHARACTERS]}"
         try:
             value = float(text)
         except ValueError:
             what = f"{self.where}: {column} = {text[:MAX_SHOWN_CHARACTERS]!r} is not a number"
             code = "decimal-comma" if DECIMAL_COMMA_PATTERN.fullmatch(text) else "not-a-number"
-            raise TableError(f"{what}{_remedy(text)}", code) from None
+            raise TableError(f"{what}{remedy(text)}", code) from None
         if not math.isfinite(value):
             raise TableError(f"{what} is not finite", "not-finite")
         if abs(value) > MAX_CELL_VALUE:
@@ -64,7 +59,7 @@ class TableLine:
         return value
 
 
-def _remedy(text: str) -> str:
+def remedy(text: str) -> str:
     """The end of a message: the right way to write a cell that is not a number, if known."""
     point = text.replace(",", ".")
     if THOUSANDS_PATTERN.fullmatch(text):
@@ -79,47 +74,41 @@ def _remedy(text: str) -> str:
 
 
 def read_table(
-    path: Path,
-    needed: Sequence[str],
-    optional: Sequence[str] | None = None,
-    free: bool = False,
-    numbered: bool = False,
+    path: Path, needed: Sequence[str], optional: Sequence[str] | None = None
 ) -> Iterator[TableLine]:
     """The rows of a CSV table.
 
     needed: columns that the table must have.
     optional: further columns that are allowed; None: any.
-    free: whether comments (#) are allowed, and semicolons, tabs or blanks in place of commas, then
-    with decimal commas.
-    numbered: whether the table has no header; its columns are called "1", "2" and so on.
 
     Raises: TableError for a file that is not such a table.
     """
     try:
-        text = io.StringIO(read_regular(path, MAX_TABLE_BYTES).decode("utf-8-sig"), newline="")
-        lines = _lines(path, text)
-        separator = ","
-        if free:
-            first, lines = _uncommented(lines)
-            separator = _separator(first, numbered)
-        yield from _rows(path, _cells(lines, separator), (needed, optional), separator, numbered)
+        text = io.StringIO(read_content(path).decode("utf-8-sig"), newline="")
+        yield from _rows(path, _cells(_lines(path, text)), (needed, optional))
+    except UnicodeDecodeError as error:
+        raise TableError(
+            f"{path}: is not UTF-8 text ({error}); save it with this encoding", "not-text"
+        ) from None
+    except csv.Error as error:
+        raise TableError(
+            f"{path}: is not a table of comma-separated values ({error})", "not-csv"
+        ) from None
+
+
+def read_content(path: Path) -> bytes:
+    """The content of a table's file. Raises: TableError for a file that cannot be read."""
+    try:
+        return read_regular(path, MAX_TABLE_BYTES)
     except FileNotFoundError:
         raise TableError(
             f"{path}: no such file; the paths of tables are relative to the study's folder",
             "no-such-file",
         ) from None
-    except UnicodeDecodeError as error:
-        raise TableError(
-            f"{path}: is not UTF-8 text ({error}); save it with this encoding", "not-text"
-        ) from None
     except FileError as error:
         raise TableError(f"{path}: {error}", error.code) from None
     except OSError as error:
         raise TableError(f"{path}: cannot be read ({error.strerror})", "unreadable") from None
-    except csv.Error as error:
-        raise TableError(
-            f"{path}: is not a table of comma-separated values ({error})", "not-csv"
-        ) from None
 
 
 def _lines(path: Path, file: TextIO) -> Iterator[str]:
@@ -136,29 +125,9 @@ def _lines(path: Path, file: TextIO) -> Iterator[str]:
         yield line
 
 
-def _uncommented(lines: Iterator[str]) -> tuple[str, Iterator[str]]:
-    """The first line with cells, and all lines; comments become blank lines, to keep the count."""
-    plain = ("\n" if line.lstrip().startswith("#") else line for line in lines)
-    head = list[str]()
-    for line in plain:
-        head.append(line)
-        if line.strip():
-            break
-    return (head or [""])[-1], chain(head, plain)
-
-
-def _separator(line: str, numbered: bool) -> str:
-    """The character that separates the cells of a line; a blank only where there is no header."""
-    separator = next((s for s in (";", "\t") if s in line), ",")
-    return " " if numbered and separator == "," and "," not in line else separator
-
-
-def _cells(text: Iterator[str], separator: str) -> Iterator[tuple[int, list[str]]]:
+def _cells(text: Iterator[str]) -> Iterator[tuple[int, list[str]]]:
     """The cells of each line that has any, after the line's number."""
-    if separator == " ":
-        split = ((k, line.split()) for k, line in enumerate(text, 1))
-        return ((k, cells) for k, cells in split if cells)
-    lines = csv.reader(text, skipinitialspace=True, delimiter=separator)
+    lines = csv.reader(text, skipinitialspace=True)
     return ((lines.line_num, cells) for cells in lines if cells)  # blank lines are no rows
 
 
@@ -166,19 +135,15 @@ def _rows(
     path: Path,
     lines: Iterator[tuple[int, list[str]]],
     allowed: tuple[Sequence[str], Sequence[str] | None],
-    separator: str,
-    numbered: bool,
 ) -> Iterator[TableLine]:
     """The rows from the cells of lines. allowed: columns needed and optional, as of `read_table`.
 
     Raises: TableError for wrong columns, rows of another length, too many rows or none.
     """
-    first, cells = next(lines, (1, list[str]()))
+    _, cells = next(lines, (1, list[str]()))
     columns = [name.strip() for name in cells]
-    if numbered:
-        columns, lines = [str(k + 1) for k in range(len(cells))], chain([(first, cells)], lines)
     _require_columns(path, columns, *allowed)
-    count, comma = 0, separator != ","
+    count = 0
     for count, (line, cells) in enumerate(lines, 1):
         where = f"{path}, line {line}"
         if len(cells) != len(columns):
@@ -188,9 +153,7 @@ def _rows(
                 f"{where}: the table has more than {MAX_ROWS:,} rows, the limit; give fewer",
                 "too-many-rows",
             )
-        yield TableLine(
-            where, {c: cell.strip() for c, cell in zip(columns, cells, strict=True)}, comma
-        )
+        yield TableLine(where, {c: cell.strip() for c, cell in zip(columns, cells, strict=True)})
     if not count:
         raise TableError(f"{path}: the table has no rows below its header", "no-rows")
 

@@ -16,7 +16,16 @@ def ask_calculix(
     plan: Plan, task: Task, rows: tuple[PinResult, ...], tell: Tell
 ) -> tuple[Opinion, ...]:
     """Solve the rows of a task once more with CalculiX; called in the task's own process."""
+    if task.material.hardened:
+        return _not_asked(rows, "a pin with a hardened surface is not compared with CalculiX")
     return _in_lugs(task, rows, tell) if task.lugs else _alone(plan, task, rows, tell)
+
+
+def _not_asked(rows: tuple[PinResult, ...], why: str) -> tuple[Opinion, ...]:
+    return tuple(
+        Opinion(row.pin, row.case, row.max_von_mises, row.maximum.own_error, failure=why)
+        for row in rows
+    )
 
 
 def _alone(plan: Plan, task: Task, rows: tuple[PinResult, ...], tell: Tell) -> tuple[Opinion, ...]:
@@ -38,11 +47,7 @@ def _in_lugs(task: Task, rows: tuple[PinResult, ...], tell: Tell) -> tuple[Opini
     """Return the opinions on the loaded rows of a pin in lugs."""
     pin = body_of_revolution(task.pin)
     if pin is None:
-        why = "contact of a pin with holes is not compared with CalculiX"
-        return tuple(
-            Opinion(row.pin, row.case, row.max_von_mises, row.maximum.own_error, failure=why)
-            for row in rows
-        )
+        return _not_asked(rows, "contact of a pin with holes is not compared with CalculiX")
     seated = PinInLugs(pin, task.material, task.lugs)
     return tuple(
         opinion_in_lugs(seated, row.maximum, row.joint, tell)

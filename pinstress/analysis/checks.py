@@ -87,8 +87,8 @@ def _lever(study: Study, check: MotionCheckTable, linkage: Linkage) -> tuple[Lev
         raise study.error(
             f"motion_check.pivot: {check.pivot} is not fixed in the ground", code="pivot-not-fixed"
         )
-    slider = linkage.drives[0]
-    if len(linkage.drives) != 1 or not isinstance(slider, Slider):
+    slider = linkage.drives[0] if len(linkage.drives) == 1 else None
+    if not isinstance(slider, Slider):
         raise study.error("motion_check: it needs one drive, of a slider", code="no-single-drive")
 
     def distance(at: tuple[float, float]) -> float:

@@ -52,7 +52,7 @@ def field(
         von_mises=von_mises(shown.stress),
         envelope=shown.envelope,
         cell_type=shown.cell_type,
-        yield_strength=task.material.yield_strength,
+        yield_strength=None if task.material.hardened else task.material.yield_strength,
         outside=_outside(peak),
         verdict=peak.verdict,
         time=None if times is None else float(times[governing]),

@@ -39,8 +39,10 @@ RANGE_REMARK = "the range is that of the joint as the study has it"
 
 
 def scalable(task: Task) -> bool:
-    """Return whether rows of a task may be scaled: those of a pin without cuts in its lugs."""
-    return bool(task.lugs) and isinstance(task.pin, Pin)
+    """Return whether rows of a task may be scaled: those of a pin without cuts in its lugs, all of
+    one strength.
+    """
+    return bool(task.lugs) and isinstance(task.pin, Pin) and not task.material.hardened
 
 
 def coarse(requirement: Requirement, lasting: bool) -> Requirement:
@@ -59,7 +61,7 @@ def same_shape(one: Task, other: Task) -> bool:
 
 def _shape(task: Task) -> object:
     task = elastic_task(task)
-    eyes = [replace(x, clearance=0.0, tilt=0.0, range=LugRange()) for x in task.lugs]
+    eyes = [replace(x, clearance=0.0, growth=0.0, tilt=0.0, range=LugRange()) for x in task.lugs]
     return task.pin, task.material, eyes
 
 

@@ -355,6 +355,14 @@ def _around(plan: Plan, task: Task, solved: tuple[Solution, ...]) -> tuple[Joint
         return tuple(none if here is not None else None for here in loads)
     from fea.support.foundation.variations import prescribed_ranges
 
-    return prescribed_ranges(
+    ranges = prescribed_ranges(
         around.pin, task.material, around.lugs, loads, (plan.requirement.distance, around.assumed)
+    )
+    if not task.material.hardened:
+        return ranges
+    from fea.support.hardened_row import range_of_row
+
+    return tuple(
+        range_of_row(joint, solution.peak, task.material, around.pin)
+        for joint, solution in zip(ranges, solved, strict=True)
     )

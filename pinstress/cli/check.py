@@ -8,13 +8,15 @@ from dataclasses import dataclass
 from functools import partial
 
 from geometry import PinLike
-from loads import Linkage
+from loads import Linkage, jump_times
+from loads.forces.sharing import undetermined
 from loads.motion.four_bar import four_bar
 from pinstress.explore.sweep.correlations import correlations_of
 from pinstress.explore.sweep.parameters import parameters_of, require_laws
 from pinstress.explore.sweep.sample import designs_of
 from pinstress.study.model.balance import other_warnings, unheld
 from pinstress.study.model.cases import CaseLoads, case_loads
+from pinstress.study.model.lost_fits import lost_fit_warnings
 from pinstress.study.model.lugs import lugs
 from pinstress.study.model.mechanism.drives import span
 from pinstress.study.model.mechanism.linkage import determined, linkage
@@ -22,6 +24,7 @@ from pinstress.study.model.pins import far_ends, outline, shape_notes, weight
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.sequence import require_times
 from pinstress.study.model.tasks import Task, assumed_distribution, require_models, tasks
+from pinstress.study.model.temperature import temperature_assumption
 from pinstress.study.reading.errors import Errors
 from pinstress.study.reading.file import Study, named_materials
 from pinstress.study.reading.published_tables import read_published
@@ -31,6 +34,8 @@ from pinstress.study.schema.pins import PinTable
 from pinstress.study.schema.require import RequireTable, level_of
 from pinstress.study.schema.units import UnitSystem
 from pinstress.study.schema.vary import VaryTable
+
+MAX_SHOWN_JUMPS = 6
 
 
 @dataclass(frozen=True)
@@ -99,7 +104,8 @@ def examine(study: Study) -> Examination:
     lines.append(f"model {a.model}, tolerance {a.tolerance:g}{goal}")
     lines += filter(None, [assumed_distribution(study, todo)])
     lines += map(_requirement, table.require)
-    warnings = other_warnings(study, todo)
+    lines += temperature_assumption(study)
+    warnings = other_warnings(study, todo) + lost_fit_warnings(study, todo)
     if table.vary is not None or "reliability" in table.model_fields_set:
         lines += _varied(study)
         warnings += _impossible(study) if todo else []
@@ -217,8 +223,8 @@ def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
     mobility = determined(study, mechanism)
     lines = [
         f"mechanism: {len(mechanism.bodies)} bodies, {len(mechanism.joints)} joints, "
-        f"{len(mechanism.connections)} connections{_teeth(mechanism)}, driven by "
-        f"{', '.join(mechanism.driven)}"
+        f"{len(mechanism.connections)} connections{_teeth(mechanism)}, "
+        + (f"driven by {', '.join(mechanism.driven)}" if mechanism.driven else "no drive")
     ]
     counted = f"mobility {mobility.degrees}"
     if mobility.kutzbach != mobility.degrees:
@@ -228,11 +234,8 @@ def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
     if not mobility.redundant:
         return [*lines, counted]
     if mobility.shared and not mechanism.sharing:
-        raise study.error(
-            "mechanism: rigid-body statics does not determine the forces at "
-            f"{', '.join(mobility.shared)}; state how they share the load in [[mechanism.sharing]]",
-            code="statically-indeterminate",
-        )
+        error = undetermined(mechanism, mobility)
+        raise study.error(f"mechanism: {error}", code=error.code)
     rule = ", ".join(f"{'/'.join(s.connections)}" for s in mechanism.sharing)
     return [
         *lines,
@@ -249,7 +252,10 @@ def _teeth(mechanism: Linkage) -> str:
 def _words(study: Study, name: str, loads: CaseLoads) -> str:
     case, table, reactions = study.table.case[name], study.table.spatial_leg, loads.reactions
     if isinstance(case, GivenCase):
-        many = f"{len(reactions)} instants" if reactions.times is not None else "one instant"
+        many = "one instant"
+        if reactions.times is not None:
+            jumps = ", ".join(f"{t:g} s" for t in jump_times(reactions.times)[:MAX_SHOWN_JUMPS])
+            many = f"{len(reactions)} instants" + f", jump at t = {jumps}" * bool(jumps)
         return f"given, {many}, connections {', '.join(reactions.connections)}"
     if isinstance(case, LegCase):
         assert table is not None

@@ -6,8 +6,6 @@ from pathlib import Path
 
 import numpy as np
 
-from fea.support.lugs.lug import Lug
-from geometry import PinLike
 from pinbase.records import in_units
 from pinstress.analysis.gather.gather import shape_of_task
 from pinstress.analysis.mechanics.gather_loads import linkage_motion
@@ -15,7 +13,7 @@ from pinstress.cli.check import Examination, support_of
 from pinstress.study.model.balance import given_warnings
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
-from reports.data.check import CheckedPin, CheckedStudy, LugSketch, PlannedRow
+from reports.data.check import CheckedPin, CheckedStudy, PlannedRow
 from reports.data.results import Units
 from reports.page.check import write_check
 
@@ -47,7 +45,6 @@ def write_check_page(study: Study, examination: Examination, path: Path) -> None
             CheckedPin(
                 shape_of_task(first[name], ()),
                 support_of(study, first[name].pin, first[name].clamps),
-                tuple(_lugs(first[name])),
             )
             for name in study.table.pin
             if name in first
@@ -57,18 +54,6 @@ def write_check_page(study: Study, examination: Examination, path: Path) -> None
         ),
     )
     write_check(in_units(in_si, s.factor), path)
-
-
-def _lugs(task: Task) -> list[LugSketch]:
-    lugs = sorted(task.lugs, key=lambda lug: task.pin.band(lug.connection).z0)
-    return [_outline(task.pin, lug) for lug in lugs]
-
-
-def _outline(pin: PinLike, lug: Lug) -> LugSketch:
-    band = pin.band(lug.connection)
-    return LugSketch(
-        lug.connection, (band.z0, band.z1), lug.outer_diameter, lug.clearance, lug.material.name
-    )
 
 
 def _row(study: Study, task: Task, k: int) -> PlannedRow:

@@ -36,6 +36,7 @@ from pinstress.cli.plots import draw_and_print
 from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
 from pinstress.study.model.balance import other_warnings
+from pinstress.study.model.lost_fits import lost_fit_warnings
 from pinstress.study.reading.choices import Selection
 from pinstress.study.reading.extras import require_fatigue, require_package
 from pinstress.study.reading.file import Study
@@ -116,7 +117,7 @@ def run_and_write(
         require_junit(wanted.junit, directory)
     also: Any = wanted.vtk if wanted.vtk in ("motion", "solid") else None
     plan = replace(prepare(study, also=also, **chosen), sensitive=wanted.sensitive)
-    for warning in other_warnings(study, plan.tasks):
+    for warning in (*other_warnings(study, plan.tasks), *lost_fit_warnings(study, plan.tasks)):
         click.echo(f"Warning: {warning}", err=True)
     most = processes(wanted.jobs)
     ask = _second_opinion(plan, wanted.quiet) if wanted.second else {}

@@ -4,32 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pinbase.dimensions import Force, Length
+from pinbase.dimensions import Force
 from reports.data.mechanics import LinkageMotion
 from reports.data.results import PinShape, Units
 
 
 @dataclass(frozen=True)
-class LugSketch:
-    """A lug about a band of a pin, as it is drawn: from z to z, with its outer diameter.
-
-    clearance: of the diameters.
-    """
-
-    connection: str
-    z: tuple[Length, Length]
-    outer_diameter: Length
-    clearance: Length
-    material: str
-
-
-@dataclass(frozen=True)
 class CheckedPin:
-    """A pin with the lugs that hold it, in the order of z, or what else does."""
+    """A pin with what supports it, in words, where it has no lugs."""
 
     shape: PinShape
     support: str
-    lugs: tuple[LugSketch, ...]
 
 
 @dataclass(frozen=True)

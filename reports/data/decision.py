@@ -38,7 +38,7 @@ def beneath_factor(pin: PinResult) -> float:
     contact = pin.places and pin.places.contact
     if not contact or not contact.upper_end or pin.yield_strength is None:
         return inf
-    return pin.yield_strength / contact.upper_end
+    return (contact.strength or pin.yield_strength) / contact.upper_end
 
 
 def limit(pin: PinResult) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 
 from assess.judgement import BELOW_YIELD, NOT_DECIDED, SAFE
 from fea.core.places import ContactPlace
-from fea.support.records import JointResult, Variation
+from fea.support.records import FRICTION, JointResult, Variation
 from reports.data.decision import factor_ends
 from reports.data.results import Dependence, Floats, LandingRange, PinResult
 
@@ -19,6 +19,7 @@ BENEATH_CONTACT: Literal["beneath"] = "beneath"
 WITH_ERROR = "with its error"  # of what lies beneath, which exceeds what is permitted only with it
 IMPULSE_RANGES_TOGETHER = "impulse time, velocity change and pulse together"
 JOINT_AND_LANDING: Literal["joint and landing"] = "joint and landing"
+LOST_FIT = "press fit lost in"  # a pin that is loose at the temperature of the case
 TOGETHER = "together"  # what only both ranges together change
 
 
@@ -51,7 +52,8 @@ def depends_on(pin: PinResult) -> tuple[Dependence, ...]:
     """Return what changes the outcome of a row; empty where nothing does, and where the outcome is
     not decided as described.
 
-    The stress beneath contact comes first, then the ranges, that of the joint first.
+    The stress beneath contact comes first, then the ranges, that of the joint first. A pin that
+    comes loose depends on what else retains it.
     """
     described = pin.as_described
     if described == NOT_DECIDED or not pin.max_von_mises or not pin.safety_factor:
@@ -63,12 +65,38 @@ def depends_on(pin: PinResult) -> tuple[Dependence, ...]:
     judged = JudgedStress(
         low, pin.max_von_mises, high, strength, permitted, described in (SAFE, BELOW_YIELD)
     )
-    ranges = [*_beneath(judged, contact), *_over_joint(judged, contact, pin.joint)]
+    contact, joint = _as_of_row(contact, pin.joint, strength)
+    ranges = [*_beneath(judged, contact), *_over_joint(judged, contact, joint)]
+    if judged.safe:  # loose it is strong enough, but what retains it is open
+        lost = ", ".join(pin.lost_fits)
+        ranges += [Dependence(LOST_FIT, lost, "joint", pin.safety_factor)] if lost else []
     if pin.landing is not None:
         ranges += _with_beneath(judged, contact, pin.landing)
         if not ranges:
-            ranges += _over_both(judged, contact, pin.joint, pin.landing)
+            ranges += _over_both(judged, contact, joint, pin.landing)
     return tuple(ranges)
+
+
+def _as_of_row(
+    contact: ContactPlace | None, joint: JointResult | None, strength: float
+) -> tuple[ContactPlace | None, JointResult | None]:
+    """Return contact and joint with the stress beneath contact as of a place with the strength of
+    the row, which the case of a pin with a hardened surface has and its core has not.
+    """
+    if contact is None or contact.strength is None:
+        return contact, joint
+    scale = strength / contact.strength
+    contact = replace(
+        contact, beneath=scale * contact.beneath, beneath_error=scale * contact.beneath_error,
+        depths=tuple((scale * stress, depth) for stress, depth in contact.depths),
+    )  # fmt: skip
+    if joint is None or joint.range is None:
+        return contact, joint
+    over = tuple(
+        replace(v, beneath=None if v.beneath is None else scale * v.beneath)
+        for v in joint.range.variations
+    )
+    return contact, replace(joint, range=replace(joint.range, variations=over))
 
 
 def _over_both(
@@ -86,7 +114,8 @@ def _over_both(
     of_landing = float(extreme(r.max_von_mises)) / judged.maximum
     of_joint = extreme(judged.maximum, *over.max_von_mises) / judged.maximum
     beneath = [contact.upper_end if contact else 0.0]
-    beneath += [_upper_end(contact, v) for v in over.variations]
+    counted = (v for v in over.variations if judged.safe or v.what != FRICTION)
+    beneath += [_upper_end(contact, v) for v in counted]
     deep = of_landing * extreme(beneath)
     stress = judged.maximum * of_landing * of_joint
     fails_beneath = deep > judged.permitted
@@ -117,8 +146,8 @@ def _over_joint(
 ) -> Iterator[Dependence]:
     """Yield the variations of the joint that change the outcome.
 
-    A row that fails is safe at another value only if the stress beneath contact is safe there, too.
-    A row that is safe, beneath contact too, may no longer be so there.
+    A row that fails is safe at another value only if the stress beneath contact is safe there, too,
+    and never by friction. A row that is safe, beneath contact too, may no longer be so there.
     """
     over = joint.range if joint else None
     if joint is None or over is None:
@@ -128,7 +157,8 @@ def _over_joint(
     turning = [
         v
         for v in over.variations
-        if judged.turns(v.max_von_mises, v.interval) and (judged.safe or v not in deep)
+        if judged.turns(v.max_von_mises, v.interval)
+        and (judged.safe or (v not in deep and v.what != FRICTION))
     ]
     for v in turning:
         yield Dependence(

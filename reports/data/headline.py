@@ -8,10 +8,11 @@ from math import inf
 from typing import Any
 
 from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, OUTCOME_ORDER, SAFE, YIELDS
-from assess.margin import PinMargin
+from assess.margin import Margin, PinMargin
 from assess.strength.fatigue_life import FATIGUE_LIFE
 from assess.strength.model_stress import RUPTURE_METHOD, YIELD_METHOD
 from reports.data.decision import factor_ends, limit, utilisation
+from reports.data.lug_modes import lug_mode
 from reports.data.requirements import (
     MET,
     MISSED,
@@ -29,7 +30,7 @@ class JudgedCheck:
     check: its name. outcome: one of assess.judgement. factor: allowable over demand.
     required: the required factor.
     used: required over actual factor, the upper end of a range, by which checks are compared.
-    row: the row of the model's maximum, None for a margin.
+    row: the row of the model's maximum, None for a margin; margin: None for other checks.
     reason: why a check other than the model's maximum is not decided.
     stated: whether a requirement of the study states the factor, not those on loads.
     """
@@ -44,6 +45,12 @@ class JudgedCheck:
     row: PinResult | None = None
     reason: str = ""
     stated: bool = False
+    margin: Margin | None = None
+
+    @property
+    def lug(self) -> str:
+        """The lug that the check judges; empty for a check of the pin."""
+        return self.margin.at if self.margin and lug_mode(self.margin.method) else ""
 
     @property
     def rank(self) -> tuple[int, float]:
@@ -148,5 +155,6 @@ def _of_margin(pin_margin: PinMargin, row: PinResult | None) -> JudgedCheck:
         low, high = factor_ends(row)
         state = FAILS if pin_margin.used * low / high > 1.0 else NOT_DECIDED
     return JudgedCheck(
-        pin_margin.pin, pin_margin.case, m.method, state, factor, m.factor, pin_margin.used
-    )
+        pin_margin.pin, pin_margin.case, m.method, state, factor, m.factor, pin_margin.used,
+        margin=m,
+    )  # fmt: skip

@@ -246,6 +246,9 @@ def _judged(plain: RequirementRow, margins: list[Margin], row: PinResult | None)
     """Return a requirement as its margins have it, or the row's stress if it is of that."""
     if plain.check not in ("yield", "rupture") or row is None:
         return _of_margins(plain, margins)
+    hardened = row.places is not None and row.places.hardened
+    if hardened and plain.check == "rupture":  # its largest stress need not be the row's
+        return _of_margins(plain, margins)
     if row.max_von_mises is None:
         return replace(plain, outcome="not decided", needs=f"a maximum ({row.verdict})")
     strengths = [m.allowable for m in margins if m.allowable is not None]

@@ -39,10 +39,12 @@ from reports.data.mechanics import (
 from reports.data.row import SI, Dependence, GoverningLoad, LandingRange, PinResult, Units
 from reports.data.sensitivities import PinSensitivities, Sensitivity
 from reports.data.surface import Surface
+from reports.data.wear import BandWear
 
 __all__ = [
     "SI",
     "BandLoad",
+    "BandWear",
     "BeamCheck",
     "Dependence",
     "Dimensioned",
@@ -59,6 +61,7 @@ __all__ = [
     "LandingRange",
     "LegTable",
     "LinkageMotion",
+    "LugSketch",
     "MotionCheck",
     "PeakReaction",
     "PinResult",
@@ -74,6 +77,7 @@ __all__ = [
     "Remedy",
     "Results",
     "Sensitivity",
+    "ShankSketch",
     "SingularZone",
     "Still",
     "Surface",
@@ -104,6 +108,35 @@ class CutShape:
 
 
 @dataclass(frozen=True)
+class ShankSketch:
+    """The outline of a lug beyond its eye; names as in fea.support.lugs.lug.Shank."""
+
+    shape: str
+    width: Length
+    length: Length
+    end: Length
+
+
+@dataclass(frozen=True)
+class LugSketch:
+    """A lug about a band of a pin, as it is drawn: from z to z, with its outer diameter.
+
+    clearance: of the diameters. edge_radius: of the bore's edges.
+    bushing: its thickness, 0 without one; interference: with which it was pressed in.
+    """
+
+    connection: str
+    z: tuple[Length, Length]
+    outer_diameter: Length
+    clearance: Length
+    material: str
+    edge_radius: Length = 0.0
+    bushing: Length = 0.0
+    interference: Length = 0.0
+    shank: ShankSketch | None = None
+
+
+@dataclass(frozen=True)
 class PinShape:
     """The profile of a pin for drawing.
 
@@ -111,6 +144,7 @@ class PinShape:
     weight: None without a density.
     far_ends: diameter and bore at the segments' far ends, where any is a cone.
     solids: the ranges of z of local solids about cuts.
+    lugs: that support the pin, in the order of z.
     """
 
     pin: str
@@ -120,6 +154,7 @@ class PinShape:
     far_ends: tuple[tuple[Length, Length], ...] = ()
     cuts: tuple[CutShape, ...] = ()
     solids: tuple[tuple[Length, Length], ...] = ()
+    lugs: tuple[LugSketch, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -197,6 +232,7 @@ class Results:
     published: tuple[PublishedValue, ...] = ()
     legs: tuple[LegTable, ...] = ()
     drops: tuple[DropRecord, ...] = ()
+    wear: tuple[BandWear, ...] = ()
     surfaces: tuple[Surface, ...] = ()
     changes: tuple[Remedy, ...] = ()
     sensitivities: tuple[PinSensitivities, ...] = ()

@@ -125,9 +125,12 @@ class PinResult:
     left_out: given forces that were not applied because their band is clamped.
     position: of the drive; position_unit: as in ReactionTable.
     loads: at the governing instant.
+    shank_angles: of its lugs at the governing instant, by connection, degrees from x.
     exponent: with which the factor grows with the diameters, by the law of the section
     (assess.diameter_law).
     depends_on: values within the study's ranges that change whether the maximum is permitted.
+    lost_fits: lugs in which the pin is pressed no longer at the temperature of the case, with the
+    temperature at which it becomes loose, in words.
     published_*: the publication's value, in the study's units.
     units: of its numbers.
     """
@@ -147,8 +150,10 @@ class PinResult:
     position: DrivePosition | None = None
     position_unit: str = ""
     loads: tuple[GoverningLoad, ...] = ()
+    shank_angles: tuple[tuple[str, float], ...] = ()
     exponent: float = BENDING_EXPONENT
     depends_on: tuple[Dependence, ...] = ()
+    lost_fits: tuple[str, ...] = ()
     published_max_von_mises: float | None = None
     published_safety_factor: float | None = None
     units: Units = field(default=SI, compare=False)

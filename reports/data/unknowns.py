@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from fea.support.records import FRICTION
 from reports.data.dependence import BENEATH_CONTACT
 from reports.data.results import Dependence, LandingRange, PinResult
 
@@ -173,7 +174,10 @@ def _of_joint(row: PinResult) -> Iterator[OpenValue]:
         here = [v for v in over.variations if v.what == what]
         ends = [v.length for v in here if v.length is not None]
         ends += [given] if ends and given is not None else []
-        low, high = _factors(row, [s for v in here for s in v.interval or (v.max_von_mises,)])
+        stresses = [s for v in here for s in v.interval or (v.max_von_mises,)]
+        if what == FRICTION:  # what it takes off the stress is not relied on
+            stresses = [max(stresses)]
+        low, high = _factors(row, stresses)
         yield OpenValue(
             what, "joint", "length", (min(ends), max(ends)) if ends else None,
             tuple(v.value for v in here if v.length is None), given if ends else None, low, high,

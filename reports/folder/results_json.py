@@ -75,7 +75,7 @@ class _Row(JsonPart):
     safety_factor: Positive | None
     yields: bool | None
     outcome: str
-    governs: Literal["surface", "section"] | None
+    governs: Literal["surface", "section", "core"] | None
     surface: _AtPlace | None = None
     section: _AtPlace | None = None
     contact: _Contact | None = None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import inf
 
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
@@ -225,7 +226,10 @@ def _failing(checks: Sequence[JudgedCheck], results: Results) -> str:
 
 def _failing_pin(check: JudgedCheck, with_case: bool) -> str:
     more = [check.case] * (with_case and bool(check.case))
-    more += [_margin_words(check)] * (check.row is None)
+    if check.lug:
+        more += [f"lug {check.lug}"]
+    elif check.row is None:
+        more += [_margin_words(check if with_case else replace(check, case=""))]
     return f"{check.pin} ({', '.join(more)})" if more else check.pin
 
 

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from reports.data.check import CheckedPin, CheckedStudy, PlannedRow
+from reports.data.check import CheckedStudy, PlannedRow
 from reports.data.mechanics import LinkageMotion
+from reports.data.results import PinShape
 from reports.format.numbers import short
 from reports.format.template import environment
 from reports.page.linkage_drawing import Instant, Mark, draw_linkage
@@ -52,8 +53,8 @@ def render(study: CheckedStudy) -> str:
                 (
                     pin.shape.pin,
                     pin.shape.material,
-                    Markup(draw_pin(pin.shape, units, lugs=pin.lugs)),
-                    [pin.support] if not pin.lugs else _lug_words(pin, units.length),
+                    Markup(draw_pin(pin.shape, units)),
+                    _lug_words(pin.shape, units.length) or [pin.support],
                 )
                 for pin in study.pins[:MAX_DRAWN_PINS]
             ],
@@ -72,10 +73,10 @@ def _loaded(motion: LinkageMotion, unit: str) -> str:
     return draw_linkage(Instant(motion, int(np.argmax(sizes))), marks, title, unit)
 
 
-def _lug_words(pin: CheckedPin, unit: str) -> list[str]:
+def _lug_words(shape: PinShape, unit: str) -> list[str]:
     """Return a line for the lugs that are alike."""
     alike: dict[str, list[str]] = {}
-    for lug in pin.lugs:
+    for lug in shape.lugs:
         size = f"⌀{short(lug.outer_diameter)} {unit}, {lug.material}"
         clearance = f"clearance {short(lug.clearance)} {unit}"
         alike.setdefault(f"{size}, {clearance}", []).append(lug.connection)

@@ -25,7 +25,8 @@ BANDS_NOTE = (
     "that carries, where it is widest. Carries over: the part of the lug's thickness along "
     "which it pushes the pin in the direction of the force; beyond, it does not touch, or holds "
     "back. Couple on the link: the moment with which the lug's resistance to tilting acts on its "
-    "link. Mean pressure: the force over diameter and length of the band. The plot has the load "
+    "link. Mean pressure: the force over diameter and length of the band. Torque by friction: the "
+    "largest between pin and lug over all instants. The plot has the load "
     "per length in the direction of each link's force (negative: the opposite side of the bore "
     "carries), and the size of the bending moment."
 )
@@ -35,6 +36,8 @@ LUG_ORDER = (
     "place",
     "max_von_mises",
     "error_estimate",
+    "interface",
+    "other_interface",
     "max_hoop_stress",
     "angle",
     "time",

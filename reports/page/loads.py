@@ -20,6 +20,7 @@ from reports.format.numbers import DASH, components, engineering, short
 from reports.plots.loads.reactions import NO_PIN_NAME
 from reports.tables.column import Column, Grid, Table, grid_of, read_only, texts
 from reports.tables.loads.drop import drop_words, impulse_grid, peak_grid
+from reports.tables.loads.wear import WEAR_NOTE, wear_table
 from reports.tables.published import published_reactions
 from reports.tables.strength.landing import LANDING_NOTE, landing_blocks
 
@@ -50,6 +51,8 @@ def load_part(results: Results) -> dict[str, Any]:
             )
             for d in results.drops
         ],
+        "wear": grid_of(wear_table(results), results.units),
+        "wear_note": WEAR_NOTE,
         "landing": landing_blocks(results),
         "landed": list(dict.fromkeys(r.case for r in results.landing)),
         "landing_note": LANDING_NOTE,

@@ -16,6 +16,7 @@ from reports.format.words import BEYOND_YIELD, VERDICT_MEANINGS, verdict_words
 from reports.page.drawing_places import place_marks
 from reports.page.factors import change_part, factor_part, limit_part, sensitivity_part
 from reports.page.loads import largest_force, load_part, timings
+from reports.page.lug_across import draw_across
 from reports.page.motion import motion_parts
 from reports.page.overview import overview_part
 from reports.page.paper import document
@@ -54,7 +55,10 @@ def render(results: Results, directory: Path) -> str:
     from markupsafe import Markup
 
     shown = detailed_rows(results)
-    drawings: dict[str, str] = {s.pin: Markup(_drawing(s, shown)) for s in shown.shapes}
+    drawings: dict[str, str] = {
+        s.pin: Markup(_drawing(s, shown) + draw_across(shown, s, stress_along(shown, s)))
+        for s in shown.shapes
+    }
     printed = {s.pin: _drawing(s, shown, PRINTED_DRAWING_WIDTH) for s in shown.shapes}
     pins, plots = pin_parts(shown, drawings), all_plots(shown)
 

@@ -14,6 +14,7 @@ from reports.data.results import PinResult, Provenance, Results
 from reports.format.file_names import plot_name
 from reports.format.words import headline
 from reports.page.joint import joint_part
+from reports.page.lets_go import lets_go_parts
 from reports.page.places import places_part
 from reports.tables.column import Column, Grid, Table, grid_of, texts
 from reports.tables.published import published_maxima
@@ -162,8 +163,10 @@ def _sensitivities(results: Results) -> Content | None:
 def _pin(results: Results, name: str, drawings: dict[str, str]) -> Content:
     shape = next(s for s in results.shapes if s.pin == name)
     zoned = any(p.singular_at for p in results.pins if p.pin == name)
+    ladder = lets_go_parts(results).get(name)
     return {
         "pin": name,
+        "lets_go": None if ladder is None else asdict(ladder),
         "drawing": drawings[name],
         "caption": drawing_caption(shape, results.units, zoned),
         "refinement": plot_name("refinement-pin", name),

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from html import escape
 
-from reports.data.check import LugSketch
 from reports.data.results import PinShape, Units
 from reports.format.drawing.cuts import draw_cut, words
 from reports.format.drawing.spread import rows
@@ -14,6 +13,7 @@ from reports.format.drawing.svg import INK_COLOUR, line, text, wide
 from reports.format.numbers import engineering, short
 from reports.page.drawing_places import PlaceMark
 from reports.page.drawing_zones import STRIPE_PATTERN, ZoneMarks
+from reports.page.lug_drawing import LUG_PATTERN, draw_line_loads, draw_lug
 from reports.page.stress_along import StressAlong
 from reports.page.stress_panel import ARROW_ROOM, StressPanel, arrow, triad
 from reports.tables.stress.singular_zones import ShownZone
@@ -24,10 +24,9 @@ TEXT_LINE_HEIGHT = 14.0  # height of the text
 PATTERNS = (
     '<defs><pattern id="held" width="6" height="6" patternUnits="userSpaceOnUse" '
     'patternTransform="rotate(45)"><rect width="6" height="6" fill="#fff"/>'
-    f'<rect width="2" height="6" fill="#777"/></pattern>{STRIPE_PATTERN}</defs>'
+    f'<rect width="2" height="6" fill="#777"/></pattern>{STRIPE_PATTERN}{LUG_PATTERN}</defs>'
 )
-LUG_COLOUR = "#e3c9a4"
-LUG_HEIGHT_SHARE = 0.6  # of a lug's height, by which drawings with lugs may be higher than others
+LUG_HEIGHT_SHARE = 0.45  # of a lug's height, by which drawings with lugs may be higher than others
 FILL_COLOURS = {"band": "#9dbbe0", "held": "url(#held)", "plain": "#ececec"}
 
 
@@ -117,16 +116,14 @@ def draw_pin(
     width: float = DRAWING_WIDTH,
     places: list[PlaceMark] | None = None,
     along: StressAlong | None = None,
-    lugs: Sequence[LugSketch] = (),
 ) -> str:
     """Return the drawing as an <svg> element, in which all text is escaped.
 
     zones: one per circle. places: of the stress of rows.
     width: of the drawing, in pixels; letters have the size 11.
     along: stress along the pin and loads, of the governing case.
-    lugs: that are drawn about it, in section.
     """
-    around = max((lug.outer_diameter for lug in lugs), default=0.0)
+    around = max((lug.outer_diameter for lug in shape.lugs), default=0.0)
     pieces = _pieces(shape, units, width, along, around)
     if not pieces:
         return ""
@@ -146,9 +143,14 @@ def draw_pin(
         f'<svg class="pin" viewBox="0 0 {width:.0f} {height:.0f}" role="img" '
         f'xmlns="http://www.w3.org/2000/svg" font-size="11" font-family="sans-serif">'
         f"<title>{escape(_title(shape, along))}</title>{PATTERNS}",
-        *(part for lug in lugs for part in _lug(lug, pieces, at)),
+        *(
+            part
+            for lug in shape.lugs
+            for part in draw_lug(lug, _radius(lug.z, pieces, at), (at.left, at.scale, at.axis))
+        ),
         *_body(shape, pieces, at, marks),
-        *([] if along is None else _loads(along, pieces, at)),
+        *([] if along is None else _pressed(along, pieces, at, units)),
+        *([] if along is None else _loads(along, shape, pieces, at)),
         *([] if along is None else triad(8.0, overall + 2.0, along.angle)),
         *([] if panel is None else _guides(pieces, at, chain) + panel.draw(units.stress)),
         *(_dimension(p.x, p.x + p.width, chain, chain - 19.0) for p in pieces),
@@ -192,27 +194,28 @@ def _body(shape: PinShape, pieces: list[_Piece], at: _Layout, marks: ZoneMarks) 
     ]
 
 
-def _lug(lug: LugSketch, pieces: list[_Piece], at: _Layout) -> Iterator[str]:
-    """Yield the section of a lug above and below the pin."""
-    left, right = (at.left + at.scale * z for z in lug.z)
-    inner = max((p.radius for p in pieces if p.x < right and left < p.x + p.width), default=0.0)
-    wall = 0.5 * at.scale * lug.outer_diameter - inner
-    for y in (at.axis - inner - wall, at.axis + inner):
-        yield (
-            f'<rect class="lug" x="{left:.2f}" y="{y:.2f}" width="{right - left:.2f}" '
-            f'height="{max(wall, 0.0):.2f}" fill="{LUG_COLOUR}" stroke="{INK_COLOUR}" '
-            'stroke-width="0.8"/>'
-        )
+def _radius(z: tuple[float, float], pieces: list[_Piece], at: _Layout) -> float:
+    """Return the largest drawn radius of the pin between two z."""
+    left, right = (at.left + at.scale * x for x in z)
+    return max((p.radius for p in pieces if p.x < right and left < p.x + p.width), default=0.0)
 
 
-def _loads(along: StressAlong, pieces: list[_Piece], at: _Layout) -> list[str]:
-    """Return the arrow of every force."""
+def _pressed(along: StressAlong, pieces: list[_Piece], at: _Layout, units: Units) -> Iterator[str]:
+    """Yield the load per length along the bands, on the side of the pin that carries it."""
+    rings = [(*x, _radius((x[0], x[1]), pieces, at)) for x in along.line_loads]
+    unit = f"{units.force}/{units.length}"
+    yield from draw_line_loads(rings, (at.left, at.scale, at.axis), unit)
+
+
+def _loads(along: StressAlong, shape: PinShape, pieces: list[_Piece], at: _Layout) -> list[str]:
+    """Return the arrow of every force, outside of its lug if that is drawn."""
     largest = max((load.size for load in along.loads), default=0.0)
+    outer = {lug.connection: 0.5 * at.scale * lug.outer_diameter for lug in shape.lugs}
     parts = []
     for load in along.loads:
         x = at.left + at.scale * load.z
         radius = max((p.radius for p in pieces if p.x <= x <= p.x + p.width), default=at.radius)
-        parts += arrow(load, x, at.axis, radius, largest)
+        parts += arrow(load, x, at.axis, max(radius, outer.get(load.band, 0.0)), largest)
     return parts
 
 

@@ -10,7 +10,9 @@ from reports.data.results import PinResult, Results
 from reports.format.numbers import engineering, ratio
 from reports.format.ranges import error_range, factor_range
 from reports.page.joint import JointPart, joint_part
+from reports.page.lets_go import LetsGoPart, lets_go_parts
 from reports.page.loads import loads_at
+from reports.page.lug_clauses import LugClauses, lug_clauses
 from reports.page.places import PlacesPart, places_part
 from reports.page.second_opinion import OpinionPart, opinion_part
 from reports.page.stress_along import governing_rows
@@ -28,7 +30,8 @@ class PinCase:
 
     governs: whether it is the worst case of the pin, or of one of its checks.
     checks: hand checks. margins: of safety. places: where stress is read. joint: contact with lugs.
-    opinion: of CalculiX. ratio: computed maximum over the published one.
+    opinion: of CalculiX. ratio: computed maximum over the published one. clauses: of its lugs by
+    several codes.
     """
 
     result: PinResult
@@ -43,6 +46,7 @@ class PinCase:
     joint: JointPart | None
     opinion: OpinionPart | None
     ratio: float | None
+    clauses: tuple[LugClauses, ...]
 
 
 @dataclass(frozen=True)
@@ -51,7 +55,8 @@ class PinPart:
 
     anchor: on the page. outcome: of its worst case. material: in words. drawing: of the pin.
     table: a line for every case, the worst first; outcomes: of its lines.
-    cases: the worst first. moving: cases with a motion. views: in 3D.
+    cases: the worst first. moving: cases with a motion. views: in 3D. lets_go: the ladder of load
+    factors in the worst case.
     """
 
     pin: str
@@ -64,19 +69,23 @@ class PinPart:
     cases: tuple[PinCase, ...]
     moving: tuple[str, ...]
     views: list[PinView]
+    lets_go: LetsGoPart | None
 
 
 def pin_parts(results: Results, drawings: dict[str, str]) -> list[PinPart]:
     """Return the pins in the order of the results, then those that were not solved."""
     shapes = {shape.pin: shape for shape in results.shapes}
     names = dict.fromkeys([p.pin for p in results.pins] + list(shapes))
+    ladders = lets_go_parts(results)
     return [
-        _pin(results, name, f"pin-{number}", drawings.get(name, ""))
+        _pin(results, name, f"pin-{number}", drawings.get(name, ""), ladders.get(name))
         for number, name in enumerate(names, start=1)
     ]
 
 
-def _pin(results: Results, name: str, anchor: str, drawing: str) -> PinPart:
+def _pin(
+    results: Results, name: str, anchor: str, drawing: str, ladder: LetsGoPart | None
+) -> PinPart:
     shape = next((s for s in results.shapes if s.pin == name), None)
     rows = [row for row in worst_first(results) if row.pin == name]
     governs = governing_names(results, name)
@@ -91,6 +100,7 @@ def _pin(results: Results, name: str, anchor: str, drawing: str) -> PinPart:
         cases=tuple(_case(results, row, row.case in governs) for row in rows),
         moving=tuple(t.case for t in results.reactions if t.times is not None and name in t.pins),
         views=pin_views(results, name),
+        lets_go=ladder,
     )
 
 
@@ -109,6 +119,7 @@ def _case(results: Results, row: PinResult, governs: bool) -> PinCase:
         joint_part(row, units),
         opinion_part(row.second_opinion, units),
         ratio(row.max_von_mises, row.published_max_von_mises),
+        lug_clauses(row, units),
     )
 
 

@@ -6,14 +6,20 @@ from reports.data.results import Results
 from reports.format.drawing.svg import INK_COLOUR, text
 from reports.format.words import BEYOND_YIELD, VERDICT_MEANINGS
 from reports.page.joint import BANDS_NOTE, FOUNDATION_NOTE, LUGS_NOTE, RANGE_NOTE
-from reports.page.places import CONTACT_EDGES_NOTE, PLACES_NOTE, SECTION_NOTE
+from reports.page.places import CONTACT_EDGES_NOTE, HARDENED_NOTE, PLACES_NOTE, SECTION_NOTE
 from reports.page.stress_panel import LOAD_COLOUR
 from reports.tables.strength.hand_checks import HAND_CHECKS_NOTE
 
 DRAWING_NOTE = (
-    "To scale; lengths and diameters (⌀ outer / bore) in {length}. Blue: bearing bands; hatched: "
-    "clamped; grey: free. Red dots: the surface's largest stress; a red line across: the section "
-    "that governs instead."
+    "To scale; lengths and diameters (⌀ outer / bore) in {length}. Blue: bearing bands; black "
+    "hatching: clamped; grey: free. Red dots: the surface's largest stress; a red line across: the "
+    "section that governs instead."
+)
+LUGS_NOTE_OF_DRAWING = (
+    "Brown hatching: lugs; yellow: bushings. To scale, so that a clearance is seldom visible. Blue "
+    "strips at the pin: load per length of its lugs, its part in the plane of the drawing, on the "
+    "side of the pin that carries; the largest is named. Beside it the lug with the largest force, "
+    "as seen against z: the pressure around the bore on the ring that carries most."
 )
 LOADS_NOTE = (
     "Blue arrows: the force of each link on the pin in the worst case at its governing instant; a "
@@ -23,9 +29,8 @@ LOADS_NOTE = (
 )
 CURVES_NOTE = (
     "Below, in {stress}, the largest von Mises stress of the surface over the circumference "
-    "(without excluded zones and what lugs press on), the largest of each section, and the mean "
-    "pressure of lugs: load per length over diameter. What exceeds the scale is cut off. The red "
-    "dot is the maximum; the dotted line the stress that the required factor permits."
+    "(without excluded zones and what lugs press on), and the largest of each section. The red dot "
+    "is the maximum; the dotted line the stress that the required factor permits."
 )
 ZONES_NOTE = (
     "Numbered red rings: stress singularities, filled where one governs; red stripes: the excluded "
@@ -61,6 +66,7 @@ def reading_parts(results: Results) -> dict[str, str]:
     notes = {
         "Drawing": [
             DRAWING_NOTE.format(**words),
+            LUGS_NOTE_OF_DRAWING * any(s.lugs for s in results.shapes),
             CUTS_NOTE * any(s.cuts for s in results.shapes),
             SOLIDS_NOTE * any(s.solids for s in results.shapes),
         ],
@@ -71,6 +77,7 @@ def reading_parts(results: Results) -> dict[str, str]:
         "Places": [
             (PLACES_NOTE if contacts else SECTION_NOTE) * bool(sections or contacts),
             CONTACT_EDGES_NOTE * any(c.edges for c in contacts),
+            HARDENED_NOTE * any(row.places and row.places.hardened for row in rows),
         ],
         "Lugs": [
             BANDS_NOTE * any(joint.bands for joint in joints),

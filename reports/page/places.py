@@ -20,6 +20,11 @@ PLACES_NOTE = (
     f"from where "
     "lugs press on it; the pin is safe only if that meets the required factor, too."
 )
+HARDENED_NOTE = (
+    "The row of a pin with a hardened surface is that of its case or its core, whichever has the "
+    "smaller factor: strength falls to that of the core at the depth of the case, and stress is "
+    "that at each depth."
+)
 CONTACT_EDGES_NOTE = (
     "At the distance d from the edge of a lug, pressure rises as K / d^exponent; the distance at "
     "which it falls to yield is given. Peak pressure, and von Mises stress of the pin under it by "

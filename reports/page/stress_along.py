@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import atan2, cos, degrees, radians, sin
 
@@ -20,10 +21,11 @@ SOLID_BINS = 120  # along a pin that is not a body of revolution
 class LoadMark:
     """The force of a link on the pin.
 
-    z: middle of its band. size: of the force. up, towards: its parts upwards on the drawing and
-    towards the viewer; both 0 where the band is clamped.
+    band: in its lug. z: middle of it. size: of the force. up, towards: its parts upwards on the
+    drawing and towards the viewer; both 0 where the band is clamped.
     """
 
+    band: str
     z: float
     size: float
     up: float
@@ -42,7 +44,7 @@ class StressAlong:
     angle: of the drawing's upward direction from x, degrees. loads: of the links.
     surface: curves z (N,), stress (N,), which is NaN where it is not read.
     section: the largest stress of sections, likewise, without points where it is not known.
-    pressure: of lugs, between two z each: load per length over diameter, without its sign.
+    line_loads: of lugs on the pin, between two z each: load per length, upwards.
     z, maximum: of the row. allowed: the stress that the required factor permits.
     """
 
@@ -51,7 +53,7 @@ class StressAlong:
     loads: tuple[LoadMark, ...]
     surface: tuple[tuple[Floats, Floats], ...]
     section: tuple[Floats, Floats]
-    pressure: tuple[tuple[float, float, float], ...]
+    line_loads: tuple[tuple[float, float, float], ...]
     z: float | None
     maximum: float | None
     allowed: float | None
@@ -59,18 +61,14 @@ class StressAlong:
     @property
     def drawn(self) -> bool:
         """Whether there is any curve."""
-        return bool(self.surface or len(self.section[0]) or self.pressure)
+        return bool(self.surface or len(self.section[0]))
 
     @property
     def top(self) -> float:
-        """The largest stress of surface, section and row; of pressure where there is no other;
-        1 of a pin without stress.
-        """
+        """The largest stress of surface, section and row; 1 of a pin without stress."""
         curves = [s for _, s in self.surface] + [self.section[1]]
         largest = [float(np.nanmax(s)) for s in curves if np.isfinite(s).any()]
-        return max([*largest, self.maximum or 0.0]) or max(
-            (p for *_, p in self.pressure), default=1.0
-        )
+        return max([*largest, self.maximum or 0.0]) or 1.0
 
 
 def governing_rows(results: Results) -> dict[str, PinResult]:
@@ -83,27 +81,27 @@ def stress_along(results: Results, shape: PinShape) -> StressAlong | None:
     row = governing_rows(results).get(shape.pin)
     if row is None or row.max_von_mises is None:
         return None
-    surface, case = _surface_of(results, row)
+    surface, case = surface_of(results, row)
     forces = _forces(row, shape, case)
-    angle = 0.0 if shape.cuts else _upwards([force for _, force in forces])
+    angle = 0.0 if shape.cuts else _upwards([force for *_, force in forces])
     section = row.places.section.course if row.places and row.places.section else ()
     allowed = None if row.yield_strength is None else row.yield_strength / (row.required or 1.0)
+    marks = tuple(_mark(band, z, force, angle) for band, z, force in forces)
     return StressAlong(
         row.case,
         angle,
-        tuple(_mark(z, force, angle) for z, force in forces),
+        marks,
         () if surface is None or case is None else _curves(surface, case),
         (np.array([z for z, _ in section]), np.array([s for _, s in section])),
-        _pressures(row, shape),
+        tuple(_line_loads(row, marks)),
         None if row.location is None else row.location[2],
         row.max_von_mises,
         allowed,
     )
 
 
-def _surface_of(
-    results: Results, row: PinResult
-) -> tuple[Surface, SurfaceCase] | tuple[None, None]:
+def surface_of(results: Results, row: PinResult) -> tuple[Surface, SurfaceCase] | tuple[None, None]:
+    """Return the surface of a row's pin and its case; None where there are none."""
     for surface in results.surfaces:
         for case in surface.cases:
             if (surface.pin, case.case) == (row.pin, row.case):
@@ -113,17 +111,23 @@ def _surface_of(
 
 def _forces(
     row: PinResult, shape: PinShape, case: SurfaceCase | None
-) -> list[tuple[float, Floats]]:
-    """Return z and force (3,) of every link, and of lugs that no link holds.
+) -> list[tuple[str, float, Floats]]:
+    """Return band, z and force (3,) of every link, and of lugs that no link holds.
 
     Without fields of the pin they are in world axes.
     """
     bands = _bands(shape)
     if case is None:
-        return [(bands[x.connection][0], x.force) for x in row.loads if x.connection in bands]
+        return [
+            (x.connection, bands[x.connection][0], x.force)
+            for x in row.loads
+            if x.connection in bands
+        ]
     links = {x.connection for x in case.loads}
-    reactions = [(bands[k][0], f) for k, f in _lugs(row).items() if k in bands and k not in links]
-    return [(x.z, x.forces[case.instant]) for x in case.loads] + reactions
+    reactions = [
+        (k, bands[k][0], f) for k, f in _lugs(row).items() if k in bands and k not in links
+    ]
+    return [(x.connection, x.z, x.forces[case.instant]) for x in case.loads] + reactions
 
 
 def _lugs(row: PinResult) -> dict[str, Floats]:
@@ -154,10 +158,10 @@ def _upwards(forces: list[Floats]) -> float:
     return degrees(atan2(y, x))
 
 
-def _mark(z: float, force: Floats, angle: float) -> LoadMark:
+def _mark(band: str, z: float, force: Floats, angle: float) -> LoadMark:
     c, s = cos(radians(angle)), sin(radians(angle))
     x, y, _ = force.tolist()
-    return LoadMark(z, float(np.linalg.norm(force)), c * x + s * y, c * y - s * x)
+    return LoadMark(band, z, float(np.linalg.norm(force)), c * x + s * y, c * y - s * x)
 
 
 def _curves(surface: Surface, case: SurfaceCase) -> tuple[tuple[Floats, Floats], ...]:
@@ -173,12 +177,14 @@ def _curves(surface: Surface, case: SurfaceCase) -> tuple[tuple[Floats, Floats],
     return ((0.5 * (edges[1:] + edges[:-1]), largest),)
 
 
-def _pressures(row: PinResult, shape: PinShape) -> tuple[tuple[float, float, float], ...]:
-    bands, pressures = _bands(shape), []
+def _line_loads(
+    row: PinResult, marks: tuple[LoadMark, ...]
+) -> Iterator[tuple[float, float, float]]:
+    """Yield the ends of rings and the part of their load per length upwards on the drawing."""
+    by_band = {mark.band: mark for mark in marks if mark.size > 0.0}
     for band in row.joint.bands if row.joint else ():
-        diameter = bands[band.name][1] if band.name in bands else 0.0
-        z = band.ends or tuple(z for z, _ in band.line_load)
-        if diameter > 0.0:
-            loads = zip(z, z[1:], (abs(q) for _, q in band.line_load), strict=False)
-            pressures += [(start, end, q / diameter) for start, end, q in loads]
-    return tuple(pressures)
+        if band.name in by_band:
+            mark = by_band[band.name]
+            z = band.ends or tuple(z for z, _ in band.line_load)
+            for start, end, (_, load) in zip(z, z[1:], band.line_load, strict=False):
+                yield start, end, load * mark.up / mark.size

@@ -18,7 +18,7 @@ HEADROOM_FACTOR = 1.12  # over the largest stress
 MIN_TOP = 1e-300  # of an axis: what is smaller is nothing
 MAX_TICKS = 4  # of the stress
 ARROW_ROOM, MIN_ARROW_LENGTH = 26.0, 10.0  # of load arrows
-LOAD_COLOUR, SECTION_COLOUR, PRESSURE_COLOUR = "#0b5cad", "#9a4a00", "#9dbbe0"
+LOAD_COLOUR, SECTION_COLOUR = "#0b5cad", "#9a4a00"
 CURVE_STYLE = 'fill="none" stroke-width="1.4" stroke-linejoin="round"'
 MIN_SHARE = 0.02  # of the largest force: a smaller part is not drawn
 SYMBOL_RADIUS = 5.0  # of a force out of the plane
@@ -44,7 +44,7 @@ class StressPanel:
 
     def draw(self, unit: str) -> list[str]:
         """Return axis, key, curves and the mark of the governing place."""
-        parts = [*self._axis(unit), *self._pressure()]
+        parts = self._axis(unit)
         for z, stress in self.along.surface:
             parts += self._curve(z, stress, f'class="surface" stroke="{INK_COLOUR}"')
         z, stress = self.along.section
@@ -63,14 +63,12 @@ class StressPanel:
             parts.append(text(self.left - 5.0, self.y(tick) + 4.0, words, anchor="end"))
         keys = [("surface", bool(self.along.surface), f'stroke="{INK_COLOUR}"'),
                 ("section", len(self.along.section[0]) > 0,
-                 f'stroke="{SECTION_COLOUR}" stroke-dasharray="4 2"'),
-                ("contact", bool(self.along.pressure), f'stroke="{PRESSURE_COLOUR}"')]  # fmt: skip
+                 f'stroke="{SECTION_COLOUR}" stroke-dasharray="4 2"')]  # fmt: skip
         x, y = self.left, self.top - 6.0
         for name, there, style in keys:
             if there:
-                breadth = 6.0 if name == "contact" else 1.4
                 parts.append(f'<path d="M{x:.1f},{y - 4.0:.1f}h16" {style} '
-                             f'stroke-width="{breadth}" fill="none"/>')  # fmt: skip
+                             f'stroke-width="1.4" fill="none"/>')  # fmt: skip
                 parts.append(text(x + 20.0, y, name, anchor="start"))
                 x += 20.0 + wide(name) + 4.0
         return [*parts, text(x, y, f"[{unit}]", anchor="start")]
@@ -84,15 +82,6 @@ class StressPanel:
                 points = " ".join(f"{self.x(z[k]):.1f},{self.y(stress[k]):.1f}" for k in group)
                 parts.append(f'<polyline points="{points}" {style} {CURVE_STYLE}/>')
         return parts
-
-    def _pressure(self) -> list[str]:
-        bars = "".join(
-            f"M{self.x(z0):.2f},{self.foot:.2f}V{self.y(p):.2f}H{self.x(z1):.2f}V{self.foot:.2f}Z"
-            for z0, z1, p in self.along.pressure
-            if p > 0.0
-        )
-        style = f'class="pressure" fill="{PRESSURE_COLOUR}" fill-opacity="0.7"'
-        return [f'<path d="{bars}" {style}/>'] if bars else []
 
     def _allowed(self) -> list[str]:
         """Return the line at the stress that the required factor permits, where it is exceeded."""

@@ -170,10 +170,14 @@ def _row(pin: PinResult, results: Results) -> dict[str, str]:
     if places is None or places.section is None or places.governs == "surface":
         return {"error": error_words(pin), "factor": factor_range(pin), "row": ""}
     units, surface, by_section = results.units, places.surface, places.section
+    place = f"section at z = {engineering(by_section.z)} {units.length}"
+    if places.governs == "core":
+        depth = places.hardened[0].depth
+        place = f"core, {engineering(depth, 2)} {units.length} beneath the surface,"
     return {
         "error": f"± {engineering(surface.error_estimate, 2)}",
         "factor": "",
-        "row": f"The section at z = {engineering(by_section.z)} {units.length} governs: "
+        "row": f"The {place} governs: "
         f"{engineering(pin.max_von_mises)} {units.stress} ({error_words(pin)}), "
         f"safety factor {factor_range(pin)}.",
     }

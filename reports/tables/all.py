@@ -17,6 +17,7 @@ from reports.tables.loads.motion import (
     reactions_pin_axes_table,
     reactions_table,
 )
+from reports.tables.loads.wear import wear_table
 from reports.tables.published import published_reactions_table, published_values_table
 from reports.tables.strength.envelope import envelope_table
 from reports.tables.strength.fatigue import fatigue_tables
@@ -82,6 +83,7 @@ def load_tables(results: Results) -> list[Table[Any]]:
         tables.append(drop_table(results))
     if results.legs:
         tables.append(leg_table(results.legs))
+    tables.append(wear_table(results))
     # All tables of a linkage, so that every run has the same files.
     full = [table for table in tables if len(table)]
     return full + (linkage_tables(results) if results.motion else [])

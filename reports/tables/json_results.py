@@ -20,7 +20,9 @@ from reports.data.results import (
 from reports.format.numbers import finite
 from reports.format.words import headline
 from reports.tables.column import Column, Table, fields, json_of
+from reports.tables.loads.wear import wear_table
 from reports.tables.strength.fatigue import fatigue_json
+from reports.tables.strength.lets_go import lets_go_table
 from reports.tables.strength.limit_load import limit_load_json
 from reports.tables.strength.margins import margins_table
 from reports.tables.strength.requirements import requirements_table
@@ -85,10 +87,12 @@ def to_json(results: Results) -> dict[str, Any]:
         "requirements": requirements_table(results).records(),
         "lugs": lugs_table(results).records(),
         "margins": margins_table(results).records(),
+        "lets_go": lets_go_table(results).records(),
         "changes": [asdict(change) for change in results.changes],
         "sensitivities": sensitivities_json(results),
         "fatigue": fatigue_json(results.fatigue),
         "loads": [_loads(results, table) for table in results.reactions],
+        "wear": wear_table(results).records(),
         "drops": [_drop(d) for d in results.drops],
         "provenance": [asdict(entry) for entry in results.provenance],
         "inputs": results.inputs,

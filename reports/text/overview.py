@@ -21,6 +21,7 @@ from reports.format.units import unit_name
 from reports.format.words import undecided_because
 from reports.tables.strength.changes import singularity_remedies
 from reports.tables.strength.margins import not_made_briefly
+from reports.text.lug_advice import lug_advice, lug_peaks
 
 MAX_NAMED_PINS = 6  # in a sentence; of more, their number is given
 MAX_NAMED_CASES = 4
@@ -60,6 +61,7 @@ def why(results: Results, lines: Sequence[PinLine], most: int) -> Content:
     shapes = {shape.pin: shape for shape in results.shapes}
     failing = [line for line in bad if line.outcome in (FAILS, YIELDS)] or bad
     parts = [_path(results, solved), _dominating(failing), _peaks(results, bad[:most], shapes)]
+    parts.append(lug_peaks(lines, results.units))
     return [part for part in parts if part]
 
 
@@ -82,7 +84,7 @@ def actions(results: Results, lines: Sequence[PinLine], study: str = "") -> Acti
 
     study: its path, by default its name.
     """
-    repairs = [*_exceeded(lines), *_singular(lines)]
+    repairs = [*lug_advice(results, lines), *_exceeded(lines), *_singular(lines)]
     if not results.changes:
         return Actions(repairs, [], "")
     needed = [line for line in lines if line.diameter and line.diameter.needed]
@@ -348,7 +350,8 @@ def _peaks(results: Results, lines: Sequence[PinLine], shapes: dict[str, PinShap
 
 def _exceeded(lines: Sequence[PinLine]) -> Content:
     """Return a sentence on each check by formula that a pin fails, with what it lacks."""
-    failing = [x for x in lines if x.check.row is None and x.outcome == FAILS and x.check.factor]
+    checks = [x for x in lines if x.check.row is None and not x.check.lug]
+    failing = [x for x in checks if x.outcome == FAILS and x.check.factor]
     return [
         f"{x.pin} needs {engineering(100.0 * (x.check.used - 1.0), 2)} % more strength, or less "
         f"load ({x.check.check})."

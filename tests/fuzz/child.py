@@ -27,17 +27,21 @@ SIGNS = re.compile(
 
 @dataclass(frozen=True)
 class End:
-    """How a command ended: its status (None when it had to be killed) and what it printed."""
+    """How a command ended: its status (None when it had to be killed) and what it printed.
+
+    seconds: of processor time that it had.
+    """
 
     status: int | None
     out: str
     err: str
+    seconds: int = SECONDS
 
     @property
     def wrong(self) -> str:
         """What a user should not have met; empty when all is well."""
         if self.status is None or (self.status == 3 and OUT_OF_TIME in self.err):
-            return f"no end after {SECONDS} s"
+            return f"no end after {self.seconds} s"
         if self.status not in (0, 1, 2, 3):
             return f"status {self.status}"
         if sign := SIGNS.search(self.err):
@@ -50,27 +54,28 @@ class End:
         return "" if errors or self.status < 2 else "no message"
 
 
-def run(folder: Path, arguments: list[str]) -> End:
+def run(folder: Path, arguments: list[str], seconds: int = SECONDS) -> End:
     """Run a pinstress command in a folder; forked, so that nothing is imported anew."""
     out, err = folder.with_suffix(".out"), folder.with_suffix(".err")
     process = multiprocessing.get_context("fork").Process(
-        target=_serve, args=(folder, arguments, out, err)
+        target=_serve, args=(folder, arguments, out, err, seconds)
     )
     process.start()
-    process.join(5.0 * SECONDS)  # one that waits takes no processor time
+    process.join(5.0 * seconds)  # one that waits takes no processor time
     process.kill()
     process.join()
     status = process.exitcode
     if status in (-signal.SIGXCPU, -signal.SIGKILL):
         status = None
-    return End(status, out.read_text(errors="replace"), err.read_text(errors="replace"))
+    said, warned = (path.read_text(errors="replace") for path in (out, err))
+    return End(status, said, warned, seconds)
 
 
-def _serve(folder: Path, arguments: list[str], out: Path, err: Path) -> None:
+def _serve(folder: Path, arguments: list[str], out: Path, err: Path, seconds: int) -> None:
     sys.stdout, sys.stderr = out.open("w"), err.open("w")  # pytest has its own there
     os.dup2(sys.stdout.fileno(), 1)
     os.dup2(sys.stderr.fileno(), 2)
-    resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS + 5))
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     os.chdir(folder)
     status = run_command_line(arguments)

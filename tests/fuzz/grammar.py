@@ -8,15 +8,19 @@ import random
 import re
 import shutil
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
-from tests.fuzz import draw_mechanism, draw_pin
+from tests.fuzz import draw_asked, draw_cut, draw_joint, draw_machine, draw_mechanism, draw_pin
 from tests.fuzz.child import End, run
 from tests.fuzz.quantity import Tree, write
 
-COMMAND = ("run", "study.toml", "--no-cache", "--no-pictures", "--vtk", "none", "--jobs", "1",
-           "--memory-limit", "500", "--tolerance", "0.2")  # fmt: skip
+TOLERANCE = 0.2  # of all studies
+OPTIONS = {
+    "run": ("--no-cache", "--no-pictures", "--vtk", "none", "--jobs", "1", "--memory-limit", "500"),
+    "sweep": ("--jobs", "1", "--quiet"),
+}
+SECONDS = 120  # of processor time
 
 KINDS = ("done", "not all reached", "refused", "numerics", "wrong")  # the first by status
 
@@ -31,11 +35,12 @@ REASONS = {
 
 @dataclass(frozen=True)
 class Study:
-    """A drawn study; classes: to which it belongs."""
+    """A drawn study; classes: to which it belongs; command: what it is for."""
 
     seed: int
     tree: Tree
     classes: frozenset[str]
+    command: str = "run"
 
     def write(self, folder: Path) -> Path:
         """Put it in a folder, in its own spelling of units."""
@@ -62,7 +67,9 @@ class Result:
         """What was said, without the study's own names and numbers."""
         if self.kind == "wrong":
             return self.end.wrong or self._odd
-        said = self.end.err.partition("the solution failed: ")[2] or self.end.err
+        lines = [x for x in self.end.err.splitlines() if not x.startswith(("Warning", "Note"))]
+        err = "\n".join(lines)
+        said = err.partition("the solution failed: ")[2] or err
         said = re.sub(r"^(\w+ \([-\w]+\)(, |: ))+", "", said.partition("\n")[0])
         said = re.sub(r"Error: |study\.toml(:\d+)?: *|pin [A-Z](: )?", "", said)
         return re.sub(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?", "#", said)[:120]
@@ -78,6 +85,8 @@ class Result:
     @property
     def _odd(self) -> str:
         """What is no result of a valid study: all loads here are held or in balance."""
+        if self.study.command != "run":
+            return ""
         if not self.rows:
             return "no results"
         for row in self.rows:
@@ -89,10 +98,16 @@ class Result:
 
 
 def draw(seed: int) -> Study:
-    """Every third one has a linkage, the others stated loads."""
+    """Of each kind in turn; every second one is asked for more than stress."""
     rng = random.Random(f"study {seed}")
-    study = with_linkage(rng) if seed % 3 == 0 else with_given_loads(rng)
-    return replace(study, seed=seed)
+    study, command = KINDS_OF_STUDY[seed % len(KINDS_OF_STUDY)](rng), ["run"]
+    tree, classes = study.tree, study.classes
+    if seed // len(KINDS_OF_STUDY) % 2:
+        tree, more = draw_asked.asked(rng, tree, command)
+        classes |= more
+    rest = tree.get("analysis", {"limit_load": "never"})
+    tree["analysis"] = rest | {"tolerance": TOLERANCE}
+    return Study(seed, tree, classes, command[0])
 
 
 def _head(rng: random.Random) -> Tree:
@@ -129,16 +144,59 @@ def _clamped(clamp: list[str]) -> str:
 
 def with_linkage(rng: random.Random) -> Study:
     """A linkage and one or two of its pins."""
-    drawn = draw_mechanism.mechanism(rng)
+    return _on_pins(rng, draw_mechanism.mechanism(rng))
+
+
+def with_machine(rng: random.Random) -> Study:
+    """A machine or a truss and one or two of its pins."""
+    return _on_pins(rng, draw_machine.machine(rng))
+
+
+def _on_pins(rng: random.Random, drawn: draw_mechanism.Drawn) -> Study:
     classes, pins = {"linkage", *drawn.classes}, {}
-    for joint in rng.sample(sorted(drawn.joints), rng.choice((1, 1, 2))):
+    joints = sorted(name for name, (connections, _) in drawn.joints.items() if connections)
+    for joint in rng.sample(joints, min(len(joints), rng.choice((1, 1, 2)))):
         connections, _ = drawn.joints[joint]
         shape = draw_pin.profile(rng, len(connections))
         classes |= shape.classes
         clamp = [rng.choice(("start", "end"))]  # links beside each other leave a couple
         pins[joint] = draw_pin.table(shape, clamp, list(connections))
     parts: Tree = {"mechanism": drawn.mechanism, "pin": pins, "case": drawn.cases}
+    if "sequence" in classes:
+        steps = [{"case": name} | ({} if case["kind"] == "motion" else {"duration": "2 s"})
+                 for name, case in drawn.cases.items()]  # fmt: skip
+        parts["sequence"] = {"cycle": {"steps": steps * 2}}
     return Study(0, _head(rng) | parts, frozenset(classes))
+
+
+def with_joint(rng: random.Random) -> Study:
+    """A pin in lugs."""
+    pin, forces, classes = draw_joint.joint(rng, "P")
+    return _one_pin(rng, pin, forces, classes)
+
+
+def with_cut(rng: random.Random) -> Study:
+    """A pin with a cut or a cone."""
+    pin, forces, classes = draw_cut.pin(rng, "P")
+    return _one_pin(rng, pin, forces, classes)
+
+
+def _one_pin(rng: random.Random, pin: Tree, forces: Tree, classes: set[str]) -> Study:
+    """One pin in one case or two, the second with part of the forces the other way round."""
+    spread = rng.choice(("uniform", "cosine"))
+    cases: Tree = {"pull": {"kind": "given", "distribution": spread, "forces": forces}}
+    if rng.random() < 0.3:
+        back = {name: [f * -0.4 for f in pull] for name, pull in forces.items()}
+        cases["push"] = cases["pull"] | {"forces": back}
+    head = _head(rng)
+    head["material"] = head["material"] | {"bronze": draw_joint.BRONZE}
+    return Study(0, head | {"pin": {"P": pin}, "case": cases}, frozenset(classes))
+
+
+KINDS_OF_STUDY = (
+    with_linkage, with_given_loads, with_joint, with_cut, with_machine, with_joint,
+    with_given_loads,
+)  # fmt: skip
 
 
 def ended(seed: int, place: Path) -> Result:
@@ -147,7 +205,8 @@ def ended(seed: int, place: Path) -> Result:
     folder.mkdir()
     study = draw(seed)
     study.write(folder)
-    end, results = run(folder, [*COMMAND]), folder / "out" / "study" / "results.json"
+    command = [study.command, "study.toml", *OPTIONS[study.command]]
+    end, results = run(folder, command, SECONDS), folder / "out" / "study" / "results.json"
     rows = json.loads(results.read_text())["pins"] if results.is_file() else []
     found = Result(study, end, tuple(rows))
     shutil.rmtree(folder / "out", ignore_errors=True)

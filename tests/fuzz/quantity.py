@@ -31,6 +31,9 @@ UNITS: dict[str, tuple[tuple[str, float], ...]] = {
     "acceleration": (("m/s^2", 1.0),),
     "velocity": (("m/s", 1.0), ("ft/s", 0.3048)),
     "angle": (("rad", 1.0),),
+    "stiffness": (("N/m", 1.0), ("N/mm", 1e3)),
+    "torsional stiffness": (("N m/rad", 1.0),),
+    "damping": (("N s/m", 1.0),),
     "angular velocity": (("rad/s", 1.0),),
     "angular acceleration": (("rad/s^2", 1.0),),
 }

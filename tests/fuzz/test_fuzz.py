@@ -18,7 +18,6 @@ from pinstress.study.schema.units import (
     to_si,
 )
 from tests.fuzz.kills import kill, whole_run
-from tests.support.each import sampled
 
 ROOT = Path(__file__).parents[2]
 
@@ -44,8 +43,14 @@ def test_broken_input_ends_with_a_message_or_a_result(kind: str, first: int, cou
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("first", "count"), sampled([(1, 6), (7, 60)], every=2))
+@pytest.mark.parametrize(
+    ("first", "count"),
+    [
+        (1, 7),  # one of each kind, which takes half a minute; all else is slow
+        pytest.param(8, 21, marks=pytest.mark.slow),
+        pytest.param(29, 100, marks=[pytest.mark.slow, pytest.mark.long]),
+    ],
+)
 def test_valid_studies_have_results(first: int, count: int) -> None:
     """Drawn by a grammar; `python -m tests.fuzz grammar` draws others. What is refused or fails
     must be so for a reason that is listed there.

@@ -127,6 +127,7 @@ class _Answer:
     yielding, moving: how much each rigid motion takes off the forces and adds to the gaps, (U, Y).
     system, right: equations (Y, Y), (Y,) of the motions, without the required resultants.
     motions: change of the gap by each motion, (U, Y).
+    reach: the largest change of a gap by each motion, (Y,), 1 where it moves nothing.
     """
 
     force: Floats
@@ -136,13 +137,21 @@ class _Answer:
     system: Floats
     right: Floats
     motions: Floats
+    reach: Floats
+
+    def motion(self, lost: Floats) -> Floats:
+        """The motions (Y,) of least size that make up for lost resultants."""
+        # Every motion counts as what it moves at most: otherwise a turn, whose numbers are those
+        # of a shift over a length, is taken for one that moves nothing where few cells touch.
+        system = self.system / np.outer(self.reach, self.reach)
+        solved = np.linalg.lstsq(system, lost / self.reach)[0]
+        return np.asarray(solved / self.reach, dtype=np.float64)
 
     def under(self, required: Floats) -> tuple[Floats, Floats, Floats]:
         """The forces, gaps and rigid motions with which the cells have the required resultants."""
         motion, lost = np.zeros(len(required)), self.right - required
         for _ in range(2):  # once more for round-off: forces are small where gaps are large
-            # what moves nothing is zero
-            motion += np.asarray(np.linalg.lstsq(self.system, lost)[0], dtype=np.float64)
+            motion += self.motion(lost)
             force = self.force - self.yielding @ motion
             lost = self.motions.T @ force - required
         return force, self.gap + self.moving @ motion, motion
@@ -178,6 +187,7 @@ class ContactProblem:
         self._e_r = np.tile(e_r, (len(bands.z), 1))  # (U, 2)
         self._link = np.repeat(bands.links[bands.band], sectors)
         self._count = int(bands.links.max()) + 1
+        self._tail = float(np.max(tail))
         self._fixed = self._of_cells(flexibility, tail)
         if besides is not None:
             self._fixed = self._fixed + besides
@@ -201,8 +211,8 @@ class ContactProblem:
         self._motions, tilts = self.rigid(bands, tilt)
         self._compliance = self._fixed + tilts @ tilts.T if tilts.size else self._fixed
         self._soft = SOFT_SPRING_STIFFNESS / np.abs(self._compliance).max()
-        # of the motions, (Y, Y): a turn counts as the shift at the far end
-        self._scale = np.diag(np.square(self._motions).max(axis=0))
+        largest = np.abs(self._motions).max(axis=0)  # a turn counts as the shift at the far end
+        self._reach = np.where(largest > 0.0, largest, 1.0)
         self._answers: dict[bytes, _Answer] = {}
 
     @property
@@ -271,10 +281,10 @@ class ContactProblem:
 
         Raises: SolveError where the active set does not settle.
         """
+        forces = np.asarray(forces, dtype=np.float64)
         required = self.required_resultants(forces, couple)
-        facing = self._facing(forces)
-        state = self._settled(required, facing if start is None else start.ravel().copy())
-        state = state or self._from_larger(required, facing)
+        first = self._facing(forces) if start is None else start.ravel().copy()
+        state = self._settled(required, first) or self._from_larger(required, forces)
         if state is None:
             raise SolveError(
                 f"contact does not settle in {MAX_ACTIVE_SET_STEPS} steps", "contact-unsettled"
@@ -297,6 +307,11 @@ class ContactProblem:
             if not (wrong_force | wrong_gap).any():
                 self._require_balance(force, required, answer)
                 return self._state(force, gap, motion, step)
+            # Where fewer cells touch than hold the pin, it turns far and most of the others
+            # penetrate: only the deepest of each band is then near to those that will touch.
+            loose = wrong_gap & (self._open > 0.0)
+            if np.count_nonzero(loose) > np.count_nonzero(active):
+                wrong_gap = (wrong_gap & ~loose) | self._deepest(gap, loose)
             key = active.tobytes()
             # A set that comes back is a cycle. Changing the first wrong cell alone, as in Murty's
             # least-index method, leads out of it.
@@ -308,7 +323,17 @@ class ContactProblem:
             seen.add(key)
         return None
 
-    def _from_larger(self, required: Floats, facing: Mask) -> ContactState | None:
+    def _deepest(self, gap: Floats, among: Mask) -> Mask:
+        """A mask of the cell of least gap of each band, among some."""
+        out, rings = np.zeros_like(among), len(self.bands.z)
+        shallow = np.where(among, gap, np.inf).reshape(rings, self.sectors)
+        for band in range(int(self.bands.band.max()) + 1):
+            rows = np.flatnonzero(self.bands.band == band)
+            cell = int(shallow[rows].argmin())
+            out[rows[cell // self.sectors] * self.sectors + cell % self.sectors] = True
+        return out & among
+
+    def _from_larger(self, required: Floats, forces: Floats) -> ContactState | None:
         """The contact found by continuation from larger loads, under which it settles, down to the
         given ones.
 
@@ -320,7 +345,7 @@ class ContactProblem:
         times, state = 1.0, None
         while state is None and times < MAX_LOAD_FACTOR:
             times *= LOAD_GROWTH
-            state = self._settled(times * required, facing.copy())
+            state = self._settled(times * required, self._facing(times * forces))
         factor = LOAD_REDUCTION
         while state is not None and times > 1.0 and factor > MIN_LOAD_REDUCTION:
             smaller = max(1.0, times / factor)
@@ -346,7 +371,7 @@ class ContactProblem:
         C, G = self._compliance, self._motions
         rows = np.flatnonzero(active)
         force, yielding = np.zeros(len(active)), np.zeros(G.shape)
-        system, right = self._soft * self._scale, np.zeros(G.shape[1])
+        system, right = self._soft * np.diag(self._reach**2), np.zeros(G.shape[1])
         C = C[rows]  # symmetric
         if len(rows):
             factor = cho_factor(C[:, rows], lower=True, check_finite=False, overwrite_a=True)
@@ -358,7 +383,7 @@ class ContactProblem:
         change = (both.T @ C).T
         gap, moving = self._open + change[:, -1], G - change[:, :-1]
         gap[rows], moving[rows] = 0.0, 0.0
-        return _Answer(force, yielding, gap, moving, system, right, G)
+        return _Answer(force, yielding, gap, moving, system, right, G, self._reach)
 
     def required_resultants(
         self, forces: Floats, couple: tuple[float, float] = (0.0, 0.0)
@@ -381,8 +406,7 @@ class ContactProblem:
         """
         # A couple counts as the force at the far end that makes it, so that all residuals are
         # forces.
-        arm = np.sqrt(np.diag(self._scale))  # of each motion
-        residual = np.abs(self._motions.T @ force - required) / np.where(arm > 0.0, arm, 1.0)
+        residual = np.abs(self._motions.T @ force - required) / self._reach
         lost = residual.max(initial=0.0)
         if lost <= BALANCE_TOLERANCE * np.abs(required).max(initial=force.max(initial=0.0)):
             return
@@ -412,15 +436,31 @@ class ContactProblem:
         dual[rows] = cho_solve(cho_factor(C, lower=True, check_finite=False), wanted[rows])
         of_motion, lost = np.zeros(len(required)), G.T @ dual[rows]
         for _ in range(2):  # once more for round-off, as contact itself
-            of_motion += np.asarray(np.linalg.lstsq(answer.system, lost)[0], dtype=np.float64)
+            of_motion += answer.motion(lost)
             lost = G.T @ (dual[rows] - answer.yielding[rows] @ of_motion)
         return AdjointContact(force, motion, dual - answer.yielding @ of_motion, of_motion)
 
     def _facing(self, forces: Floats) -> Mask:
-        """A mask of the cells that face the load of their band."""
-        towards = -np.einsum("ua,ua->u", self._e_r, np.asarray(forces)[self._link])
-        size = np.linalg.norm(forces, axis=1)[self._link]
-        return np.asarray((towards > FACING_COSINE * size) & (size > 0.0))
+        """A mask of the cells that face the load of their band, as far around as it presses."""
+        size = np.linalg.norm(forces, axis=1)
+        towards = -np.einsum("ua,ua->u", self._e_r, forces[self._link])
+        cosine = self._contact_cosine(size)[self._link] * np.linalg.norm(self._e_r[0])
+        return np.asarray((towards > cosine * size[self._link]) & (size[self._link] > 0.0))
+
+    def _contact_cosine(self, size: Floats) -> Floats:
+        """The cosine (L,) of the half angle of contact by the size (L,), N, of the links' forces,
+        if these were even along their bands: a guess.
+        """
+        # Persson's plane contact in the limit of large gaps, E* gap / Q = 2 / (pi tan^2(half / 2)),
+        # too wide for small ones; 4 R / E* is the tail of pin and lug together.
+        gap, length = np.full(len(size), np.inf), np.zeros(len(size))
+        link = self.bands.links[self.bands.band]
+        np.minimum.at(gap, link, self.bands.gap)
+        np.add.at(length, link, self.bands.length)
+        per_length = 4.0 * self.bands.radius.max() / self._tail * gap * length
+        half = 2.0 * np.arctan2(np.sqrt(2.0 * size), np.sqrt(np.pi * np.maximum(per_length, 0.0)))
+        nearest = math.cos(1.01 * math.pi / self.sectors)  # one cell at least
+        return np.asarray(np.clip(np.cos(half), FACING_COSINE, nearest))
 
     def _state(self, force: Floats, gap: Floats, motion: Floats, steps: int) -> ContactState:
         shape = (len(self.bands.z), self.sectors)

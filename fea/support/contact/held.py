@@ -21,7 +21,8 @@ import numpy as np
 from fea.core.equilibrium import out_of_balance
 from fea.core.linear_solver import SolveError
 from fea.core.peak import Maximum, Reason, meets_limit
-from fea.core.pin_loads import PinLoads
+from fea.core.pin_loads import Floats, PinLoads
+from fea.core.places import CaseCrushing
 from fea.core.requirement import Requirement
 from fea.core.verdict import Evidence
 from fea.cut.field import CutField
@@ -31,17 +32,16 @@ from fea.harmonic.field import HarmonicField
 from fea.section.place import FoundSection, found_section
 from fea.section.row import row_of, with_contact
 from fea.support.cell_pressure import CellPressure
+from fea.support.contact.case_crushing import case_crushing, pressed_most
 from fea.support.contact.contact_place import contact_place
-from fea.support.contact.cut_in_lugs import (
-    cuts_in_lugs,
-    error_of,
-    with_cuts_in_lugs,
-)
+from fea.support.contact.cut_in_lugs import cuts_in_lugs, error_of, with_cuts_in_lugs
+from fea.support.contact.friction import band_torques, rubs
 from fea.support.contact.pressed_cases import Candidates, Compared, PressedCases
 from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
 from fea.support.contact.unit_pressures import unit_model, unit_patterns
 from fea.support.contact.variations import ResolutionComparison, compare, uncompared
 from fea.support.contact.what_contact_says import contact_result
+from fea.support.hardened_row import PartSearch, hardened_row, in_core
 from fea.support.lugs.fit import fitted, on_structure
 from fea.support.lugs.links import link_forces
 from fea.support.lugs.rings import whole_names
@@ -242,8 +242,10 @@ class HeldContact:
         return replace(requirement, besides=cells, elsewhere=self._in_sections())
 
     def _in_sections(self) -> dict[str, float]:
-        """The largest stress of sections by case, Pa; none for pins with cuts."""
-        if self.cut is not None:
+        """The largest stress of sections by case, Pa; none for pins with cuts, and for those with a
+        hardened surface, beneath which stress matters, too.
+        """
+        if self.cut is not None or self.problem.material.hardened:
             return {}
         return {
             case: self.contact.sections[case].largest(self.contact.on_rings(links))[0]
@@ -268,12 +270,20 @@ class HeldContact:
         section, links = None, None
         if self.cut is None:
             section = self._section(case, known.section.cells.section, requirement)
-            links = links_at(self.problem, case, section)
+            links = links_at(self.problem, case, section.time)
         else:
             places = cuts_in_lugs(self.cut, (lug.connection for lug in model.lugs))
             surface = with_cuts_in_lugs(surface, places)
             error += error_of(places)
         peak = row_of(surface, section, material, requirement.tolerance, links)
+        search: PartSearch | None = None
+        if material.hardened:
+            cells = max(error, known.surface.cells.beneath), known.section.cells.section
+            search = self._parts(reading, case, surface, cells, requirement)
+            peak = hardened_row(
+                model.pin, peak, surface, search.of(material.strength_parts(model.pin.length)),
+                requirement.tolerance, lambda x: links_at(self.problem, case, x.time),
+            )  # fmt: skip
         required = requirement.of_case(case.case).required
         solution = self._at_row(reading, peak, case)
         contact = self.contact.joined(solution.loads.links, solution.instant)
@@ -282,10 +292,20 @@ class HeldContact:
             contact, material, answer, reading.loads, required, error, row,
             deep=not self.alone,
         )  # fmt: skip
+        if search is not None:
+            place = in_core(place, search, material.strength_parts(model.pin.length))
+            place = replace(place, crushing=self._crushing(case, contact))
         over = known.row.range(row, place.beneath)
-        joint = contact_result(contact, over, solution.loads, known.row.left_out)
+        torques = self._friction_torques(solution.loads.links)
+        joint = contact_result(contact, over, solution.loads, known.row.left_out, torques)
         peak = with_contact(peak, place)
         return replace(solution, peak=peak, joint=joint, pressure=_pressure(contact))
+
+    def _friction_torques(self, links: PinLoads) -> Floats | None:
+        """The largest torque of friction of each lug over the loads' instants, (B,) N m."""
+        if not rubs(self.model.lugs):
+            return None
+        return np.asarray(band_torques(self.model, self.contact.states(links)).max(axis=0))
 
     def _evidence(
         self, reading: StressReading, case: PinLoads, contact: JointContact, cells: float
@@ -335,6 +355,36 @@ class HeldContact:
             cells,
         )
 
+    def _parts(
+        self,
+        reading: StressReading,
+        case: PinLoads,
+        surface: Evidence,
+        cells: tuple[float, float],
+        requirement: Requirement,
+    ) -> PartSearch:
+        """The search for the largest stresses of the parts of a pin with a hardened surface.
+
+        cells: relative errors beneath the surface and of sections.
+        """
+        of, between = self.contact, self.problem.between.get(case.case)
+        links, sections = of.instants[case.case], of.sections[case.case]
+        on_rings = on_pin = None
+        if between is not None:
+            on_rings = lambda times: of.on_rings(between(times))  # noqa: E731
+            on_pin = lambda times: of.press(between(times))  # noqa: E731
+        at_sections = of.on_rings(links), on_rings
+        return PartSearch(
+            reading, self.model.pin, on_pin, surface, sections, at_sections, requirement.tolerance,
+            cells,
+        )  # fmt: skip
+
+    def _crushing(self, case: PinLoads, at_row: JointContact) -> CaseCrushing | None:
+        """The stress beneath the pressures at the row's instant, and where links pull most."""
+        links, material = self.contact.instants[case.case], self.problem.material
+        most = (self.contact.joined(links, t) for t in pressed_most(links).tolist())
+        return case_crushing((at_row, *most), material.hardened, material.poisson_ratio)
+
     def _at_row(self, reading: StressReading, peak: Maximum, case: PinLoads) -> Solution:
         """The solution with the loads at all samples of a case, at the instant of its row."""
         loads, links, instant = reading.loads, self.contact.press(case), reading.instant
@@ -353,9 +403,9 @@ def _pressure(contact: JointContact) -> CellPressure:
     return CellPressure(contact.bands, pressed.pressure, pressed.angle)
 
 
-def links_at(problem: PinProblem, case: PinLoads, section: FoundSection) -> PinLoads:
-    """The loads of the links at the instant of a section."""
-    time, between = section.time, problem.between.get(case.case)
+def links_at(problem: PinProblem, case: PinLoads, time: float | None) -> PinLoads:
+    """The loads of the links at an instant of a case, s; None without a motion."""
+    between = problem.between.get(case.case)
     if time is None or case.times is None:
         return case
     if between is not None:

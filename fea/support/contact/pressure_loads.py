@@ -10,11 +10,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.core.pin_loads import Floats, PinLoads, UnitLoad
+from fea.core.pin_loads import Floats, LoadAmounts, PinLoads, UnitLoad
 from fea.core.pressed import PressedArcs
 from geometry import Pin
 
@@ -45,6 +46,14 @@ class PressureLoads(PinLoads):
         """The resultants of the pressures on the rings, and the shares of axial forces."""
         return PinLoads(
             self.case, self.surfaces, self.forces, self.moments, body=self.body, times=self.times
+        )
+
+    @property
+    def in_sections(self) -> LoadAmounts:
+        """The loads `on_rings`, and the tractions along the axis that sections feel."""
+        axial = {u: x for u, x in self.acting.items() if u.kind == "axial" and u.n < 2}
+        return LoadAmounts(
+            self.case, {**self.on_rings.coefficients(), **axial}, len(self), self.pressed
         )
 
     def coefficients(self) -> Mapping[UnitLoad, Floats]:
@@ -92,9 +101,7 @@ class PressureModes:
         """
         ring_loads = resultants(self.pin, self.rings, waves, links)
         acting = dict(others_along(self.pin, self.rings, links).coefficients())
-        for n, (wave, patterns) in enumerate(zip(waves, self.by_harmonic, strict=True)):
-            amounts = np.einsum("trp,kr->ktp", wave, patterns)
-            acting.update(zip(self._units[n], amounts, strict=True))
+        acting.update(self.amounts(waves))
         return PressureLoads(
             links.case,
             self.rings,
@@ -106,6 +113,19 @@ class PressureModes:
             of_links=links,
             pressed=pressed,
         )
+
+    def amounts(
+        self, waves: Floats, kind: Literal["pressure", "axial"] = "pressure"
+    ) -> dict[UnitLoad, Floats]:
+        """The amount (T, 2) of each pattern in harmonics (N + 1, T, R, 2), Pa.
+
+        kind: of the tractions.
+        """
+        out: dict[UnitLoad, Floats] = {}
+        for n, (wave, patterns) in enumerate(zip(waves, self.by_harmonic, strict=True)):
+            units = (unit._replace(kind=kind) for unit in self._units[n])
+            out.update(zip(units, np.einsum("trp,kr->ktp", wave, patterns), strict=True))
+        return out
 
     @cached_property
     def _units(self) -> tuple[tuple[UnitLoad, ...], ...]:

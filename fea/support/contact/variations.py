@@ -8,7 +8,7 @@ act on one mesh, the first: its error is in all maxima alike, so that their rati
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,11 +23,12 @@ from fea.section.section_stress import SectionField
 from fea.singular.singularities import singularities_of
 from fea.support.contact.coarser_cells import on_coarser_cells
 from fea.support.contact.contact import ContactProblem, ContactState
+from fea.support.contact.friction import SLIDING, TURNING, coefficient_words, rubbed, rubs
 from fea.support.contact.pressure_loads import MODE_TOLERANCE, PressureLoads, PressureModes, stacked
 from fea.support.contact.solve_joint import ContactModel, JointContact
 from fea.support.lugs.changes import joint_variations
 from fea.support.lugs.rings import USUAL_RING_COUNT
-from fea.support.records import JointRange, Variation
+from fea.support.records import FRICTION, JointRange, Variation
 
 # Of the tolerance: the part that the cells may use. Chosen by judgement; the rest is for meshes and
 # instants (MIN_TOLERANCE_SHARE of fea.core.requirement).
@@ -87,7 +88,8 @@ class ResolutionComparison:
             replace(x, max_von_mises=largest * x.max_von_mises, beneath=below * (x.beneath or 0.0))
             for x in self.over
         )
-        ends = [largest, *(x.max_von_mises for x in over)]
+        ends = [largest, *(x.max_von_mises for x in over if x.what != FRICTION)]
+        ends += [max(largest, x.max_von_mises) for x in over if x.what == FRICTION]
         return JointRange((min(ends), max(ends)), over)
 
     def is_at(self, links: PinLoads, case: PinLoads) -> bool:
@@ -141,7 +143,9 @@ def compare(
         for contact, both, others in zip(at, exact, varied, strict=True)
     ]
     stress = _at_places(model, requirement, every)
-    for contact, names, loads, why in zip(at, over, every, missing, strict=True):
+    by_friction = _by_friction(model, requirement, at, vary, patterns)
+    every_contact = zip(at, over, every, missing, by_friction, strict=True)
+    for contact, names, loads, why, more in every_contact:
         first, twice, *others = (stress.pop(0) for _ in loads)
         like = first if few else twice  # on the same cells as the others
         ratios = tuple(
@@ -154,8 +158,52 @@ def compare(
         )
         cells = _by_cells(first, twice, model.cells.rings)
         left_out = f"not included: {'; '.join(why)}" if why else ""
-        out.append(ResolutionComparison(first, cells, contact.loads.links, ratios, left_out))
+        over_all = ratios + more
+        out.append(ResolutionComparison(first, cells, contact.loads.links, over_all, left_out))
     return tuple(out)
+
+
+def _by_friction(
+    model: ContactModel,
+    requirement: Requirement,
+    at: Sequence[JointContact],
+    vary: Sequence[bool],
+    known: PressureModes,
+) -> list[tuple[Variation, ...]]:
+    """The variations of each contact by the friction of lugs, relative to those without.
+
+    They are compared among themselves, on a solution of their own.
+    known: patterns of the pressures.
+    """
+    if not rubs(model.lugs):
+        return [()] * len(at)
+    out: list[tuple[Variation, ...]] = []
+    for contact, so in zip(at, vary, strict=True):
+        if not so:
+            out.append(())
+            continue
+        without, changed = rubbed(model, contact, known)
+        plain, *stress = _at_places(model, requirement, [[without], *changed.values()])
+        pairs = [(x.row / (plain.row or 1.0), x.beneath / (plain.beneath or 1.0)) for x in stress]
+        ratios = {name: [pairs.pop(0) for _ in loads] for name, loads in changed.items()}
+        out.append(tuple(_friction_variations(coefficient_words(model.lugs), ratios)))
+    return out
+
+
+def _friction_variations(
+    words: str, ratios: dict[str, list[tuple[float, float]]]
+) -> Iterator[Variation]:
+    """Yield the bounds by friction of the row and of what lies beneath, relative to those without.
+
+    words: the coefficient. ratios: of stress, by the kind of sliding.
+    """
+    for name, which, kind in (
+        ("load growing", min, SLIDING),
+        ("load falling after a larger one", max, SLIDING),
+        (TURNING, max, TURNING),
+    ):
+        row, deep = (which(each) for each in zip(*ratios[kind], strict=True))
+        yield Variation(FRICTION, f"{words}, {name}", row, beneath=deep)
 
 
 def uncompared(contact: JointContact) -> ResolutionComparison:
@@ -195,10 +243,10 @@ def _at_places(
     singular = singularities_of(model.pin, model.material, (), (whole,), requirement.distance)
     problem = SectionProblem(model.pin, model.material, (), (whole,), singular, model.first)
     section = harmonic_solution(problem, 0, 1.0)
-    on_rings = whole.on_rings
+    in_sections = whole.in_sections
     places = (
         HarmonicField(section, singular).maxima(whole),
-        SectionField(model.pin, model.material, (), (on_rings,)).maxima(on_rings),
+        SectionField(model.pin, model.material, (), (in_sections,)).maxima(in_sections),
         maxima_beneath(section.fields, whole, singular),
     )
     return [AtPlaces(*stress) for stress in zip(*(x.tolist() for x in places), strict=True)]

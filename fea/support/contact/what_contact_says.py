@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea.core.pin_loads import PinLoads
+from fea.core.pin_loads import Floats, PinLoads
 from fea.support.contact.bending import joint_forces, stations
 from fea.support.contact.solve_joint import JointContact
 from fea.support.records import BandContact, JointRange, JointResult
@@ -15,17 +15,22 @@ def contact_result(
     over: JointRange | None,
     case: PinLoads,
     remark: str = "",
+    torques: Floats | None = None,
 ) -> JointResult:
     """The joint result of a contact at a single instant.
 
     case: loads of the rings on the pin at all instants.
     remark: what the range leaves out.
+    torques: the largest of friction over all instants, by lug, (B,) N m.
     """
     z = stations(contact.pin)
     moment = np.linalg.norm(contact.bending_moment(z)[0], axis=1)
     return JointResult(
         model="contact",
-        bands=tuple(_band(contact, b) for b in range(len(contact.lugs))),
+        bands=tuple(
+            _band(contact, b, None if torques is None else float(torques[b]))
+            for b in range(len(contact.lugs))
+        ),
         bending_moment=float(moment.max()),
         bending_moments=tuple(zip(z.tolist(), moment.tolist(), strict=True)),
         range=over,
@@ -34,7 +39,7 @@ def contact_result(
     )
 
 
-def _band(contact: JointContact, b: int) -> BandContact:
+def _band(contact: JointContact, b: int, torque: float | None) -> BandContact:
     lug, bands = contact.lugs[b], contact.bands
     on_band = bands.band == b
     line = contact.line_load[0, on_band]
@@ -57,4 +62,6 @@ def _band(contact: JointContact, b: int) -> BandContact:
         clearance=lug.clearance,
         outer_diameter=lug.outer_diameter,
         ends=tuple(ends),
+        friction=lug.friction,
+        friction_torque=torque if lug.friction else None,
     )

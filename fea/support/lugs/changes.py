@@ -2,7 +2,8 @@
 
 By default a clearance goes from none to twice the given one (to a free running fit where none is
 given), the lugs are half and twice as stiff, and the tilt is free and guided. A lug may have ranges
-of its own. Both ends of each range are tried, for all lugs at once.
+of its own. Both ends of each range are tried, for all lugs at once. What a temperature adds to a
+clearance (Lug.growth) is not varied.
 """
 
 from __future__ import annotations
@@ -73,11 +74,13 @@ def _with_clearance(pin: Pin, lug: Lug, end: int) -> tuple[Lug, str]:
     if lug.range.clearance is not None:
         return replace(lug, clearance=lug.range.clearance[end]), (LOW_END_TEXT, HIGH_END_TEXT)[end]
     if end == 0:
-        return replace(lug, clearance=0.0), "none"
-    if lug.clearance:
-        return replace(lug, clearance=2.0 * lug.clearance), "twice the given"
+        return replace(lug, clearance=lug.growth), "none"
+    given = lug.clearance - lug.growth  # by the study
+    if given:
+        return replace(lug, clearance=2.0 * given + lug.growth), "twice the given"
     fit = DEFAULT_FIT_CLEARANCE * 2.0 * pin.band(lug.connection).radius
-    return replace(lug, clearance=fit), f"{DEFAULT_FIT_CLEARANCE:g} of the diameter"
+    words = f"{DEFAULT_FIT_CLEARANCE:g} of the diameter"
+    return replace(lug, clearance=fit + lug.growth), words
 
 
 def _stiffness(lug: Lug, end: int) -> tuple[float, str]:

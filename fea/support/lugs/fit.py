@@ -50,8 +50,12 @@ def carried(pin: PinLike, lugs: Sequence[Lug], foundations: bool = False) -> Car
     return Carried(structure > 0, tilts or structure > 1, foundations and structure > 0, bool(lugs))
 
 
-def fitted(pin: Pin, material: Material, lugs: Sequence[Lug]) -> tuple[Lug, ...]:
+def fitted(
+    pin: Pin, material: Material, lugs: Sequence[Lug], in_contact: bool = True
+) -> tuple[Lug, ...]:
     """The lugs in the order of the pin's bands.
+
+    in_contact: whether contact with them is solved; formulas alone take any clearance.
 
     Raises: ArgumentError for a lug where no link bears, a band without one, or a lug that does not
     fit its band.
@@ -66,7 +70,7 @@ def fitted(pin: Pin, material: Material, lugs: Sequence[Lug]) -> tuple[Lug, ...]
     for lug in lugs:
         band = pin.band(lug.connection)
         _require_walls(lug, band)
-        _require_gap(lug, band)
+        _require_gap(lug, band, in_contact)
         if lug.shank is not None:
             lug.outline(band.radius)  # raises what is wrong with it
         _require_elastic(lug, band, bores[lug.connection] / 2.0, material)
@@ -98,12 +102,13 @@ def _require_walls(lug: Lug, band: Band) -> None:
         )
 
 
-def _require_gap(lug: Lug, band: Band) -> None:
+def _require_gap(lug: Lug, band: Band, in_contact: bool) -> None:
     what, d = f"lug {lug.connection}", 2.0 * band.radius
-    if lug.clearance > MAX_CLEARANCE * d:
+    if in_contact and lug.clearance > MAX_CLEARANCE * d:
         raise ArgumentError(
             f"{what}: its clearance is {lug.clearance / d:.3g} of the pin's diameter; at most "
-            f"{MAX_CLEARANCE:g} is a joint",
+            f"{MAX_CLEARANCE:g} is a joint whose contact can be solved; with joints = "
+            '"prescribed", formulas take any',
             "clearance-too-large",
         )
     if lug.edge_radius > band.length / 2.0:
@@ -133,12 +138,24 @@ def yielding_interference(lug: Lug, radius: float, bore: float, material: Materi
     It is inf where no material has a yield strength.
     radius, bore: of the pin, both radii, m.
     """
-    walls: list[Wall] = [(bore, radius, material), (radius, lug.outer_diameter / 2.0, lug.material)]
-    if lug.bushing is not None:
-        between = radius + lug.bushing.thickness
-        walls[1:] = [(radius, between, lug.bushing.material), (between, walls[1][1], lug.material)]
-    fields = _press_fit(walls)
-    return min(_reserve(walls, fields))
+    walls = [(bore, radius, material), *_walls(lug, radius)]
+    return min(_reserve(walls, _press_fit(walls)))
+
+
+def bushing_press_fit(lug: Lug, radius: float) -> Floats:
+    """The constants A and B (2, 2), Pa and Pa m^2, of s_rr, s_tt = A -+ B / r^2 in a bushing and
+    the eye about it, per interference of their diameters, m.
+    """
+    return _press_fit(_walls(lug, radius))
+
+
+def _walls(lug: Lug, radius: float) -> list[Wall]:
+    """The tubes about a band of some radius, m."""
+    outer = lug.outer_diameter / 2.0
+    if lug.bushing is None:
+        return [(radius, outer, lug.material)]
+    between = radius + lug.bushing.thickness
+    return [(radius, between, lug.bushing.material), (between, outer, lug.material)]
 
 
 def _reserve(walls: Iterable[Wall], fields: Floats) -> Iterable[float]:
@@ -170,16 +187,16 @@ def _press_fit(walls: Sequence[Wall]) -> Floats:
             (1.0, -1.0 / r**2),
             (-1.0, 1.0 / r**2),
         )
-        system[2 * k + 3, this_wall] = -_widening(r, walls[k][2])
-        system[2 * k + 3, next_wall] = _widening(r, walls[k + 1][2])
+        system[2 * k + 3, this_wall] = -widening(r, walls[k][2])
+        system[2 * k + 3, next_wall] = widening(r, walls[k + 1][2])
     right[3] = 0.5
     scale = np.abs(system).max(axis=0)
     constants = np.linalg.solve(system / scale, right) / scale
     return np.asarray(constants.reshape(-1, 2))
 
 
-def _widening(r: float, material: Material) -> Floats:
-    """The factors of A and B in u_r."""
+def widening(r: float, material: Material) -> Floats:
+    """The factors of A and B in u_r at a radius, m, of a tube."""
     E, nu = material.youngs_modulus, material.poisson_ratio
     return np.array([r * (1.0 - nu) / E, (1.0 + nu) / (E * r)])
 
@@ -193,4 +210,6 @@ def beyond_foundations(pin: Pin, lugs: Iterable[Lug]) -> str:
             return f"lug {lug.connection} has an interference, whose stress it does not include"
         if lug.bushing is not None:
             return f"lug {lug.connection} has a bushing, for which it has no stiffness"
+        if lug.friction:
+            return f"lug {lug.connection} has friction, which needs the pressures of contact"
     return ""

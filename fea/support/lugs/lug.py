@@ -16,9 +16,10 @@ from geometry.shape.lug_outline import HeadShape, LugOutline
 
 @dataclass(frozen=True)
 class Bushing:
-    """A ring of its own material, bonded in an eye; thickness in m.
+    """A ring of its own material in an eye; thickness in m.
 
-    interference: of the diameters before it was pressed in, m.
+    interference: of the diameters before it was pressed in, m; 0 for a bonded ring.
+    outgrown: by how much its outer diameter has outgrown the hole at the temperature of a case, m.
 
     Raises: ArgumentError for a thickness that is not positive.
     """
@@ -26,6 +27,17 @@ class Bushing:
     thickness: float
     material: Material
     interference: float = 0.0
+    outgrown: float = 0.0
+
+    @property
+    def pressed(self) -> bool:
+        """Whether it is pressed in; otherwise it is bonded."""
+        return self.interference > 0.0
+
+    @property
+    def misfit(self) -> float:
+        """Its interference at the temperature of a case, m; a bonded ring's may be negative."""
+        return self.interference + self.outgrown
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.thickness) and self.thickness > 0.0):
@@ -96,11 +108,13 @@ class Lug:
     """The eye of the link at a connection, as an annulus, m.
 
     clearance: of the diameters, negative for interference.
+    growth: what of the clearance the temperature of a case has added (fea.support.lugs.thermal), m.
     edge_radius: of the bore's edges.
     tilt: N m/rad, stiffness of the link's tilt against the others about any axis across the pin;
     inf: guided, 0: free.
     bushing: the pin bears on it, if there is one.
     shank: None where only the eye is known, of which no stress is computed then.
+    friction: Coulomb's coefficient between pin and bore; contact itself is solved without it.
     range: of the uncertain properties of the lug.
 
     Raises: ArgumentError for impossible values; fea.support.lugs.fit checks those that depend on
@@ -116,6 +130,8 @@ class Lug:
     bushing: Bushing | None = None
     range: LugRange = LugRange()
     shank: Shank | None = None
+    growth: float = 0.0
+    friction: float = 0.0
 
     def __post_init__(self) -> None:
         what = f"lug {self.connection}"
@@ -129,6 +145,9 @@ class Lug:
             raise ArgumentError(
                 f"{what}: the stiffness of its tilt must not be negative", "negative"
             )
+
+        if not 0.0 <= self.friction <= 1.0:
+            raise ArgumentError(f"{what}: its friction must be from 0 to 1", "friction-range")
 
     @property
     def bearing(self) -> Material:

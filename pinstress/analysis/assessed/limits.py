@@ -16,10 +16,12 @@ from typing import TYPE_CHECKING
 from assess.margin import strength_key
 from assess.plastic.records import LimitLoad, LugCollapse
 from assess.requirement import LEVELS_OF_CHECK
+from fea.core.material import Material
 from fea.core.peak import Maximum, meets_limit
 from fea.support.lugs.fit import on_structure
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, Pin
+from geometry.shape.lug_outline import LugOutline
 from pinbase.memo import Memo
 from pinbase.processes.pool import Tell
 from pinstress.analysis.plan import Plan
@@ -28,9 +30,11 @@ from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 
 if TYPE_CHECKING:
+    from assess.plastic.lug.ultimate import LugUltimate
     from assess.plastic.solve import Rung
     from fea.support.support import Solution
 
+NOT_HARDENED_NOTE = "not for a pin with a hardened surface, which has two yield strengths"
 NOT_ON_FOUNDATIONS_NOTE = 'not for a pin on elastic foundations: use joints = "contact"'
 
 
@@ -87,11 +91,13 @@ def _limit_load(
 ) -> LimitLoad | None:
     peak, seconds = solved.peak, limit_seconds(plan)
     required = collapse_factors(plan.study, task).get(peak.case)
-    strength = task.material.yield_strength
+    strength = peak.yield_strength(task.material.yield_strength)
     if rung and required and strength and not meets_limit(peak, strength / required):
         rung, seconds = "solid", inf  # it decides, and is required
     if rung is None or not limit_asked(peak, task, rung):
         return None
+    if task.material.hardened:
+        return LimitLoad("none", note=NOT_HARDENED_NOTE)
     from assess.plastic.solve import limit_load  # imports a model
 
     tell(f"pin {task.pin.name}, limit load in {peak.case}")
@@ -146,4 +152,30 @@ def _lug_collapse(pin: Pin, lug: Lug, same: Memo) -> LugCollapse:
         limit = same.get((outline, strength), lambda: lug_limit_load(outline, strength))
     except (ArgumentError, ArithmeticError) as error:  # the margin says why
         return LugCollapse(lug.connection, needs=f"a limit load: {error}")
-    return LugCollapse(lug.connection, band.length * limit.lower, band.length * limit.upper)
+    lower, upper = band.length * limit.lower, band.length * limit.upper
+    ultimate, breaks_by = _lug_ultimate(outline, lug.material, same)
+    if ultimate is not None:
+        ultimate *= band.length
+    return LugCollapse(lug.connection, lower, upper, "", ultimate, breaks_by)
+
+
+def _lug_ultimate(outline: LugOutline, metal: Material, same: Memo) -> tuple[float | None, str]:
+    """Return the load per thickness at which a lug breaks, N/m, and what ends it; None and what is
+    missing. Nothing is done for a material without a failure strain.
+    """
+    if metal.failure_strain is None:
+        return None, ""
+    if metal.ultimate_strength is None and not metal.hardening:
+        return None, strength_key(metal.name, "ultimate")
+    from assess.plastic.lug.true_curve import true_curve  # imports solvers
+    from assess.plastic.lug.ultimate import lug_ultimate
+
+    def pulled() -> LugUltimate:
+        hardens = metal if metal.hardening else true_curve(metal)
+        return lug_ultimate(outline, hardens, metal.failure_strain)
+
+    try:
+        broken = same.get((outline, metal), pulled)
+    except (ArgumentError, ArithmeticError) as error:  # the margin says why
+        return None, f"an ultimate load: {error}"
+    return broken.load, broken.ended_by

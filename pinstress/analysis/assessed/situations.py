@@ -11,18 +11,30 @@ from assess.checks import margins_of
 from assess.codes import DEFAULT_CODES, FITTING_FACTORS
 from assess.judgement import against_yield
 from assess.lug_factors import LugFactors
-from assess.margin import CLAMPED_LUG_PREFIX, FORMULA_CHECKS, Margin, skipped, worst_places
+from assess.margin import (
+    CLAMPED_LUG_PREFIX,
+    COMPARISON_SUFFIX,
+    FORMULA_CHECKS,
+    Margin,
+    skipped,
+    worst_places,
+)
 from assess.situation import LoadFactors, Situation, SolvedRow, with_solved, with_supports
 from assess.strength.bending_arms import BendingArms, bending_arms
+from assess.strength.hand_checks import BENDING_TEXTS
 from fea.core.pin_loads import PinLoads
 from fea.support.lugs.fit import on_structure
 from fea.support.records import JointResult
+from pinstress.study.model.lost_fits import lost_fits
 from pinstress.study.model.requirements import required_factor
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from reports.data.results import PinResult
 
 FORMULA_KINDS = "hand", "clause"
+# What checks by formula take as the yield strength of a pin with a hardened surface.
+CORE_BASIS, CASED_BASIS = "with the core's yield strength", "with the strengths of case and core"
+CASED_METHODS = {"plastic bending and shear", *(method for method, _ in BENDING_TEXTS.values())}
 FORCE_OF_CLAMP = (
     "the force that a clamp takes, which contact with the lug instead of the clamp gives"
 )
@@ -42,7 +54,7 @@ def assessed(study: Study, task: Task, row: PinResult) -> PinResult:
     rigid = row.verdict == "rigid"
     if s.complete and rigid and not why:
         why = "supports of the pin, or loads in equilibrium"
-    margins = margins_of(s)
+    margins = [_of_core(s, margin) for margin in margins_of(s)]
     counted = margins
     if s.complete and (rigid or not s.across.any()):
         counted = [m for m in margins if m.kind not in FORMULA_KINDS]
@@ -52,7 +64,18 @@ def assessed(study: Study, task: Task, row: PinResult) -> PinResult:
         margins=tuple(margins),
         worst=tuple(worst_places([*counted, *_not_made(s, why)])),
         arms=None if why else _arms(s, task, row),
+        lost_fits=lost_fits(study, task, row.case),
     )
+
+
+def _of_core(s: Situation, margin: Margin) -> Margin:
+    """Return a margin by formula with what it takes as the yield strength of a hardened pin."""
+    made_of_pin = margin.material in ("", s.material.name)
+    if not s.material.hardened or margin.kind not in FORMULA_KINDS or not made_of_pin:
+        return margin
+    method = margin.method.removesuffix(f", {COMPARISON_SUFFIX}")
+    known = CASED_BASIS if method in CASED_METHODS else CORE_BASIS
+    return replace(margin, basis="; ".join(filter(None, (margin.basis, known))))
 
 
 def load_factors(study: Study) -> LoadFactors:

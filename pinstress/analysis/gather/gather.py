@@ -7,6 +7,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, replace
 from importlib.metadata import version
 
+import numpy as np
+
 from assess.diameter_law import section_exponent
 from assess.margin import PinMargin
 from fea.core.peak import Maximum
@@ -25,6 +27,7 @@ from pinstress.study.model.pins import far_ends, outline, weight
 from pinstress.study.model.requirements import stated_requirements
 from pinstress.study.model.sequence import chosen_cases
 from pinstress.study.model.tasks import Task, assumed_distribution
+from pinstress.study.model.temperature import temperature_assumption
 from pinstress.study.reading.file import Study, named_materials
 from pinstress.study.reading.inputs import inputs
 from pinstress.study.reading.published_tables import Published, read_published
@@ -33,7 +36,7 @@ from pinstress.study.schema.tables import ReportTable
 from reports.data import results as plain
 from reports.data.changes import Remedy
 from reports.data.dependence import depends_on
-from reports.data.results import CutShape
+from reports.data.results import CutShape, LugSketch, ShankSketch
 from reports.data.sensitivities import PinSensitivities
 
 WITHOUT_FRICTION_NOTE = (
@@ -194,6 +197,7 @@ def _results(
             *factor_assumption(study, (row for _, row in rows)),
             *filter(None, [assumed_distribution(study, (task for task, _ in rows))]),
             *shanks_assumption(row for _, row in rows),
+            *temperature_assumption(study),
             *((WITHOUT_FRICTION_NOTE,) if _in_lugs(study) else ()),
             *(f"Possible mistake: {q}" for q in study.questions),
         ),
@@ -225,11 +229,23 @@ def _completed(
         position=None if positions is None else float(positions[0]),
         position_unit=position_unit(study, here),
         loads=_governing_loads(task, here),
+        shank_angles=tuple(_shank_angles(task, row.case, time)),
         exponent=section_exponent(task.pin, row.places.section if row.places else None),
         depends_on=depends_on(row),
         published_max_von_mises=published_stress,
         published_safety_factor=published_factor,
     )
+
+
+def _shank_angles(task: Task, case: str, time: float | None) -> Iterator[tuple[str, float]]:
+    """Yield the directions of the shanks that are known, degrees."""
+    now = None if time is None else np.array([time])
+    turning = task.shanks.get(case, {})
+    for lug in task.lugs:
+        if lug.connection in turning:
+            yield lug.connection, math.degrees(turning[lug.connection].at(now, 1)[0])
+        elif lug.shank is not None and lug.shank.angle is not None:
+            yield lug.connection, math.degrees(lug.shank.angle)
 
 
 def _held(task: Task, joint: JointResult | None) -> str:
@@ -262,7 +278,26 @@ def shape_of_task(task: Task, peaks: Sequence[Maximum]) -> plain.PinShape:
     cuts = tuple(cut_shapes(pin))
     solids = tuple(dict.fromkeys(ends for peak in peaks for ends in peak.solids))
     made_of = task.material.name
-    return plain.PinShape(pin.name, segments, made_of, heavy, far_ends(pin), cuts, solids)
+    return plain.PinShape(
+        pin.name, segments, made_of, heavy, far_ends(pin), cuts, solids, tuple(_lug_sketches(task))
+    )
+
+
+def _lug_sketches(task: Task) -> Iterator[LugSketch]:
+    """Yield the lugs that support the pin of a task, in the order of z."""
+    for lug in sorted(task.lugs, key=lambda lug: task.pin.band(lug.connection).z0):
+        band, bushing, shank = task.pin.band(lug.connection), lug.bushing, lug.shank
+        yield LugSketch(
+            lug.connection,
+            (band.z0, band.z1),
+            lug.outer_diameter,
+            lug.clearance,
+            lug.material.name,
+            lug.edge_radius,
+            bushing.thickness if bushing else 0.0,
+            bushing.interference if bushing else 0.0,
+            ShankSketch(shank.shape, shank.width, shank.length, shank.end) if shank else None,
+        )
 
 
 def cut_shapes(pin: PinLike) -> Iterator[CutShape]:

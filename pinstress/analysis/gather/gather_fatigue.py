@@ -170,8 +170,11 @@ def _missing(plan: Plan, outcomes: list[PinOutcome], pin: str, table: FatigueTab
         return _Open(f"{text} ({reason})" if reason else text, "a history of stress")
     tasks = [t for t in plan.tasks if t.pin.name == pin and any(x.case in cases for x in t.loads)]
     if len(tasks) > 1:
-        reason = "its clamps differ between cases, and damage with different clamps does not add up"
-        return _Open(reason, "the same clamps in all cases of the spectrum")
+        what = "clamps" if len({t.clamps for t in tasks}) > 1 else "fits at their temperatures"
+        reason = (
+            f"its {what} differ between cases, and damage with different {what} does not add up"
+        )
+        return _Open(reason, f"the same {what} in all cases of the spectrum")
     return None
 
 
@@ -194,7 +197,10 @@ def _left_out(
         for task, outcome in zip(plan.tasks, outcomes, strict=True)
         if task.pin.name in elastic
         and any(
-            meets_limit(row.maximum, task.material.yield_strength or inf) is False
+            meets_limit(
+                row.maximum, row.maximum.yield_strength(task.material.yield_strength) or inf
+            )
+            is False
             for row in outcome.rows
         )
     ]

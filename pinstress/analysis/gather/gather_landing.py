@@ -9,6 +9,8 @@ import numpy as np
 
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
+from fea.harmonic.field import HarmonicField
+from fea.harmonic.part_field import PartField
 from fea.section.section_stress import SectionField
 from fea.support.support import Solution
 from geometry import body_of_revolution
@@ -26,7 +28,8 @@ def landing_range(
     if over is None or solution.answer is None:
         return None
     maxima = _maxima(task, solution, task.ranges[case])
-    nominal = range_of(solution.peak, over, maxima, task.material.yield_strength)
+    strength = solution.peak.yield_strength(task.material.yield_strength)
+    nominal = range_of(solution.peak, over, maxima, strength)
     return replace(nominal, spread=_spread(solution.peak))
 
 
@@ -68,7 +71,24 @@ def _maxima(task: Task, solution: Solution, loads: PinLoads) -> Floats:
     if places is None or places.section is None or pin is None:
         return surface
     sections = SectionField(pin, task.material, clamps, (acting.on_rings,))
+    if task.material.hardened:
+        return _as_of_row(task, solution, acting, sections)
     return np.maximum(surface, sections.maxima(acting.on_rings))
+
+
+def _as_of_row(task: Task, solution: Solution, acting: PinLoads, sections: SectionField) -> Floats:
+    """Return the largest stress, Pa, of a hardened pin at each instant, of all of its parts as if
+    they had the strength of the row.
+    """
+    strength, answer = solution.peak.strength, solution.answer
+    assert strength is not None
+    assert isinstance(answer, HarmonicField)
+    out = np.zeros(len(acting))
+    for part in task.material.strength_parts(sections.pin.length):
+        field, along = PartField(answer, sections.pin, part), sections.of_part(part)
+        stress = np.maximum(field.maxima(acting), along.maxima(acting.on_rings))
+        out = np.maximum(out, stress * (strength / part.strength))
+    return out
 
 
 def _spread(peak: Maximum) -> tuple[float, float] | None:

@@ -70,7 +70,7 @@ def _surface(task: Task, solved: Sequence[_Shown]) -> Surface:
         even=surface.even,
         stress=surface.stress[keep],
         displacement=surface.displacement[keep],
-        yield_strength=task.material.yield_strength,
+        yield_strength=None if task.material.hardened else task.material.yield_strength,
         cases=tuple(_kept(c, keep) for c in cases),
     )
 

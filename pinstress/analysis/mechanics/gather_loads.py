@@ -30,6 +30,7 @@ from pinbase.arrays import Floats
 from pinstress.analysis.checks import motion_check
 from pinstress.analysis.mechanics.gather_drops import drop_record
 from pinstress.analysis.mechanics.gather_sequences import sequence_tables
+from pinstress.analysis.mechanics.gather_wear import wear
 from pinstress.analysis.published_quantities import published_values
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.mechanism.drives import offsets
@@ -83,6 +84,7 @@ def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -
         "motion_check": motion_check(study, loads, published),
         "published": published_values(study, loads, published),
         "drops": tuple(drop_record(study, n, c) for n, c in loads.items() if c.landing),
+        "wear": wear(study, loads),
         "legs": tuple(_leg(study, n, c) for n, c in loads.items() if c.leg is not None),
     }
     return parts | sequence_tables(study, parts)

@@ -48,9 +48,9 @@ def change(requirement: Requirement, task: Task, solutions: tuple[Solution, ...]
     """Return the change that a pin needs in the worst of its cases.
 
     None where no case is below the required factor (yield where none is required), with its error
-    and beneath contact.
+    and beneath contact; and for a hardened surface, whose case and core would change differently.
     """
-    strength = task.material.yield_strength
+    strength = None if task.material.hardened else task.material.yield_strength
 
     def required_of(solution: Solution) -> float:
         return requirement.of_case(solution.peak.case).required or 1.0

@@ -45,7 +45,7 @@ def joint_parameters(study: Study, task: Task) -> Iterator[StudyParameter]:
         given = table.lug.get(name)
         bushing = given and given.bushing
         for key, value, scale in (
-            ("clearance", lug.clearance, CLEARANCE_SCALE * pin.band(name).radius),
+            ("clearance", lug.clearance - lug.growth, CLEARANCE_SCALE * pin.band(name).radius),
             ("outer_diameter", given and given.outer_diameter, None),
             ("edge_radius", lug.edge_radius, None),
             ("bushing.thickness", bushing and bushing.thickness, None),
@@ -75,8 +75,9 @@ def _with_dimension(study: Study, task: Task, dimension: Dimension, value: float
     old = {lug.connection: lug for lug in task.lugs}
     # A fit has another clearance in the next step of sizes; the derivative is within one.
     lugs = tuple(
-        replace(lug, clearance=old[lug.connection].clearance, range=old[lug.connection].range)
-        for lug in known_lugs(study, pin)
+        replace(lug, clearance=was.clearance - was.growth + lug.growth, range=was.range)
+        for lug in known_lugs(study, pin, task.rise)
+        for was in [old[lug.connection]]
     )
     return pin, task.material, lugs
 
@@ -96,7 +97,7 @@ def _made_anew(study: Study, task: Task) -> Joint:
     pin = body_of_revolution(task.pin)
     assert pin is not None
     made_of = material(study, study.table.pin[pin.name].material)
-    return pin, made_of, known_lugs(study, pin)
+    return pin, made_of, known_lugs(study, pin, task.rise)
 
 
 def _changed(study: Study, path: tuple[str, ...], value: Any) -> Study:

@@ -52,6 +52,7 @@ IN_LUGS_NOTE = (
     "--sensitivities gives them"
 )
 NO_CONTACT_NOTE = 'no derivatives of a pin on foundations: analysis.joints = "contact" has them'
+HARDENED_NOTE = "not for a pin with a hardened surface, whose case and core have two strengths"
 NOT_AXISYMMETRIC_NOTE = "no derivatives, only of bodies of revolution: solve the changed study"
 
 
@@ -184,6 +185,8 @@ def _of_case(
     maximum = peak.max_von_mises or 0.0
     factor = peak.safety_factor(task.material.yield_strength)
     out = PinSensitivities(peak.pin, peak.case, maximum, factor)
+    if task.material.hardened:
+        return replace(out, note=HARDENED_NOTE)
     if not task.pin.revolved:
         return replace(out, note=NOT_AXISYMMETRIC_NOTE)
     try:

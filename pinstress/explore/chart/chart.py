@@ -33,6 +33,7 @@ from pinstress.explore.chart.mesh_sequences import (
     solid_reference,
 )
 from pinstress.explore.chart.single_joint import JointProblem, JointRung
+from pinstress.study.model.hardened import require_no_hardened
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.requirements import required_factor
 from pinstress.study.model.tasks import Task, tasks
@@ -73,6 +74,7 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
     Raises: InputError for bad input, an unconstrained pin, or one without any stress.
     """
     select(study.table.pin, [pin], "pin", "pin")
+    require_no_hardened(study, pin, "a chart")
     loads = all_loads(study, select(study.table.case, [case], "case", "case"))
     (task,) = tasks(study, [pin_of(study, pin)], loads)
     table = study.table.analysis

@@ -35,6 +35,7 @@ from pinstress.explore.sweep.batches import DesignProblem, evaluator_of, shapes
 from pinstress.explore.sweep.evaluate import Evaluator
 from pinstress.explore.sweep.parameters import Parameter
 from pinstress.explore.sweep.possible import drawn, require_balance
+from pinstress.study.model.hardened import require_no_hardened
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.vary import ReliabilityTable
 from reports.data.reliability import (
@@ -128,6 +129,7 @@ def assess(
 def _require_strengths(study: Study, evaluator: Evaluator) -> None:
     for name in dict.fromkeys(pin for pin, _ in evaluator.table):
         material = study.table.pin[name].material
+        require_no_hardened(study, name, "reliability")
         if study.table.material[material].yield_strength is None:
             raise study.error(
                 f"material.{material}: reliability needs its yield_strength, for the factors of "

@@ -51,6 +51,7 @@ from pinstress.explore.size.written_dimensions import (
     binding,
     rounded_values,
 )
+from pinstress.study.model.hardened import hardened_key, hardened_reason
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
@@ -271,6 +272,8 @@ def problem_of(study: Study, plan: Plan, pin: str, aim: WeightGoal) -> SizingPro
     table = study.table.pin[pin]
     if table.geometry is not None:
         return "its shape comes from a file, which has no dimensions to change"
+    if key := hardened_key(study, pin):
+        return hardened_reason(key)
     if study.table.material[table.material].yield_strength is None:
         return f"its material {table.material} has no yield_strength"
     shaft = pin_of(study, pin)

@@ -35,6 +35,7 @@ from pinstress.explore.size.section_law import (
 )
 from pinstress.explore.size.size_limits import SizeLimit, largest_scale, too_small
 from pinstress.explore.size.standard_diameters import StandardDiameters
+from pinstress.study.model.hardened import hardened_key, hardened_reason
 from pinstress.study.model.pins import material as material_of
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
@@ -323,6 +324,8 @@ def _problem(study: Study, pin: str) -> str:
     table = study.table.pin[pin]
     if table.geometry is not None:
         return "its shape comes from a file, which has no diameters to change"
+    if key := hardened_key(study, pin):
+        return hardened_reason(key)
     if study.table.material[table.material].yield_strength is None:
         return f"its material {table.material} has no yield_strength"
     return ""

@@ -8,6 +8,7 @@ from pinbase.errors import ArgumentError
 from pinstress.explore.sweep.number import Number
 from pinstress.study.model.iso286 import CLASS_PATTERN, deviations
 from pinstress.study.schema.shown import as_text
+from pinstress.study.schema.thermal_units import difference_of
 from pinstress.study.schema.units import UnitSystem, to_si
 
 PLUS_MINUS_PATTERN = re.compile(r"(?:±|\+/?-)\s*([^+-].*)")
@@ -54,7 +55,7 @@ def _deviations(text: str, number: Number, system: UnitSystem) -> tuple[float, f
 
 def _si(text: str, number: Number, system: UnitSystem) -> float:
     if number.dimension:
-        return to_si(text, number.dimension, system)
+        return to_si(text, difference_of(number.dimension), system)
     try:
         return float(text)
     except ValueError:

@@ -17,6 +17,7 @@ from pinstress.study.reading.file import Study, raw_study, with_value
 from pinstress.study.reading.in_python import PAIR_KEYS, key_parts, single_keys
 from pinstress.study.schema.lugs import with_lug_defaults
 from pinstress.study.schema.shown import as_text, nearest
+from pinstress.study.schema.thermal_units import THERMAL_UNITS
 from pinstress.study.schema.types import Probe
 from pinstress.study.schema.units import (
     DIMENSION_EXPONENTS,
@@ -28,7 +29,12 @@ from pinstress.study.schema.units import (
 )
 
 ANGLE_UNITS = {"angle": ("deg", math.pi / 180.0)}  # others are in radians
-RADIAN_UNITS = {"angular velocity": "rad/s", "angular acceleration": "rad/s^2"}
+# Of dimensions whose numbers need a unit: that which has the SI value
+SI_UNITS = {
+    "angular velocity": "rad/s",
+    "angular acceleration": "rad/s^2",
+    **THERMAL_UNITS,
+}
 
 Path = tuple[str | int, ...]
 
@@ -147,7 +153,7 @@ def _number(study: Study, raw: dict[str, Any], key: str, path: Path, value: Any)
     if dimension in ANGLE_UNITS:
         return Number(key, path, dimension, nominal, *ANGLE_UNITS[dimension], written=True)
     if dimension in DIMENSIONS_NEEDING_UNIT:
-        return Number(key, path, dimension, nominal, RADIAN_UNITS[dimension], written=True)
+        return Number(key, path, dimension, nominal, SI_UNITS[dimension], written=True)
     system = study.system
     return Number(
         key, path, dimension, nominal, unit_of(system, dimension), system.factor(dimension)
@@ -158,6 +164,8 @@ def unit_of(system: UnitSystem, dimension: str) -> str:
     """Return the name of a system's unit of a dimension, in length, force, time and stress."""
     if dimension == "stress":
         return system.stress
+    if dimension in THERMAL_UNITS:
+        return THERMAL_UNITS[dimension]
     exponents, _ = DIMENSION_EXPONENTS[dimension]
     names = (system.force, system.length, system.time)
     powers = [(name, exponents[k]) for name, k in zip(names, (1, 0, 2), strict=True)]

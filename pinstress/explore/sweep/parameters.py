@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -23,6 +23,7 @@ from pinstress.explore.sweep.number import Number, Path, number_at, si_value
 from pinstress.study.reading.errors import Errors
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.shown import as_text
+from pinstress.study.schema.thermal_units import difference_of
 from pinstress.study.schema.units import UnitSystem
 from pinstress.study.schema.vary import ParameterTable
 
@@ -188,7 +189,8 @@ def _law(system: UnitSystem, number: Number, table: ParameterTable) -> Law:
             )
         return Triangular(low, mode, high)
     if table.normal is not None or table.lognormal is not None:
-        return _bell(si, table)
+        difference = replace(number, dimension=difference_of(number.dimension))
+        return _bell(si, partial(_si, system, difference), table)
     if table.uniform is not None:
         name, (low, high) = "uniform", si("uniform", table.uniform)
     else:
@@ -203,9 +205,11 @@ def _law(system: UnitSystem, number: Number, table: ParameterTable) -> Law:
     return Uniform(low, high)
 
 
-def _bell(si: Any, table: ParameterTable) -> Law:
+def _bell(si: Any, of_difference: Any, table: ParameterTable) -> Law:
+    """Return a law of a mean and a deviation, which is a difference of two values."""
     name = "normal" if table.normal is not None else "lognormal"
-    mean, deviation = si(name, table.normal or table.lognormal)
+    first, second = table.normal or table.lognormal or (0.0, 0.0)
+    (mean,), deviation = si(name, [first]), of_difference(name, second)
     if not deviation > 0.0:
         raise ArgumentError(f"{name}: the deviation must be positive", "not-positive")
     if name == "lognormal" and not mean > 0.0:

@@ -98,7 +98,11 @@ def _together(group: Sequence[PosedTask], memo: Memo) -> dict[str, Rows]:
 
 
 def elastic(material: Material) -> Material:
-    """Return a material without its strengths, on which no stress depends."""
+    """Return a material without its strengths, on which no stress depends; those of a hardened
+    surface decide where stress governs.
+    """
+    if material.hardened:
+        return material
     return Material(
         material.name, material.youngs_modulus, material.poisson_ratio, material.density
     )

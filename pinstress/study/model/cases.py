@@ -22,6 +22,7 @@ from loads import (
     Reactions,
     StateDrive,
     TableError,
+    locked,
     motion_reactions,
     move,
     over_time,
@@ -208,6 +209,11 @@ class _Moved:
 def _motion(
     study: Study, name: str, case: MotionCase, mechanism: Linkage, extremes: bool
 ) -> CaseLoads:
+    if not mechanism.driven:
+        raise LinkageError(
+            'kind = "motion" needs a [mechanism.drive]; for loads at rest write kind = "static"',
+            "motion-without-drive",
+        )
     end = span(study)
     course = Course(mechanism, laws(study), 0.0, end)
     applied, note = applied_loads(study, name, case, mechanism)
@@ -280,10 +286,13 @@ def _on_ground(
 def _at_instant(
     study: Study, name: str, case: StaticCase | InstantCase, mechanism: Linkage
 ) -> CaseLoads:
-    applied, note = applied_loads(study, name, case, mechanism)
     drives = [StateDrive(*values) for values in state(study, name, case, mechanism)]
-    motion = move(mechanism, drives, np.zeros(1))
     hold = (case.hold or ()) if isinstance(case, StaticCase) else ()
+    if hold and not mechanism.driven:
+        mechanism = locked(mechanism, hold)
+        drives = [StateDrive(lock.drawn) for lock in mechanism.drives]
+    applied, note = applied_loads(study, name, case, mechanism)
+    motion = move(mechanism, drives, np.zeros(1))
     solved = motion_reactions(name, motion, applied, timed=False, hold=hold)
     return CaseLoads(
         solved.reactions,

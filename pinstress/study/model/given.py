@@ -6,12 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from loads import Layout, Reactions, TableError, given_reactions, read_reactions
+from loads import Reactions, TableError, given_reactions, tabled_reactions
 from pinbase.errors import ArgumentError
+from pinstress.study.reading.case_tables import layout_of
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.references import closed_message
 from pinstress.study.schema.cases import GivenCase
-from pinstress.study.schema.units import UNIT_SYSTEMS, to_si
+from pinstress.study.schema.force_tables import unit_factor
+from pinstress.study.schema.units import UNIT_SYSTEMS
 
 
 def given_forces(study: Study, name: str, case: GivenCase) -> Reactions:
@@ -57,16 +59,22 @@ def _stated(study: Study, name: str, case: GivenCase) -> Reactions:
         )
         return given_reactions(name, forces, moments)
     known = {c for p in study.table.pin for c in study.connections(p)}
-    layout = Layout(case.table_case or name, case.columns, case.labels, case.time_step)
     system = UNIT_SYSTEMS[case.table_units or study.table.units]
 
     def unit(written: str, dimension: str) -> float:
         if not written:
             return system.factor(dimension)
         try:
-            return to_si(f"1 {written}", dimension, system)
+            return unit_factor(written, dimension)
         except ArgumentError as error:
-            raise TableError(f"{case.table}: {error}", error.code) from None
+            raise TableError(str(error), error.code) from None
 
-    reactions = read_reactions(study.path_to(case.table), layout, unit, known)
-    return replace(reactions, case=name)
+    return tabled_reactions(
+        name,
+        [
+            (study.path_to(table.file), layout_of(case, table, case.table_case or name))
+            for table in case.tables
+        ],
+        unit,
+        known,
+    )

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 from fea.core.material import Material
 from fea.cut.inside import crosses_end
 from fea.support.lugs.fit import beyond_foundations, fitted, on_structure
 from fea.support.lugs.lug import Bushing, Lug, LugRange, Shank
+from fea.support.lugs.thermal import at_temperature
 from geometry import ArgumentError, Band, Cut, Hole, Pin, PinLike, body_of_revolution
 from pinstress.study.model.iso286 import fit_of
 from pinstress.study.model.pins import material
+from pinstress.study.model.temperature import at_case, band_radius, rise_of, temperature_words
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.lugs import BushingTable, LugRangeTable, LugTable, ShankTable
 from pinstress.study.schema.pins import PinTable
@@ -22,10 +25,13 @@ CLAMP_DISTANCE_RATIO = 0.8
 SHANK_LENGTH_RATIO = 2.0  # the default, so far from the bore that how it is held does not count
 
 
-def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]:
+def lugs(
+    study: Study, pin: PinLike, clamps: tuple[str, ...], case: str | None = None
+) -> tuple[Lug, ...]:
     """Return the lugs that support a pin, none if others hold it.
 
     There is one for every connection, and those of the structure that are named.
+    case: at whose temperature; None for that of the study's dimensions.
 
     Raises: InputError for impossible lugs, and for a pin that lugs cannot support.
     """
@@ -42,7 +48,7 @@ def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]
             at,
             "clamped-in-lugs",
         )
-    out = _fitting(study, pin, at)
+    out = _fitting(study, pin, at, case)
     if joints == "foundation" and (reason := beyond_foundations(pin, out)):
         raise study.error(
             f'pin {pin.name} on foundations: {reason}; use analysis.joints = "contact"',
@@ -52,10 +58,12 @@ def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]
     return out
 
 
-def given_lugs(study: Study, pin: PinLike, holding: tuple[Lug, ...]) -> tuple[Lug, ...]:
+def given_lugs(
+    study: Study, pin: PinLike, holding: tuple[Lug, ...], case: str | None = None
+) -> tuple[Lug, ...]:
     """Return the lugs of a pin that the study gives; checks use them whatever holds the pin.
 
-    holding: the pin's `lugs`, where these hold it.
+    holding: the pin's `lugs`, where these hold it. case: as of `lugs`.
 
     Raises: InputError for impossible lugs.
     """
@@ -63,14 +71,16 @@ def given_lugs(study: Study, pin: PinLike, holding: tuple[Lug, ...]) -> tuple[Lu
     profile = pin.profile
     if not given or profile is None:
         return ()
-    every = holding or _fitting(study, profile, f"pin.{pin.name}.lug")
+    every = holding or _fitting(study, profile, f"pin.{pin.name}.lug", case, in_contact=False)
     return tuple(lug for lug in every if lug.connection in given)
 
 
-def _fitting(study: Study, pin: Pin, at: str) -> tuple[Lug, ...]:
+def _fitting(
+    study: Study, pin: Pin, at: str, case: str | None, in_contact: bool = True
+) -> tuple[Lug, ...]:
     """Return one lug for every connection, and those of the structure.
 
-    at: their key.
+    at: their key. case: as of `lugs`. in_contact: as of `fitted`.
 
     Raises: InputError for impossible lugs.
     """
@@ -82,23 +92,44 @@ def _fitting(study: Study, pin: Pin, at: str) -> tuple[Lug, ...]:
             out.append(_lug(study, pin, connection, _given(table, connection), made_of))
         except ArgumentError as error:
             raise study.error(str(error), f"{at}.{connection}", error.code) from None
+    check = partial(_require_fit, study, pin, in_contact=in_contact)
+    check(out, at)
+    if not (rise := rise_of(study, case)):
+        return tuple(out)
+    hot = at_case(study, pin, out, str(case))
+    shown = temperature_words(study, rise)
+    at = f"case.{case}.temperature"
+    check(hot, at, f"{at}: pin {pin.name} at {shown}: ")
+    return tuple(hot)
+
+
+def _require_fit(
+    study: Study, pin: Pin, lugs: list[Lug], at: str, when: str = "", in_contact: bool = True
+) -> None:
+    """Raise InputError for lugs that do not fit a pin, also at the ends of their ranges.
+
+    in_contact: as of `fitted`.
+    """
+    made_of = material(study, study.table.pin[pin.name].material)
     try:
-        for tried in (out, *_ends_of_clearance(out)):
-            fitted(on_structure(pin, tried), made_of, tried)
+        for tried in (lugs, *_ends_of_clearance(lugs)):
+            fitted(on_structure(pin, tried), made_of, tried, in_contact)
     except ArgumentError as error:
-        raise study.error(str(error), at, error.code) from None
-    return tuple(out)
+        raise study.error(f"{when}{error}", at, error.code) from None
 
 
-def known_lugs(study: Study, pin: Pin) -> tuple[Lug, ...]:
+def known_lugs(study: Study, pin: Pin, rise: float = 0.0) -> tuple[Lug, ...]:
     """Return these lugs for a pin that is known to sit in lugs.
+
+    rise: of temperature above that of the study's dimensions, K.
 
     Raises: ArgumentError for impossible lugs.
     """
     table = study.table.pin[pin.name]
     made_of = material(study, table.material)
     names = _held(pin, table)
-    return tuple(_lug(study, pin, name, _given(table, name), made_of) for name in names)
+    cold = (_lug(study, pin, name, _given(table, name), made_of) for name in names)
+    return tuple(at_temperature(x, made_of, band_radius(pin, x), rise) for x in cold)
 
 
 def _held(pin: Pin, table: PinTable) -> tuple[str, ...]:
@@ -199,8 +230,10 @@ def assumed_lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> Assumed
         return AssumedLugs(why="one band alone does not show how the pin is supported")
     made_of = material(study, table.material)
     try:
+        # Without friction, as this range is by a beam on foundations.
         assumed = tuple(
-            _lug(study, profile, name, table.lug.get(name, LugTable()), made_of) for name in names
+            replace(_lug(study, profile, name, _given(table, name), made_of), friction=0.0)
+            for name in names
         )
     except ArgumentError as error:
         return AssumedLugs(why=str(error))
@@ -238,6 +271,7 @@ def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Mater
         bushing,
         _range(given.range, fit),
         None if given.shank is None else _shank(given.shank, outer),
+        given.friction,
     )
 
 

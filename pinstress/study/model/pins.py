@@ -30,11 +30,20 @@ METRES_PER_UNIT = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 
 
 def material(study: Study, name: str) -> Material:
-    """Return a material of the study."""
+    """Return a material of the study; its yield strength is that of the core of a hardened one."""
     m = study.table.material[name]
-    strengths = m.yield_strength, m.ultimate_strength, m.shear_strength, m.bearing_strength
+    at_yield = m.yield_strength if m.hardened is None else m.hardened.core
+    strengths = at_yield, m.ultimate_strength, m.shear_strength, m.bearing_strength
     elastic = m.youngs_modulus, m.poisson_ratio, m.density
-    return Material(name, *elastic, *strengths, tuple(m.hardening), m.ultimate_strain)
+    return Material(
+        name,
+        *elastic,
+        *strengths,
+        tuple(m.hardening),
+        m.ultimate_strain,
+        failure_strain=m.failure_strain,
+        thermal_expansion=m.thermal_expansion,
+    )
 
 
 def pin(study: Study, name: str) -> PinLike:

@@ -13,12 +13,13 @@ from fea.core.material import Material
 from fea.core.over_time import Between
 from fea.core.pin_loads import Distribution, Floats, PinLoads
 from fea.support.lugs.lug import Lug
-from geometry import PinLike
+from geometry import ArgumentError, PinLike
 from loads import Reactions
 from pinstress.study.model.cases import CaseLoads
-from pinstress.study.model.lugs import AssumedLugs, assumed_lugs, given_lugs, lugs
+from pinstress.study.model.hardened import pin_material
+from pinstress.study.model.lugs import AssumedLugs, assumed_lugs, given_lugs, known_lugs, lugs
 from pinstress.study.model.moving_loads import MovingLoads
-from pinstress.study.model.pins import material
+from pinstress.study.model.temperature import rise_of
 from pinstress.study.reading.errors import Errors
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.shown import listed
@@ -40,7 +41,8 @@ class PinImpulse:
 
 @dataclass(frozen=True)
 class Task:
-    """One pin of a material, clamped in one way, with its loads in all cases that clamp it so.
+    """One pin of a material, clamped in one way, in lugs of one temperature, with its loads in all
+    cases of that kind.
 
     left_out: by case, the connections whose force and moment are not applied because their band is
     clamped.
@@ -51,6 +53,8 @@ class Task:
     impulses: by case that has an impulse.
     given: the lugs that the study gives, whether they support the pin or not.
     shanks: by case and connection, the angles of the shanks of lugs.
+    rise: of the temperature of its cases above that of the study's dimensions, K, which has changed
+    the fit of its lugs; 0 where it has not.
     """
 
     pin: PinLike
@@ -65,6 +69,7 @@ class Task:
     impulses: dict[str, PinImpulse] = field(default_factory=dict)
     given: tuple[Lug, ...] = ()
     shanks: dict[str, dict[str, ShankAngle]] = field(default_factory=dict)
+    rise: float = 0.0
 
 
 def tasks(study: Study, pins: list[PinLike], loads: dict[str, CaseLoads]) -> list[Task]:
@@ -74,9 +79,12 @@ def tasks(study: Study, pins: list[PinLike], loads: dict[str, CaseLoads]) -> lis
     """
     out = []
     for pin in pins:
-        ways = dict.fromkeys(study.clamps(pin.name, case) for case in loads)
-        for clamps in ways:
-            task = _task(study, pin, clamps, loads)
+        ways: dict[tuple[tuple[str, ...], float], dict[str, CaseLoads]] = {}
+        for case, given in loads.items():
+            way = study.clamps(pin.name, case), _rise(study, pin, case)
+            ways.setdefault(way, {})[case] = given
+        for (clamps, rise), cases in ways.items():
+            task = _task(study, pin, clamps, rise, cases)
             if task.loads:
                 out.append(task)
     if not study.table.pin:
@@ -93,9 +101,33 @@ def tasks(study: Study, pins: list[PinLike], loads: dict[str, CaseLoads]) -> lis
     return out
 
 
-def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, CaseLoads]) -> Task:
+def _rise(study: Study, pin: PinLike, case: str) -> float:
+    """Return the rise of temperature in a case that changes the fits of a pin; 0 where it does not.
+
+    One without the data that it needs is returned: who makes the lugs says what is missing.
+    """
+    rise, profile, joints = rise_of(study, case), pin.profile, study.table.analysis.joints
+    in_lugs = study.table.pin[pin.name].lug or joints in ("contact", "foundation")
+    if not (rise and in_lugs and profile):
+        return 0.0
+    try:
+        hot = known_lugs(study, profile, rise)
+    except ArgumentError:
+        return rise
+    outgrown = (lug.bushing.outgrown for lug in hot if lug.bushing)
+    return rise if any(lug.growth for lug in hot) or any(outgrown) else 0.0
+
+
+def _task(
+    study: Study,
+    pin: PinLike,
+    clamps: tuple[str, ...],
+    rise: float,
+    loads: dict[str, CaseLoads],
+) -> Task:
+    """Return the task of a pin in cases that have these clamps and this rise of temperature."""
     constrained = {pin.surface(c) for c in clamps}
-    made_of = material(study, study.table.pin[pin.name].material)
+    made_of = pin_material(study, pin)
     cases: list[PinLoads] = []
     left_out: dict[str, tuple[str, ...]] = {}
     ranges: dict[str, PinLoads] = {}
@@ -103,7 +135,7 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
     impulses: dict[str, PinImpulse] = {}
     for case, given in loads.items():
         here = [c for c in pin.connections if c in given.reactions.connections]
-        if not here or study.clamps(pin.name, case) != clamps:
+        if not here:
             continue
         applied = [c for c in here if c not in constrained]
         if not applied:
@@ -125,12 +157,13 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
             ranges[case] = build(given.range.reactions)
         if given.impulse is not None:
             impulses[case] = PinImpulse(given.impulse.time, build(given.impulse.reactions))
-    in_lugs = lugs(study, pin, clamps) if cases else ()
+    hot = cases[0].case if cases and rise else None
+    in_lugs = lugs(study, pin, clamps, hot) if cases else ()
     around = assumed_lugs(study, pin, clamps) if cases and not in_lugs else None
-    given_ones = given_lugs(study, pin, in_lugs) if cases else ()
+    given_ones = given_lugs(study, pin, in_lugs, hot) if cases else ()
     return Task(
         pin, made_of, clamps, tuple(cases), left_out, ranges, between, in_lugs, around, impulses,
-        given_ones, _shanks(study, pin, loads, cases, in_lugs),
+        given_ones, _shanks(study, pin, loads, cases, in_lugs), rise,
     )  # fmt: skip
 
 

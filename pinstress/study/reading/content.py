@@ -11,6 +11,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from loads import TableError, table_cases
+from pinstress.study.reading.case_tables import layout_of
 from pinstress.study.reading.damage import Damage, place_of
 from pinstress.study.reading.errors import InputError, Wrong
 from pinstress.study.reading.limits import too_many
@@ -115,23 +116,23 @@ def _with_cases_of_tables(table: StudyTable, folder: Path, wrong: list[Wrong]) -
             continue
         key = f"case.{section}"
         assert isinstance(case, GivenCase)
-        assert case.table is not None
         if section.count(ANY_CASE) > 1:
             wrong.append(Wrong(f"{key}: a name needs no second *", code="unusable-name"))
         elif case.table_case is not None:
             text = f"{key}.table_case: the name with a * already stands for every case of the table"
             wrong.append(Wrong(text, code="give-one"))
         else:
-            for name in _table_case_names(folder / case.table, case):
+            file = case.tables[0].file
+            for name in _table_case_names(folder / file, case):
                 ours = section.replace(ANY_CASE, name)
-                wrong += _table_case_mistakes(key, ours, case.table, ours in cases)
+                wrong += _table_case_mistakes(key, ours, file, ours in cases)
                 cases[ours] = case.model_copy(update={"table_case": name})
     return table.model_copy(update={"case": cases})
 
 
 def _table_case_names(path: Path, case: GivenCase) -> list[str]:
     try:
-        return table_cases(path, case.columns)
+        return table_cases(path, layout_of(case, case.tables[0], ""))
     except TableError as error:
         raise InputError(str(error), code=error.code) from None
 

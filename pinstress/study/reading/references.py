@@ -132,6 +132,10 @@ def _of_cases(table: StudyTable, bears: dict[str, str]) -> Iterator[Wrong]:
                     if borne is not None and connection == table.pin[borne].balance:
                         yield Wrong(closed_message(f"case.{name}.{key}.{connection}", borne),
                                     code="balances-the-others")  # fmt: skip
+            for file in case.tables:
+                for connection in file.connections:
+                    what = "pin has a connection"
+                    yield from _known(f"case.{name}.table", what, connection, bears)
         elif isinstance(case, LegCase):
             if table.spatial_leg is None:
                 yield Wrong(f"case.{name}: kind 'spatial_leg' needs a [spatial_leg]", code="no-leg")
@@ -308,6 +312,9 @@ def _of_mechanism(mechanism: MechanismTable) -> Iterator[Wrong]:
             yield from _known(f"{where}.fixed_in", "body", joint.fixed_in, bodies)
         for connection, body in joint.connections.items():
             yield from _known(f"{where}.connections.{connection}", "body", body, bodies)
+    for name, part in mechanism.body.items():
+        where = f"mechanism.body.{name}.welded_to"
+        yield from _known(where, "body", part.welded_to or "ground", bodies)
     for place, named in named_joints(mechanism):
         yield from _known(f"mechanism.{place}", "joint", named, mechanism.joint)
     for i, drive in enumerate(mechanism.drive, 1):

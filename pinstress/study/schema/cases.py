@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from pinbase.errors import ArgumentError
+from pinstress.study.schema.force_tables import TableFile, Tables
 from pinstress.study.schema.forces import ForceLawTable
 from pinstress.study.schema.types import (
     NOT_NEGATIVE,
@@ -19,11 +20,14 @@ from pinstress.study.schema.types import (
     Number,
     StrictTable,
     Switch,
+    Temperature,
     Time,
     Velocity,
     Weight,
     Whole,
 )
+
+KEYS_OF_ANY_TABLE = "table_case", "table_units"
 
 
 class CaseTable(StrictTable):
@@ -35,6 +39,9 @@ class CaseTable(StrictTable):
     edge stress is unbounded."""
     clamp: dict[str, list[str]] = {}
     """Pins that are clamped differently in this case, each with its clamped surfaces."""
+    temperature: Temperature | None = None
+    """Temperature of all pins, lugs and bushings, the same throughout. It changes clearances and
+    interferences by `thermal_expansion` of the materials. Default: `reference_temperature`."""
 
 
 class GivenCase(CaseTable):
@@ -46,11 +53,12 @@ class GivenCase(CaseTable):
     """Force on the pin at each connection, in pin axes x, y (and z, along the pin)."""
     moments: dict[str, Annotated[list[Moment], Field(min_length=2, max_length=3)]] | None = None
     """Moment on the pin at each connection, about x, y (and z) through the middle of the band."""
-    table: str | None = None
+    table: Tables | None = None
     """File in the study's folder, instead of `forces` and `moments`; a sweep if it has times. Its
     columns are connection,fx,fy[,fz][,mx,my,mz][,time][,case], or one per component, as B.fx,B.fy
-    for connection B; units in brackets: fx [kN]. Separated by commas, or by semicolons or tabs,
-    then also with decimal commas; # begins a comment."""
+    for connection B; units in brackets, fx [kN], or in a row under the header. Separated by commas,
+    semicolons, tabs or blanks, but for commas also with decimal commas. For a file of another
+    program a table that states its columns; several with [[case.NAME.table]]."""
     table_case: str | None = None
     """Which rows of a table with a column `case`; by default those with the name of this case."""
     columns: dict[str, str | int] = {}
@@ -62,6 +70,15 @@ class GivenCase(CaseTable):
     """Time between the rows of one connection, where the table has no times."""
     table_units: Literal["in-lbf-s", "mm-N-s", "m-N-s"] | None = None
     """System of units of the table's numbers, by default the study's."""
+
+    @property
+    def tables(self) -> tuple[TableFile, ...]:
+        """The tables that give the forces."""
+        if isinstance(self.table, str):
+            return (TableFile.model_validate({"file": self.table}),)
+        if isinstance(self.table, TableFile):
+            return (self.table,)
+        return tuple(self.table or ())
 
     @model_validator(mode="after")
     def _one_source(self) -> "GivenCase":
@@ -79,6 +96,11 @@ class GivenCase(CaseTable):
             "table_units": self.table_units,
         }
         for key, value in of_table.items():
+            if value and not isinstance(self.table, str | None) and key not in KEYS_OF_ANY_TABLE:
+                raise ArgumentError(
+                    f"{key} is for a table that is only a file name; state columns in the table",
+                    "give-one",
+                )
             if value and self.table is None:
                 raise ArgumentError(f'{key} describes a table; give table = "file.csv"', "no-table")
         for key, given in stated.items():

@@ -19,14 +19,15 @@ from pinstress.study.schema.types import (
 
 
 class BushingTable(StrictTable):
-    """A ring of another material bonded in the bore of a lug."""
+    """A ring of another material in the bore of a lug: bonded, or pressed in."""
 
     thickness: PositiveLength
     """Wall thickness."""
     material: str
     """Name of a `[material]`."""
     interference: NotNegativeLength = 0.0
-    """Outer diameter of the bushing minus the diameter of the hole into which it was pressed."""
+    """Outer diameter of the bushing minus the diameter of the hole into which it was pressed.
+    Default: it is bonded."""
 
 
 class ShankTable(StrictTable):
@@ -57,6 +58,7 @@ class ShankTable(StrictTable):
         return self
 
 
+Friction = Annotated[Number, Field(ge=0.0, le=1.0)]
 Times = Annotated[Number, Field(gt=0.0)]
 
 
@@ -64,7 +66,7 @@ class LugFactorsTable(StrictTable):
     """Efficiency factors of a lug for the code "aircraft", read off the figures of its source."""
 
     K: Times | None = None
-    """Bearing: AFFDL-TR-69-42, figure 9-2 or 9-3."""
+    """Bearing: AFFDL-TR-69-42, figure 9-2."""
     K_n: Times | None = None
     """Net section: AFFDL-TR-69-42, figure 9-4."""
     k_br: Times | None = None
@@ -113,7 +115,10 @@ class LugTable(StrictTable):
     """Resistance of the link to tilting of its eye: "guided" (rigid), "free", or a stiffness.
     Default: the bending stiffness of an eye clamped at a distance of 0.8 outer diameters."""
     bushing: BushingTable | None = None
-    """A bushing bonded in the eye."""
+    """A bushing in the eye."""
+    friction: Friction = 0.0
+    """Coefficient of Coulomb friction between pin and bore, for bounds of the torque and of the
+    stress. It does not act on the mechanism, as `friction` of a joint does."""
     shank: ShankTable | None = None
     """The outline of the lug in its plane, which its own stress requires."""
     factors: LugFactorsTable = LugFactorsTable()

@@ -134,6 +134,8 @@ class BodyTable(StrictTable):
     inertia: Inertia | None = None
     """Moment of inertia about the centre of mass. Default: that of the bar; without a bar the body
     is a particle, which has one connection or slides on the ground."""
+    welded_to: str | None = None
+    """Body, or "ground", to which it is fixed. Forces in the weld are not computed."""
 
     @model_validator(mode="after")
     def _one_mass(self) -> "BodyTable":
@@ -326,7 +328,7 @@ class StopTable(StrictTable):
 
 
 class MechanismTable(StrictTable):
-    """A planar linkage, drawn in one position, with one or several drives."""
+    """A planar linkage, drawn in one position, with one or several drives, or a structure."""
 
     gravity: Annotated[
         tuple[Acceleration, Acceleration],
@@ -339,8 +341,9 @@ class MechanismTable(StrictTable):
     """Bodies by name, except the ground."""
     slider: dict[str, SliderTable] = {}
     """Sliders by name."""
-    drive: Annotated[list[AnyDrive], Field(min_length=1)]
-    """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom."""
+    drive: list[AnyDrive] = []
+    """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom; none
+    for a structure, and where `hold` names the locks of every case."""
     gear: dict[str, GearTable] = {}
     """Pairs of gears by name, which is also that of the force between their teeth."""
     rack: dict[str, RackTable] = {}

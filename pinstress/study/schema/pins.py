@@ -20,7 +20,30 @@ from pinstress.study.schema.types import (
     StrictTable,
     Switch,
     Tapered,
+    ThermalExpansion,
 )
+
+
+class HardenedTable(StrictTable):
+    """A hardened outer surface, by whose depth yield is judged."""
+
+    surface: Stress
+    """Yield strength of the case: the least from the surface down to `depth`."""
+    core: Stress
+    """Yield strength of the core beneath it."""
+    depth: PositiveLength
+    """Effective depth of the case, normal to the surface. Where it is measured to a limiting
+    hardness (as in ISO 18203), `surface` is the strength that belongs to that hardness."""
+
+    @model_validator(mode="after")
+    def _softer_core(self) -> "HardenedTable":
+        if self.core > self.surface:
+            raise ArgumentError(
+                f"the core is {self.core / self.surface:.4g} times as strong as the surface; a "
+                "hardened surface is at least as strong as its core: check both, and their units",
+                "strengths-out-of-order",
+            )
+        return self
 
 
 class MaterialTable(StrictTable):
@@ -32,8 +55,14 @@ class MaterialTable(StrictTable):
     """Poisson's ratio."""
     density: Density | None = None
     """Density, for the weight and inertia of the pin. Default: no weight."""
+    thermal_expansion: ThermalExpansion | None = None
+    """Mean coefficient of thermal expansion between the reference temperature and those of the
+    cases, which a case with a `temperature` needs of pins in lugs, of these and their bushings."""
     yield_strength: Stress | None = None
     """Yield strength. Without it no safety factors are computed."""
+    hardened: HardenedTable | None = None
+    """Hardened surface of pins of this material, instead of `yield_strength`. Lugs and bushings of
+    it are not hardened: their yield strength is that of the core."""
     ultimate_strength: Stress | None = None
     """Ultimate tensile strength, for checks at ultimate load."""
     shear_strength: Stress | None = None
@@ -43,6 +72,9 @@ class MaterialTable(StrictTable):
     ultimate_strain: Annotated[Number, Field(gt=0.0, lt=1.0)] | None = None
     """Total strain at the ultimate strength, for the plastic bending of pins after Cozzone (code
     "aircraft")."""
+    failure_strain: Annotated[Number, Field(gt=0.0, lt=3.0)] | None = None
+    """Equivalent plastic strain at which a lug breaks, for its ultimate load where limit loads are
+    requested, ln(1 + A) of the elongation A for instance. Default: no ultimate load."""
     fatigue: SnTable | None = None
     """Stress-life curve, for `fatigue.method` "signed-von-mises" and "critical-plane"."""
     fkm: FkmTable | None = None
@@ -62,6 +94,21 @@ class MaterialTable(StrictTable):
                     "exceed; check both, and their units",
                     "strengths-out-of-order",
                 )
+        return self
+
+    @model_validator(mode="after")
+    def _one_strength(self) -> "MaterialTable":
+        if self.hardened is not None and self.yield_strength is not None:
+            raise ArgumentError(
+                "give either yield_strength or hardened, whose core is the yield strength of what "
+                "is not hardened",
+                "give-one",
+            )
+        if self.hardened is not None and self.hardening:
+            raise ArgumentError(
+                "hardening is past the yield strength of one material; a hardened surface has two",
+                "key-not-applicable",
+            )
         return self
 
     @model_validator(mode="after")
@@ -98,6 +145,8 @@ class SegmentTable(StrictTable):
     and at its far end."""
     bore_radius: NotNegativeAtEnds = 0.0
     """The same of the corners of the bore, inner ones too."""
+    hardened: HardenedTable | None = None
+    """Hardened outer surface of this segment. Default: that of the pin or its material."""
 
     @property
     def diameters(self) -> tuple[float, float]:
@@ -262,6 +311,9 @@ class PinTable(StrictTable):
     """Connection whose force in cases of given forces is minus the sum of the others, and whose
     torque about the axis likewise; such cases do not state it. For forces that scatter
     independently. Default: the cases state all forces."""
+    hardened: HardenedTable | None = None
+    """Hardened outer surface of all segments. Default: that of its material. Not with `geometry`,
+    and not with holes, flats, slots or passages."""
     replaceable: Switch = False
     """Whether the pin is meant to be replaced; then EN 1993-1-8, 3.13 limits bearing, bending and
     contact stress at limit load, too."""

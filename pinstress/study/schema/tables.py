@@ -26,6 +26,7 @@ from pinstress.study.schema.types import (
     Number,
     PositiveLength,
     StrictTable,
+    Temperature,
 )
 from pinstress.study.schema.vary import ReliabilityTable, VaryTable
 
@@ -71,9 +72,13 @@ class AnalysisTable(StrictTable):
     AFFDL-TR-69-42, Melcon and Hoblit, Ekvall, Cozzone ("aircraft"); ASME BTH-1 ("lifting");
     EN 1993-1-8 and ANSI/AISC 360, D5 ("civil"). A list shows them side by side."""
     design_factor: Annotated[Number, Field(ge=1.0)] | None = None
-    """Design factor N_d of ASME BTH-1, 3-1.3, for the code "lifting": 2 for design category A, 3
-    for B."""
+    """Design factor N_d of ASME BTH-1 for the code "lifting"; the standard gives it by the design
+    category of the device."""
 
+    reference_temperature: Annotated[
+        Temperature, Field(json_schema_extra={"default": "20 degC"})
+    ] = 293.15
+    """Temperature at which the dimensions, clearances and interferences of the study hold."""
     bending_moment: Literal["joint", "formula"] = "joint"
     """Which bending moments and shear forces the checks of pins in solved joints take: those of
     the joint model ("joint") or those of even loads on the bands ("formula"); the others are

@@ -38,6 +38,7 @@ REMOVED_KEYS = {
 UNKNOWN_KEY_ERROR = "unknown_key"  # the type of pydantic's error
 MIN_SI_VALUE = 1.0 / MAX_SI_VALUE  # in SI: its square does not underflow
 FORBIDDEN_CHARACTERS = '/\\:*?"<>|'  # in names of files, on some system
+MAX_THERMAL_EXPANSION = 1e-3  # 1/K: metals have 1e-6 to 4e-5, rubber 2e-4
 MAX_NAME_LENGTH = 100  # characters as quoted: two names fit into a file name
 
 
@@ -79,7 +80,7 @@ PROVENANCE_PROPERTIES: dict[str, Any] = {
 }
 
 
-def _complete(schema: dict[str, Any], table: type["StrictTable"]) -> None:
+def complete_schema(schema: dict[str, Any], table: type["StrictTable"]) -> None:
     """Add descriptions and provenance to a table's JSON Schema."""
     for key, words in described(table).items():
         schema["properties"][table.model_fields[key].alias or key]["description"] = words
@@ -153,6 +154,17 @@ def _not_negative(value: float) -> float:
 
 
 POSITIVE = Within(_positive, "> 0")
+
+
+def _expansion(value: float) -> float:
+    if not abs(value) < MAX_THERMAL_EXPANSION:
+        raise ArgumentError(
+            f"must be less than {MAX_THERMAL_EXPANSION:g} 1/K; steel has about 12e-6 1/K",
+            "out-of-range",
+        )
+    return value
+
+
 NOT_NEGATIVE = Within(_not_negative, "≥ 0")
 PIN_SIZED = Within(_pin_sized, "from 1 µm to 1 km")
 
@@ -232,6 +244,11 @@ def _usable_section(name: str) -> str:
 
 CaseName = Annotated[str, AfterValidator(_usable_section)]
 Point = tuple[Length, Length]
+Temperature = Annotated[float, Quantity("temperature")]
+ThermalExpansion = Annotated[
+    Annotated[float, Quantity("thermal expansion")],
+    Within(_expansion, f"less than {MAX_THERMAL_EXPANSION:g} 1/K"),
+]
 TiltStiffness = Annotated[Annotated[float, Quantity("torsional stiffness")], POSITIVE]
 
 JointOrPoint = Annotated[
@@ -271,7 +288,7 @@ class StrictTable(BaseModel):
     """
 
     model_config = ConfigDict(
-        extra="forbid", frozen=True, allow_inf_nan=False, json_schema_extra=_complete
+        extra="forbid", frozen=True, allow_inf_nan=False, json_schema_extra=complete_schema
     )
 
     @model_validator(mode="before")
@@ -280,12 +297,12 @@ class StrictTable(BaseModel):
         known = [field.alias or name for name, field in cls.model_fields.items()]
         unknown = data.keys() - known if isinstance(data, dict) else ()
         if unknown:
-            wrong = [_unknown(key, known) for key in data if key in unknown]
+            wrong = [unknown_key(key, known) for key in data if key in unknown]
             raise ValidationError.from_exception_data(cls.__name__, wrong)
         return data
 
 
-def _unknown(key: object, known: list[str]) -> InitErrorDetails:
+def unknown_key(key: object, known: list[str]) -> InitErrorDetails:
     context: dict[str, Any] = {"text": f"unknown key {as_text(key)}; ", "key": key, "known": known}
     return InitErrorDetails(
         type=PydanticCustomError(UNKNOWN_KEY_ERROR, "{text}", context), input=None

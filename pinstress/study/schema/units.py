@@ -11,6 +11,7 @@ from typing import Any
 
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.shown import as_text, in_toml, nearest
+from pinstress.study.schema.thermal_units import THERMAL_UNITS, thermal_si
 
 # dimension: its exponents of length, force and time, and an example with a unit
 DIMENSION_EXPONENTS: dict[str, tuple[tuple[int, int, int], str]] = {
@@ -35,10 +36,18 @@ DIMENSION_EXPONENTS: dict[str, tuple[tuple[int, int, int], str]] = {
     "angle": ((0, 0, 0), "45 deg"),
     "angular velocity": ((0, 0, -1), "2 rad/s"),
     "angular acceleration": ((0, 0, -2), "3 rad/s^2"),
+    "temperature": ((0, 0, 0), "120 degC"),
+    "temperature difference": ((0, 0, 0), "5 degC"),
+    "thermal expansion": ((0, 0, 0), "11.7e-6 1/K"),
 }
 
-# Degrees or radians?
-DIMENSIONS_NEEDING_UNIT = "angle", "angular velocity", "angular acceleration"
+# Degrees or radians, Celsius or Fahrenheit? By dimension the choice, in words.
+DIMENSIONS_NEEDING_UNIT = {
+    **dict.fromkeys(("angle", "angular velocity", "angular acceleration"), "degrees or radians"),
+    "temperature": "degC, degF or K",
+    "temperature difference": "degC, degF or K",
+    "thermal expansion": "1/K or 1/degF",
+}
 
 
 MINUS_SIGN = "\N{MINUS SIGN}"  # which reports print
@@ -201,7 +210,8 @@ def _plain(number: float, dimension: str, system: UnitSystem) -> float:
     if dimension in DIMENSIONS_NEEDING_UNIT:
         _, example = DIMENSION_EXPONENTS[dimension]
         raise ArgumentError(
-            f"{number:g} needs a unit, degrees or radians; write for instance {example!r}",
+            f"{number:g} needs a unit, {DIMENSIONS_NEEDING_UNIT[dimension]}; write for instance "
+            f"{example!r}",
             "missing-unit",
         )
     return number * system.factor(dimension)
@@ -242,6 +252,8 @@ def _parse(text: str, dimension: str, system: UnitSystem) -> float:
     number, unit = quantity
     if not unit:
         return _plain(number, dimension, system)
+    if dimension in THERMAL_UNITS:
+        return thermal_si(number, unit, dimension, text)
     return number * _unit_factor(unit, dimension, text)
 
 

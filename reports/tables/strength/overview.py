@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from assess.judgement import DEPENDS
 from assess.strength.model_stress import YIELD_METHOD
 from reports.data.decision import limit
+from reports.data.lug_modes import BORE_STRESS, lug_mode
 from reports.data.overview import Diameter, PinLine
 from reports.data.results import Results
 from reports.format.numbers import DASH, engineering, short
@@ -175,7 +176,11 @@ def error_words(line: PinLine) -> str:
 
 def check_words(line: PinLine) -> str:
     """Return the worst check where it is another than the maximum against yield."""
-    return DASH if line.check.check == YIELD_METHOD else line.check.check
+    check = line.check
+    if check.lug and check.factor:
+        where = "bore" if lug_mode(check.check) == BORE_STRESS else check.check
+        return f"lug {check.lug}, {where}: {engineering(check.factor, 3)}"
+    return DASH if check.check == YIELD_METHOD else check.check
 
 
 def _heading(axis: FactorAxis | None) -> str:

@@ -34,6 +34,7 @@ from reports.format.words import (
 from reports.tables.column import Column, Table, grid_of, in_order, unit_columns
 from reports.tables.published import published_maxima
 from reports.tables.stress.joint import lugs_word
+from reports.tables.stress.places import governing_words
 
 FACTOR_COLUMN_ORDER = (  # for people; columns that are not named here come last
     *("pin", "case", "outcome", "safety_factor", "utilisation", "max_von_mises"),
@@ -138,7 +139,7 @@ COLUMNS: tuple[Column[FactorRow], ...] = (
     _error("truncation"),
     Column("depends_on", lambda row: depends_words(row.pin.depends_on, row.units)
            if row.pin.outcome == DEPENDS else None),
-    Column("governs", lambda row: row.pin.places and row.pin.places.governs, "", "at",
+    Column("governs", lambda row: governing_words(row.pin.places), "", "at",
            numeric=False, rank=5, drop_if_empty=True),
     Column("surface", lambda row: _place(row, "surface", "max_von_mises"), "stress"),
     Column("section", lambda row: _place(row, "section", "max_von_mises"), "stress"),

@@ -5,17 +5,37 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from fea.core.places import ContactEdge, ContactPlace, SectionPlace, SurfacePlace
+from fea.core.places import (
+    ContactEdge,
+    ContactPlace,
+    PartPlace,
+    Places,
+    SectionPlace,
+    SurfacePlace,
+)
 from pinbase.records import plain
 from reports.data.results import PinResult, Results, Units
 from reports.format.numbers import finite
 from reports.tables.column import PIN_AND_CASE, Column, PinRow, Table, fields, unit_columns
 
+PlaceName = Literal["surface", "section", "beneath", "case", "core", "unhardened"]
 
-def factor_at(pin: PinResult, stress: float | None) -> float | None:
-    """Return the yield strength of a row over a stress of it; None without either."""
-    strength = pin.yield_strength
+
+def factor_at(pin: PinResult, stress: float | None, there: float | None = None) -> float | None:
+    """Return the yield strength of a row over a stress of it; None without either.
+
+    there: the yield strength at the place of the stress, if it has its own.
+    """
+    strength = there or pin.yield_strength
     return strength / stress if strength and stress else None
+
+
+def governing_words(places: Places | None) -> str | None:
+    """Return the place that governs a row, of a pin with a hardened surface its case or core."""
+    if places is None:
+        return None
+    part = places.hardened[0].part if places.hardened else "unhardened"
+    return places.governs if part == "unhardened" else part
 
 
 def places_json(pin: PinResult) -> dict[str, Any]:
@@ -26,12 +46,25 @@ def places_json(pin: PinResult) -> dict[str, Any]:
     keys: dict[str, Any] = {"governs": places.governs}
     for name, at in (("surface", places.surface), ("section", places.section)):
         if at is not None:
-            factor = factor_at(pin, at.max_von_mises)
-            keys[name] = {**plain(at), "safety_factor": finite(factor)}
+            factor = factor_at(pin, at.max_von_mises, at.strength)
+            keys[name] = {**_plain(at), "safety_factor": finite(factor)}
     if places.contact is not None:
-        keys["contact"] = plain(places.contact)
+        keys["contact"] = _plain(places.contact)
         del keys["contact"]["depths"]
+    if places.hardened:
+        keys["hardened"] = [
+            {**plain(part), "safety_factor": finite(part.safety_factor)} for part in places.hardened
+        ]
     return keys
+
+
+def _plain(at: SurfacePlace | SectionPlace | ContactPlace) -> dict[str, Any]:
+    """Return a place without the keys that only pins with a hardened surface have, if it is none of
+    these.
+    """
+    known: dict[str, Any] = plain(at)
+    own = {"strength", "crushing"}
+    return {key: x for key, x in known.items() if key not in own or x is not None}
 
 
 @dataclass(frozen=True)
@@ -42,8 +75,8 @@ class PlaceRow:
     """
 
     pin: PinResult
-    place: Literal["surface", "section", "beneath"]
-    of: SurfacePlace | SectionPlace | ContactPlace
+    place: PlaceName
+    of: SurfacePlace | SectionPlace | ContactPlace | PartPlace
     units: Units
 
     @property
@@ -63,7 +96,7 @@ class PlaceRow:
     @property
     def factor(self) -> float | None:
         """The yield strength over the stress."""
-        return factor_at(self.pin, self.stress)
+        return factor_at(self.pin, self.stress, self.of.strength)
 
     @property
     def at(self) -> tuple[float | None, float | None, float | None]:
@@ -74,7 +107,10 @@ class PlaceRow:
 
     @property
     def governs(self) -> bool:
-        return self.pin.places is not None and self.pin.places.governs == self.place
+        places = self.pin.places
+        if places is not None and places.hardened:
+            return self.of == places.hardened[0]
+        return places is not None and places.governs == self.place
 
 
 def place_rows(pin: PinResult, units: Units) -> list[PlaceRow]:
@@ -82,8 +118,9 @@ def place_rows(pin: PinResult, units: Units) -> list[PlaceRow]:
     if pin.places is None:
         return []
     places = pin.places
-    rows: list[tuple[Literal["surface", "section", "beneath"], Any]] = [
+    rows: list[tuple[PlaceName, Any]] = [
         ("surface", places.surface), ("section", places.section), ("beneath", places.contact),
+        *((part.part, part) for part in places.hardened),
     ]  # fmt: skip
     return [PlaceRow(pin, name, of, units) for name, of in rows if of is not None]
 

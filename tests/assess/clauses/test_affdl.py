@@ -3,7 +3,7 @@
 Two numbers of its print are not kept. The net tension of the females, 57,898 lbf, is that of both
 legs; one carries 28,949. That of the male, 112,313 lbf, is by equation 9-6b although F_tu is less
 than 1.304 F_ty; by 9-6a it is 100,485. Neither governs. Loads are printed to three digits; those
-here are computed from the printed inputs with all digits.
+here are of the printed inputs with all digits. docs/evidence.md compares what is printed.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import pytest
 
 from assess.checks import SETS, margins_of
 from assess.clauses.affdl_joint import DoubleShear
-from assess.clauses.affdl_lugs import bearing_load, bushing_load, net_section_load
+from assess.clauses.affdl_lugs import net_section_load
 from assess.clauses.eye import PlateEye
 from assess.lug_factors import LugFactors
 from assess.margin import Margin
@@ -67,23 +67,10 @@ def named(margins: list[Margin]) -> dict[tuple[str, str], Margin]:
     return {(m.method, m.at): m for m in margins if m.governs}
 
 
-def test_female_bearing() -> None:
-    """28,600 lbf in print, 28,558 by its own K of 1.46: F_tux exceeds 1.304 F_tyx (9-2a, 9-3b)."""
-    load = bearing_load(FEMALE, 1.46, *FEMALE_STRENGTHS).result.value
-    assert lbf(load) == pytest.approx(28_558, rel=2e-5)
-
-
-def test_net_sections() -> None:
-    """One leg 28,949 lbf, half of the printed 57,898; the male by 9-6a, 100,485."""
-    one = net_section_load(FEMALE, 0.74, *FEMALE_STRENGTHS).result.value
-    assert lbf(one) == pytest.approx(57_898 / 2.0, rel=1e-4)
+def test_net_section_of_the_male() -> None:
+    """By 9-6a, 100,485 lbf; of the table of margins it is not the worst."""
     male = net_section_load(MALE, 0.87, *MALE_STRENGTHS).result.value
     assert lbf(male) == pytest.approx(100_485, rel=1e-5)
-
-
-def test_male_bushing() -> None:
-    """44,000 lbf in print (9-9), 44,010 with all digits."""
-    assert lbf(bushing_load(MALE, 60 * KSI).result.value) == pytest.approx(44_010, rel=1e-6)
 
 
 def test_the_load_shifts_to_the_faces() -> None:
@@ -115,17 +102,10 @@ def test_the_shifted_load_bends_the_pin_as_much(moment: float) -> None:
 def test_a_study_of_the_table() -> None:
     """Checks of the code "aircraft" find the loads of the table, for 1.5 x 1.15 of the forces."""
     margins = named(margins_of(joint_of_table()))
-    for (method, at), load in {
-        ("AFFDL lug bearing", "A"): 28_558,
-        ("AFFDL lug net section", "A"): 28_949,
-        ("AFFDL lug net section", "B"): 100_485,
-        ("AFFDL bushing", "B"): 44_010,
-        ("AFFDL joint in double shear", "B"): 37_841,
-    }.items():
-        m = margins[method, at]
-        assert m.allowable is not None
-        assert lbf(m.allowable) == pytest.approx(load, rel=1e-4), method
-        assert m.factor == pytest.approx(1.5 * 1.15)
+    male = margins["AFFDL lug net section", "B"]
+    assert male.allowable is not None
+    assert lbf(male.allowable) == pytest.approx(100_485, rel=1e-4)
+    assert male.factor == pytest.approx(1.5 * 1.15)
     joint = margins["AFFDL joint in double shear", "B"]
     assert joint.margin == pytest.approx(37_841 / (1.725 * 20_000) - 1.0, rel=1e-3)
     (bent,) = (m for m in margins_of(joint_of_table()) if m.method.startswith("pin bending"))
@@ -175,3 +155,5 @@ def test_a_transverse_force_is_no_axial_one() -> None:
     assert "force along the shank at lug" in needs["AISC pin-connected member"]
     assert "k_tru" in needs["Melcon-Hoblit transverse"]
     assert "Ekvall transverse" in made
+    bare = margins_of(replace(s, lugs=lugs, sized=lugs, lug_factors={}))
+    assert "AFFDL lug bearing" not in {m.method for m in bare}  # nor does it ask for K

@@ -1,4 +1,6 @@
-"""Pin-connected plates of spreadsheets after ASME BTH-1-2005, and one of them that is wrong."""
+"""Pin-connected plates after ASME BTH-1-2005: numbers between, and a sheet that is wrong; the
+strengths of five sheets are in docs/evidence.md.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,6 @@ from assess.situation import Situation
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.support.lugs.lug import Lug
-from tests.support.each import each
 from tests.support.pins.plain_pins import double_shear
 
 IN, KIP, KSI = 0.0254, 4448.2216, 6.894757e6
@@ -44,32 +45,10 @@ def kips(eye: PlateEye, N_d: float = ND) -> list[float]:
 B7 = plate(0.75, 3.3125, 1.66, 1.375, 1.6875)
 
 
-@each(("eye", "printed"), [
-    (B7, (49.30, 68.76, 88.41, 23.20)),
-    (plate(0.19685, 0.25591, 0.25591, 0.39370, 0.47244), (2.065, 1.783, 1.964, 1.744)),
-    (plate(0.19685, 0.35433, 0.35433, 0.39370, 0.47244), (2.859, 2.367, 2.643, 1.744)),
-])  # fmt: skip
-def test_curved_plates(eye: PlateEye, printed: tuple[float, ...]) -> None:
-    """P_t, P_b, P_v, P_p in kips; the prints have two decimals."""
-    assert kips(eye) == pytest.approx(printed, rel=4e-4)
-
-
 def test_intermediate_numbers() -> None:
     """C_r 0.841 and A_v 5.23 in2 of the first plate."""
     assert pin_to_hole(B7) == pytest.approx(0.841, abs=5e-4)
     assert shear_area(B7) / IN**2 == pytest.approx(5.23, abs=8e-3)
-
-
-def test_a_straight_plate() -> None:
-    """175.21, 144.09 and 77.34 kips are printed without C_r. Its shear, 145.46, is not kept: with
-    phi = 55 x 2.75/3 = 50.4 degrees the formula gives 147.97.
-    """
-    eye = plate(1.25, 3.0, 3.0, 2.75, 3.0, square=True)
-    tension, fracture, shear, bearing = kips(eye)
-    C_r = pin_to_hole(eye)
-    assert [tension / C_r, fracture / C_r] == pytest.approx([175.21, 144.09], rel=1e-4)
-    assert shear == pytest.approx(147.97, rel=1e-4)
-    assert bearing == pytest.approx(77.34, rel=1e-4)
 
 
 def test_a_sheet_that_is_wrong() -> None:
@@ -77,10 +56,9 @@ def test_a_sheet_that_is_wrong() -> None:
     12 kips, which it would pass, must not pass here.
     """
     eye = plate(0.75, 1.0625, 1.0625, 0.75, 0.875)
-    tension, fracture, _, bearing = kips(eye, 3.0)
+    bearing = bearing_strength(eye, FY, FU, 3.0).result.value / KIP
     assert pin_to_hole(eye) == pytest.approx(0.8583, rel=1e-4)
     assert effective_width(eye, FU / FY) / IN == pytest.approx(0.9321, rel=1e-4)
-    assert [tension, fracture] == pytest.approx([19.33, 17.03], rel=4e-4)
     assert bearing == pytest.approx(8.44, abs=5e-3)
     assert bearing * IN**2 / (0.75 * 0.75) / IN**2 == pytest.approx(15.0)  # what it printed
     s = clevis(12.0)

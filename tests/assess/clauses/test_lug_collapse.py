@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from assess.clauses.lug_collapse import lug_collapse
+from assess.clauses.lug_collapse import lug_collapse, lug_rupture
 from assess.plastic.records import LugCollapse
 from assess.situation import LoadFactors, Situation
 from fea.core.material import Material
@@ -56,3 +56,20 @@ def test_an_oblique_load_is_not_judged() -> None:
 def test_what_is_missing_is_named() -> None:
     (margin,) = lug_collapse(_situation(0.0, LugCollapse("", needs="pin.P.lug.B.shank")))
     assert margin.needs == "pin.P.lug.B.shank"
+
+
+def test_the_ultimate_load_is_allowed_where_a_failure_strain_is_given() -> None:
+    """Beside the limit load; a lug without that strain has none, a missing strength is named."""
+    broken = replace(FOUND, ultimate=99e3, breaks_by="strain")
+    (margin,) = lug_rupture(_situation(0.0, broken))
+    assert (margin.allowable, margin.level) == (99e3, "ultimate")
+    assert margin.margin == pytest.approx(99.0 / 60.0 - 1.0)
+    assert "failure strain is reached" in margin.basis
+    assert "20 bars" in margin.scatter
+    assert lug_rupture(_situation(0.0, FOUND)) == []
+    assert lug_rupture(_situation(math.pi, broken)) == []
+    (across,) = lug_rupture(_situation(0.5, broken))
+    assert "along the shank" in across.needs
+    key = "material.steel.ultimate_strength"
+    (lacking,) = lug_rupture(_situation(0.0, replace(FOUND, breaks_by=key)))
+    assert lacking.needs == key

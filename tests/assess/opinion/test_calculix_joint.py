@@ -159,6 +159,20 @@ def test_the_deck_of_forces_in_no_plane_is_of_the_whole() -> None:
     assert deck.pin.mesh.nodes[:, 1].min() == pytest.approx(-D / 2.0)
 
 
+def test_friction_and_a_history_of_loads() -> None:
+    """One step for each part of the load, in several increments; without friction nothing new."""
+    pin, lugs = clevis()
+    deck, _ = joint_deck(pin, STEEL, lugs, PULL, COARSE)
+    plain = list(deck.lines())
+    lines = list(replace(deck, friction=0.2, history=(1.0, 0.25)).lines())
+    assert "*FRICTION" not in plain
+    assert float(lines[lines.index("*FRICTION") + 1].split(",")[0]) == 0.2
+    forces = [float(lines[k + 1].split(",")[2]) for k, x in enumerate(lines) if x == "*CLOAD"]
+    assert forces[1] == pytest.approx(0.25 * forces[0])
+    assert lines.count("*STEP") == lines.count("*END STEP") == 2
+    assert plain[plain.index("*STATIC") + 1] != lines[lines.index("*STATIC") + 1]
+
+
 def test_the_mean_motion_of_the_outer_surface() -> None:
     """Under a rigid shift and tilt of a lug its equations hold with the auxiliary nodes' values."""
     pin, lugs = clevis()

@@ -12,9 +12,10 @@ import pytest
 
 from fea.core.places import Places, SectionPlace, SurfacePlace
 from fea.support.records import JointForces
-from reports.data.results import PinShape, Results, Surface, Units
+from reports.data.results import LugSketch, PinShape, Results, Surface, Units
 from reports.data.surface import LoadCourse
 from reports.format.drawing.camera import View
+from reports.page.lug_across import draw_across, most_loaded
 from reports.page.pin_drawing import draw_pin
 from reports.page.pins import governing_names, pin_parts
 from reports.page.pins_reading import reading_parts, signs
@@ -119,9 +120,13 @@ def test_curves_are_those_of_the_results() -> None:
     assert stress[[0, 2, 3]].tolist() == [100.0, 1100.0, 1600.0]
     assert np.isnan(stress[1])  # an excluded zone is no point of the curve
     assert list(zip(*along.section, strict=True)) == list(COURSE)
-    # line loads of 300, -100 on the left, 300, 100 in the middle, over a diameter of 2
-    assert along.pressure == (
-        (0.0, 0.5, 150.0), (0.5, 1.0, 50.0), (1.25, 1.75, 150.0), (1.75, 2.25, 50.0),
+    # loads of 300 and -100 on the left, of 300 and 100 in the middle, along the force of each
+    up = 300.0 / np.hypot(300.0, 100.0)
+    assert np.array(along.line_loads) == pytest.approx(
+        np.array([
+            (0.0, 0.5, -300.0), (0.5, 1.0, 100.0), (1.25, 1.75, 300.0 * up),
+            (1.75, 2.25, 100.0 * up),
+        ])
     )  # fmt: skip
     assert along.maximum == 2000.0
     assert along.allowed == pytest.approx(1000.0)
@@ -172,12 +177,96 @@ def test_the_governing_place_and_the_curves_share_the_axis_of_the_pin() -> None:
         [left, left + 1.5 * scale, left + 3.0 * scale], abs=0.06
     )
     assert points[1][1] == pytest.approx(float(mark[1]), abs=0.06)  # it is the row's stress
-    (pressed,) = re.findall(r'<path d="([^"]+)" class="pressure"', svg)
-    starts = [float(x) for x in re.findall(r"M([\d.]+),", pressed)]
-    assert starts[2] == pytest.approx(left + 1.25 * scale, abs=0.02)
     assert len(re.findall(r'class="surface"', svg)) == 2  # about what is not read
     assert ">max 2,000<" in svg
     assert ">allowed 1,000<" in svg
+
+
+def in_lugs_of(outer: float, bushing: float = 0.0) -> PinShape:
+    """The pin in lugs about its bands, from 0 to 1 and from 2 to 3."""
+    lugs = (
+        LugSketch("left", (0.0, 1.0), outer, 0.0, "steel", bushing=bushing),
+        LugSketch("middle", (2.0, 3.0), outer, 0.0, "steel"),
+    )
+    return replace(SHAPE, lugs=lugs)
+
+
+def rectangles(svg: str, kind: str) -> list[tuple[float, ...]]:
+    """x, y, width and height of the rectangles of a class."""
+    pattern = rf'<rect class="{kind}" x="([\d.]+)" y="([\d.]+)" width="([\d.]+)" height="([\d.]+)"'
+    return [tuple(map(float, found)) for found in re.findall(pattern, svg)]
+
+
+def test_lugs_are_drawn_to_scale() -> None:
+    """Width, gap and diameters of lugs and bushing, in the scale of the pin, about its axis."""
+    svg = draw_pin(in_lugs_of(5.0, bushing=0.25), UNITS)
+    above, below, other, _ = rectangles(svg, "lug")
+    scale = above[2]  # the lug is 1 in wide
+    assert other[0] - above[0] == pytest.approx(2.0 * scale, abs=0.02)  # from z = 0 to z = 2
+    assert below[1] + below[3] - above[1] == pytest.approx(5.0 * scale, abs=0.03)
+    hole = below[1] - above[1] - above[3]
+    assert hole == pytest.approx((2.0 + 2.0 * 0.25) * scale, abs=0.03)
+    ring, _ = rectangles(svg, "bushing")
+    assert ring[3] == pytest.approx(0.25 * scale, abs=0.02)
+    assert ring[1] + ring[3] == pytest.approx(above[1] + above[3] + 0.25 * scale, abs=0.03)
+
+
+def test_the_load_per_length_is_on_the_side_that_carries() -> None:
+    """A force down on the left presses from above; where it is negative, from below."""
+    along = shown(of_one_pin((0.0, -400.0, 0.0), (0.0, 300.0, 0.0)))
+    svg = draw_pin(in_lugs_of(5.0), UNITS, along=along)
+    (path,) = re.findall(r'<path d="([^"]+)" class="pressure"', svg)
+    bars = re.findall(r"M([\d.]+),([\d.]+)V([\d.]+)H([\d.]+)V", path)
+    (first, negative, third, fourth) = (tuple(map(float, bar)) for bar in bars)
+    lug = rectangles(svg, "lug")[0]
+    left, scale = lug[0], lug[2]
+    assert first[0] == pytest.approx(left, abs=0.02)
+    assert first[3] == pytest.approx(left + 0.5 * scale, abs=0.02)
+    assert third[0] == pytest.approx(left + 1.25 * scale, abs=0.02)
+    assert first[1] == pytest.approx(lug[1] + lug[3], abs=0.02)  # from the pin's upper side
+    assert first[2] < first[1]  # upwards, y being downwards
+    assert negative[2] > negative[1] > first[1]
+    assert third[2] > third[1]
+    heights = [abs(bar[2] - bar[1]) for bar in (first, negative, third, fourth)]
+    assert heights == pytest.approx(
+        [heights[0], heights[0] / 3.0, heights[0], heights[0] / 3.0], abs=0.03
+    )
+    assert ">300.0 lbf/in<" in svg or ">300 lbf/in<" in svg
+    tails = re.findall(r'class="load" d="M[\d.]+,([\d.]+)V([\d.]+)"', svg)
+    assert float(tails[0][1]) < lug[1]  # the arrow ends at the lug, not in it
+
+
+def test_the_most_loaded_lug_across_its_axis() -> None:
+    """Pressure from below carries a force upwards; eye, bushing and pin in one scale."""
+    results = of_one_pin((0.0, -400.0, 0.0), (0.0, 300.0, 0.0))
+    surface_of_pin = results.surfaces[0]
+    points = np.array([[1.0, 0.0, 0.25], [1.0, 0.0, 0.75], [1.0, 0.0, 2.25], [1.0, 0.0, 2.75]])
+    sectors = 8
+    pressure = np.zeros((4, sectors))
+    pressure[2:, 6] = 100.0, 900.0  # at 270 degrees: from below, as y is upwards
+    case = replace(
+        surface_of_pin.cases[0], rings=np.arange(4), pressure=pressure, largest=np.ones(4),
+        excluded=np.zeros(4, bool),
+    )  # fmt: skip
+    results = replace(results, surfaces=(replace(surface_of_pin, points=points, cases=(case,)),))
+    shape = in_lugs_of(5.0)
+    shape = replace(shape, lugs=(shape.lugs[0], replace(shape.lugs[1], bushing=0.25)))
+    of = most_loaded(results, shape)
+    assert of is not None
+    assert (of.lug.connection, of.pin, of.z) == ("middle", 2.0, 2.75)
+    assert of.arc == pytest.approx(45.0)
+    assert of.force == pytest.approx((0.0, 400.0), abs=1e-9)  # of the made-up joint's middle lug
+    svg = draw_across(results, shape, shown(results, shape))
+    radii = dict(re.findall(r'<circle class="(\w+)" [^>]*?r="([\d.]+)"', svg))
+    eye = float(radii["lug"])
+    assert float(radii["pin"]) == pytest.approx(eye * 2.0 / 5.0, abs=0.02)
+    assert float(radii["bushing"]) == pytest.approx(eye * 2.5 / 5.0, abs=0.02)
+    (around,) = re.findall(r'<path class="around" d="([^"]+)"', svg)
+    corners = np.array(
+        [tuple(map(float, p.split(","))) for p in re.findall(r"[\d.]+,[\d.]+", around)]
+    )
+    assert (corners[:, 1] > 120.0).all()  # below the middle
+    assert corners[:, 0].mean() == pytest.approx(120.0, abs=0.05)
 
 
 def test_a_pin_without_results_is_its_profile() -> None:

@@ -3,7 +3,8 @@
 Nothing of the program's is used but the reading of the outline's dimensions: rays from the bore's
 centre, which reach the outline once, are cut into quadrilaterals with 8 nodes (CPS8), and so is the
 pin, a disc with a hole of 3 % of its radius, on which the force acts. Contact is frictionless,
-surface to surface, by a stiff penalty. A bushing is bonded; its interference is a thermal strain.
+surface to surface, by a stiff penalty. A bushing is bonded, or in such contact with its hole, too;
+its interference is a thermal strain.
 
 Forces, clearance and interference are scaled by SCALE, since CalculiX finds contact on moved nodes.
 """
@@ -34,6 +35,8 @@ PRESSED_IN = 0.2  # of force over modulus: the pin in the bore, for CalculiX to 
 # m, a hundredth of an element: CalculiX makes bodies of plane elements, and the shear by which the
 # thickness contracts must be small; with 1 m the hoop stress was off by 10 MPa of 270
 THICKNESS = 1e-5
+SECTORS = 360  # elements around the bore
+STIFFNESS = 1000.0  # of contact, of the modulus over the bore's diameter
 BALANCE = 0.01  # of the force: what the pressure may miss
 SPRING_FIRST = 1_000_000  # number of the first spring element
 
@@ -63,6 +66,7 @@ class PlaneEye:
     bushing: Material | None = None
     clearance: float = 0.0
     misfit: float = 0.0
+    slips: bool = False
 
 
 @dataclass(frozen=True)
@@ -87,18 +91,17 @@ class _Mesh:
     sectors: int
 
 
-def ccx_answer(eye: PlaneEye, sectors: int = 360, stiffness: float = 1000.0) -> BoreAnswer:
+def ccx_answer(eye: PlaneEye, sectors: int = SECTORS) -> BoreAnswer:
     """What CalculiX finds at the bore.
 
-    sectors: elements around it. stiffness: of the contact, of the modulus over the diameter.
+    sectors: elements around it.
 
     Raises: CalculixError.
     """
     shrunk = _shrinkage(eye, sectors) if eye.misfit else 0.0
     lug, layers = _lug_mesh(eye, sectors)
     pin = _pin_mesh(eye, sectors, shrunk)
-    hard = stiffness * eye.lug.youngs_modulus / (2.0 * eye.radius)
-    stress, seconds = _solve(_deck(eye, lug, layers, pin, hard), len(lug.nodes))
+    stress, seconds = _solve(_deck(eye, lug, layers, pin), len(lug.nodes))
     return _around(eye, lug, layers, stress, seconds)
 
 
@@ -117,7 +120,18 @@ def _lug_mesh(eye: PlaneEye, sectors: int) -> tuple[_Mesh, int]:
     inside += _rings(circle, start, start + 0.5 * (wall - start), size)
     share = np.linspace(0.0, 1.0, 2 * OUTER_LAYERS + 1)[1:, None, None]
     beyond = inside[-1] + share * (outside - inside[-1])
-    return _polar(np.concatenate([np.stack(inside), beyond])), layers
+    mesh = _polar(np.concatenate([np.stack(inside), beyond]))
+    return (_split(mesh, layers) if eye.slips else mesh), layers
+
+
+def _split(mesh: _Mesh, layers: int) -> _Mesh:
+    """The mesh with nodes of its own for the innermost layers."""
+    inside = layers * mesh.sectors
+    shared = np.intersect1d(mesh.elements[:inside], mesh.elements[inside:])
+    number = np.arange(len(mesh.nodes))
+    number[shared] = len(mesh.nodes) + np.arange(len(shared))
+    elements = np.concatenate([mesh.elements[:inside], number[mesh.elements[inside:]]])
+    return _Mesh(np.concatenate([mesh.nodes, mesh.nodes[shared]]), elements, mesh.sectors)
 
 
 def _rings(circle: Floats, first: float, last: float, size: float) -> list[Floats]:
@@ -215,9 +229,7 @@ def _polar(points: Floats) -> _Mesh:
     return _Mesh(points[used], elements, columns // 2)
 
 
-def _deck(
-    eye: PlaneEye, lug: _Mesh, layers: int, pin: _Mesh | None, hard: float = 0.0
-) -> Iterator[str]:
+def _deck(eye: PlaneEye, lug: _Mesh, layers: int, pin: _Mesh | None) -> Iterator[str]:
     """The deck; without a pin, of the press fit only."""
     meshes = [lug] if pin is None else [lug, pin]
     numbers = np.cumsum([0, *(len(m.nodes) for m in meshes)])
@@ -246,8 +258,10 @@ def _deck(
         yield real(THICKNESS)
     yield "*INITIAL CONDITIONS, TYPE=TEMPERATURE"
     yield "ALL, 0."
+    if eye.slips:
+        yield from _interface(lug, layers, stiffness(eye))
     if pin is not None:
-        yield from _contact(eye, lug, pin, hard, int(numbers[1]))
+        yield from _contact(eye, lug, pin, int(numbers[1]))
     yield "*BOUNDARY"
     held = np.flatnonzero(lug.nodes[:, 0] > eye.length * (1.0 - 1e-9))
     yield from (f"{k + 1}, 1, 2" for k in held)
@@ -270,7 +284,26 @@ def _deck(
     yield "*END STEP"
 
 
-def _contact(eye: PlaneEye, lug: _Mesh, pin: _Mesh, hard: float, first: int) -> Iterator[str]:
+def stiffness(eye: PlaneEye) -> float:
+    """The stiffness of contact, Pa/m."""
+    return STIFFNESS * eye.lug.youngs_modulus / (2.0 * eye.radius)
+
+
+def _interface(lug: _Mesh, layers: int, hard: float) -> Iterator[str]:
+    """The contact of a bushing with its hole."""
+    last = layers * lug.sectors
+    yield "*SURFACE, NAME=OUTSIDE"
+    yield from (f"{k + 1}, S2" for k in range(last - lug.sectors, last))
+    yield "*SURFACE, NAME=HOLE"
+    yield from (f"{k + 1}, S4" for k in range(last, last + lug.sectors))
+    yield "*SURFACE INTERACTION, NAME=FITTED"
+    yield "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"
+    yield real(hard)
+    yield "*CONTACT PAIR, INTERACTION=FITTED, TYPE=SURFACE TO SURFACE"
+    yield "OUTSIDE, HOLE"
+
+
+def _contact(eye: PlaneEye, lug: _Mesh, pin: _Mesh, first: int) -> Iterator[str]:
     count = len(lug.elements)
     yield "*SURFACE, NAME=BORE"
     yield from (f"{k + 1}, S4" for k in range(lug.sectors))
@@ -279,7 +312,7 @@ def _contact(eye: PlaneEye, lug: _Mesh, pin: _Mesh, hard: float, first: int) -> 
     yield from (f"{k + 1}, S2" for k in range(last - pin.sectors, last))
     yield "*SURFACE INTERACTION, NAME=DRY"
     yield "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"
-    yield real(hard)
+    yield real(stiffness(eye))
     yield "*CONTACT PAIR, INTERACTION=DRY, TYPE=SURFACE TO SURFACE"
     yield "ROUND, BORE"
     weak = WEAK_SPRING * eye.lug.youngs_modulus * THICKNESS
@@ -324,7 +357,8 @@ def _around(eye: PlaneEye, lug: _Mesh, layers: int, stress: Floats, seconds: flo
     hole = np.empty(0)
     if layers:
         at = lug.elements[layers * lug.sectors : (layers + 1) * lug.sectors, 0]
-        hole = _of_lug(eye, *_polar_stress(lug.nodes[at], stress[at]))
+        both = _polar_stress(lug.nodes[at], stress[at])
+        hole = both[0] if eye.slips else _of_lug(eye, *both)
     turn = np.arctan2(*lug.nodes[bore].T[::-1]) % (2.0 * np.pi)
     total = -2.0 * np.pi * eye.radius * (radial * np.stack([np.cos(turn), np.sin(turn)])).mean(1)
     if np.abs(total - eye.force * _push(eye)).max() > BALANCE * eye.force:

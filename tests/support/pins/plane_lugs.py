@@ -16,12 +16,13 @@ from pathlib import Path
 import numpy as np
 
 from fea.core.material import Material
-from fea.lug.lug_stress import LugInPlane, LugLoad, bore_stresses
+from fea.lug.lug_stress import LugInPlane, LugLoad, stresses_of
+from fea.lug.slipping import SlippingBushing
 from fea.lug.through_thickness import EyeStress
 from fea.support.lugs.lug import Bushing, Lug, Shank
 from pinbase.arrays import Floats
 from pinbase.memo import Memo
-from tests.support.pins.plane_lug_ccx import BoreAnswer, PlaneEye, ccx_answer
+from tests.support.pins.plane_lug_ccx import SECTORS, BoreAnswer, PlaneEye, ccx_answer
 
 STORED = Path(__file__).parents[2] / "validation" / "plane_lugs_ccx.csv"
 HEADER = "eye", "direction_deg", "clearance_mm", "hoop_MPa", "angle_deg", "pressure_MPa", "hole_MPa"
@@ -39,7 +40,10 @@ EYES = {
     "eccentric 2.5": replace(_ROUND, end=0.65 * 0.050),
     "bushed 2.5": replace(_ROUND, hole=0.013, bushing=BRONZE),
     "pressed 2.5": replace(_ROUND, hole=0.013, bushing=BRONZE, misfit=3e-5),
+    "slipping 2.5": replace(_ROUND, hole=0.013, bushing=BRONZE, misfit=3e-5, slips=True),
+    "opening 2.5": replace(_ROUND, hole=0.013, bushing=BRONZE, misfit=8e-6, slips=True),
 }
+SLIPPING_SECTORS = 96  # of CalculiX with two contacts, which takes minutes
 Case = tuple[str, float, float]  # name of the eye, direction of the force, degrees, clearance, mm
 CASES: list[Case] = [
     ("round 2.5", 0.0, 0.0),
@@ -53,6 +57,7 @@ CASES: list[Case] = [
     ("round 1.8", 45.0, TIGHT),
     ("tapered 2.5 to 4", 45.0, TIGHT),
     ("tapered 2.5 to 4", 90.0, 0.0),
+    ("slipping 2.5", 0.0, 0.0),
 ]
 
 
@@ -109,11 +114,15 @@ def figures_of_ccx(answer: BoreAnswer) -> BoreFigures:
 def figures_of_ours(eye: PlaneEye) -> BoreFigures:
     """The figures of fea.lug under a pressure that is even through the thickness."""
     make, force = partial(_plane, eye, Memo()), -eye.force * _direction(eye)
-    pressure = make(around=96).contact.pressures(force)
+    plane = make(around=96)
+    if isinstance(plane, SlippingBushing):
+        pressure = plane.pressures(force).bore
+    else:
+        pressure = plane.contact.pressures(force)
     first = np.zeros((2, 1, 1, 2))
     first[1, 0] = force / (math.pi * eye.radius)
     none = EyeStress(np.zeros((2, 1, 1)), np.zeros((2, 1, 1)))
-    walls = bore_stresses(make, none, LugLoad(force, first, np.ones(1), np.zeros(1)))
+    walls = stresses_of(make, none, LugLoad(force, first, np.ones(1), np.zeros(1)))
     free = next(x for x in walls if x.wall != "hole" and x.place == "free")
     hole = next((x.hoop for x in walls if x.wall == "hole"), math.nan)
     return BoreFigures(free.hoop, math.degrees(free.angle), float(pressure.max()), hole)
@@ -123,12 +132,17 @@ def _direction(eye: PlaneEye) -> Floats:
     return np.array([[math.cos(eye.direction), math.sin(eye.direction)]])
 
 
-def _plane(eye: PlaneEye, memo: Memo, around: int) -> LugInPlane:
+def lug_of(eye: PlaneEye) -> Lug:
+    """The lug of an eye."""
     shank = Shank(eye.shape, eye.width, eye.length, eye.end)
     thickness = eye.hole - eye.radius
     bushing = Bushing(thickness, eye.bushing, eye.misfit) if eye.bushing else None
-    lug = Lug("A", eye.head, eye.lug, eye.clearance, bushing=bushing, shank=shank)
-    return LugInPlane(lug, eye.pin, 0.0, eye.radius, around=around, memo=memo)
+    return Lug("A", eye.head, eye.lug, eye.clearance, bushing=bushing, shank=shank)
+
+
+def _plane(eye: PlaneEye, memo: Memo, around: int) -> LugInPlane | SlippingBushing:
+    kind = SlippingBushing if eye.slips else LugInPlane
+    return kind(lug_of(eye), eye.pin, 0.0, eye.radius, around=around, memo=memo)
 
 
 def stored() -> dict[Case, BoreFigures]:
@@ -150,7 +164,9 @@ def store() -> None:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(HEADER)
         for case in CASES:
-            writer.writerow([*case, *_written(figures_of_ccx(ccx_answer(case_of(*case))))])
+            eye = case_of(*case)
+            sectors = SLIPPING_SECTORS if eye.slips else SECTORS
+            writer.writerow([*case, *_written(figures_of_ccx(ccx_answer(eye, sectors)))])
             file.flush()
 
 

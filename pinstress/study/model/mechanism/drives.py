@@ -108,6 +108,10 @@ def state(
     """
     drives = mechanism_of(study).drive
     rates = (case.velocity, case.acceleration) if isinstance(case, InstantCase) else (0.0, 0.0)
+    for key, stated in zip(DRIVE_DIMENSIONS, (case.position, *rates), strict=True):
+        if stated and not drives:
+            text = f"case.{name}.{key}: there is no drive that has one; remove it"
+            raise study.error(text, code="unknown-drive")
     return [
         (
             _coordinate(study, name, "position", case.position, drive, drawn.drives[k].drawn),

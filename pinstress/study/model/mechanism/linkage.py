@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from typing import TypeVar
 
 import numpy as np
@@ -22,7 +23,7 @@ from loads import (
     Turn,
 )
 from loads.linkage.mass_properties import flat_bar, round_bar
-from loads.motion.mobility import Mobility, require_determined
+from loads.motion.mobility import Mobility, mobility, require_determined
 from pinstress.study.model.mechanism.drawing import Drawing, joints_on
 from pinstress.study.model.mechanism.drives import drive_table, mechanism_of
 from pinstress.study.model.mechanism.gears import gears, rack
@@ -31,6 +32,7 @@ from pinstress.study.model.pins import pin
 from pinstress.study.reading.damage import Damage
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.file import Study
+from pinstress.study.schema.cases import GivenCase, LegCase, StaticCase
 from pinstress.study.schema.mechanism import (
     BodyTable,
     JointTable,
@@ -125,12 +127,22 @@ def _wrong(errors: Iterable[LinkageError]) -> list[Wrong]:
 def determined(study: Study, mechanism: Linkage) -> Mobility:
     """Return the mobility of a mechanism whose drives determine every position.
 
+    Without drives every case may name locks instead, which are checked with the case.
+
     Raises: InputError where they do not, or where a sharing rule applies to no indeterminate force.
     """
     try:
-        return require_determined(mechanism)
+        return mobility(mechanism) if _held_in_all(study) else require_determined(mechanism)
     except LinkageError as error:
         raise study.errors(_wrong(error.each)) from None
+
+
+def _held_in_all(study: Study) -> bool:
+    """Return whether every case, of a mechanism without drives, names the locks that hold it."""
+    apart = (GivenCase, LegCase)
+    cases = [case for case in study.table.case.values() if not isinstance(case, apart)]
+    holds = [isinstance(case, StaticCase) and case.hold is not None for case in cases]
+    return not mechanism_of(study).drive and bool(holds) and all(holds)
 
 
 def _assembled(study: Study, drawing: Drawing, g: float) -> Linkage | list[LinkageError]:
@@ -152,6 +164,7 @@ def _assembled(study: Study, drawing: Drawing, g: float) -> Linkage | list[Linka
         return tuple(parts)
 
     bodies = each(lambda b: _body(drawing, *b, g), mechanism.body.items(), _body_anywhere)
+    bodies = tuple(replace(b, welded=mechanism.body[b.name].welded_to) for b in bodies)
     jointless = {error.at[1] for error in wrong if not joints_on(mechanism, str(error.at[1]))}
     each(lambda s: _require_on_slider(drawing, *s), mechanism.slider.items())
     sliders = tuple(_slider(drawing, *s) for s in mechanism.slider.items())

@@ -11,46 +11,17 @@ from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats
 from fea.support.bands import Bands
 from fea.support.contact.contact import ContactProblem, ContactState
-
-NU = 0.3
-E_STAR = 1.0 / (1.0 - NU * NU)
-# E* dR / Q: half angle of contact (deg) and p0 R / Q of a disc in a hole of an infinite plate of
-# the same material, from E* dR / Q = [2 - ln(b^2 + 1) - 2 b^4] / (pi b^2 (b^2 + 1)) with
-# b = tan(eps / 2): Persson 1964; Ciavarella & Decuzzi 2001.
-PERSSON = {
-    0.0: (84.828, 0.599629),
-    0.1: (80.924, 0.609035),
-    0.5: (69.735, 0.650841),
-    1.0: (60.933, 0.704607),
-    2.0: (50.424, 0.805947),
-    5.0: (36.342, 1.059022),
-    10.0: (27.138, 1.383835),
-    20.0: (19.781, 1.872242),
-    50.0: (12.756, 2.877350),
-    100.0: (9.081, 4.029469),
-}
-
-
-def disc_and_plate(highest: int) -> Floats:
-    """Compliances (N + 1, 1, 1) under p cos n theta, R = E = 1, plane strain, by Muskhelishvili: of
-    the disc [k / (n + 1) + 1 / (n - 1)] / (4 mu), of the hole with n + 1 and n - 1 exchanged. What
-    n = 1 does is a shift, which is free.
-    """
-    mu, k = 0.5 / (1.0 + NU), 3.0 - 4.0 * NU
-    out = np.zeros((highest + 1, 1, 1))
-    out[0] = ((k - 1.0) + 2.0) / (4.0 * mu)
-    for n in range(2, highest + 1):
-        out[n] = (k + 1.0) * (1.0 / (n + 1.0) + 1.0 / (n - 1.0)) / (4.0 * mu)
-    return out
-
-
-def plane(
-    clearance: float, sectors: int = 96, highest: int = 6, tail: float = 1.0
-) -> ContactProblem:
-    """A disc in a plate, of unit radius and thickness; radial clearance."""
-    bands = Bands(np.zeros(1), np.ones(1), np.ones(1), np.zeros(1, int), np.array([clearance]))
-    both = np.array([tail * 4.0 * (1.0 - NU * NU)])
-    return ContactProblem(bands, disc_and_plate(highest), both, [math.inf], sectors)
+from tests.support.exact.plane_contact import (
+    E_STAR,
+    NU,
+    PERSSON,
+    ROLLER_LOAD,
+    ROLLER_PIN,
+    ROLLER_SECTORS,
+    disc_and_plate,
+    plane,
+    roller,
+)
 
 
 def three(
@@ -95,23 +66,13 @@ def test_persson(ratio: float) -> None:
 
 
 def test_hertz() -> None:
-    """A cylinder on a plane of a third of its modulus: p0 = sqrt(Q E' / (pi R)), half width
-    2 Q / (pi p0). A pin of R = 150 mm with three times as much clearance opens its gap as the
-    cylinder does; that its shift goes as the cosine of the angle is felt by 0.2 %.
-
-    Source of the numbers: NAFEMS R0094, test 1: 35 kN/mm, R = 50 mm, 210 on 70 GPa, nu = 0.3.
-    """
+    """p0 = sqrt(Q E' / (pi R)), half width 2 Q / (pi p0), within a cell."""
     weak = 1.0 / ((1.0 - NU * NU) * (1.0 / 210e3 + 1.0 / 70e3))
-    radius, load, pin, clearance, sectors = 50.0, 35e3, 150.0, 450.0, 1440
-    assert pin**2 / clearance == radius
-    bands = Bands(np.zeros(1), np.ones(1), np.array([pin]), np.zeros(1, int), np.array([clearance]))
-    tail = np.array([2.0 * pin / weak])
-    contact = ContactProblem(bands, np.zeros((2, 1, 1)), tail, [math.inf], sectors)
-    found = contact.solve(np.array([[-load, 0.0]]))
-    assert math.sqrt(load * weak / (math.pi * radius)) == pytest.approx(3585.36, rel=1e-4)
-    assert found.pressure.max() == pytest.approx(3585.36, rel=0.01)
-    width = np.count_nonzero(found.pressure) * math.pi / sectors * pin
-    assert width == pytest.approx(6.2146, abs=math.pi / sectors * pin)
+    peak, width = roller()
+    exact = math.sqrt(ROLLER_LOAD * weak / (math.pi * 50.0))
+    assert peak == pytest.approx(exact, rel=0.01)
+    cell = math.pi / ROLLER_SECTORS * ROLLER_PIN
+    assert width == pytest.approx(2.0 * ROLLER_LOAD / (math.pi * exact), abs=cell)
 
 
 def test_the_peak_converges_with_sectors_and_harmonics() -> None:
@@ -229,3 +190,46 @@ def test_forces_out_of_balance_cannot_be_answered() -> None:
     )  # fmt: skip
     with pytest.raises(SolveError):
         contact.solve(np.array([[1.0, 0.0], [-1.0, 0.0]]))
+
+
+def small_and_loose(sectors: int = 48, rings: int = 12) -> ContactProblem:
+    """Two lugs 50 mm thick on a pin of 50 mm of steel, in metres, loose by 60 um: half-planes, with
+    bending and the tilt of the lugs.
+    """
+    ends = np.linspace(0.0, 0.05, rings + 1)
+    z = np.concatenate([0.5 * (ends[1:] + ends[:-1]) + start for start in (0.0, 0.052)])
+    length = np.full(2 * rings, 0.05 / rings)
+    per_force, E = 4.0 * E_STAR**-1 * 0.025 / 200e9, 200e9
+    flexible = np.zeros((17, len(z), len(z)))
+    for n in range(17):
+        flexible[n] = per_force / max(n, 1) * np.eye(len(z))
+    near, far = np.minimum(z[:, None], z), np.maximum(z[:, None], z)
+    bending = near**2 * (3.0 * far - near) / (6.0 * E * math.pi * 0.025**4 / 4.0)
+    flexible[1] += math.pi * 0.025 * length * bending
+    band = np.repeat([0, 1], rings)
+    bands = Bands(z, length, np.full(len(z), 0.025), band, np.full(len(z), 30e-6))
+    tail = np.full(len(z), per_force)
+    return ContactProblem(bands, flexible, tail, [2e6, 2e6], sectors)
+
+
+@pytest.mark.parametrize("load", [1e6, 1e4, 300.0, 10.0, 1.0])
+@pytest.mark.parametrize("across", [0.0, 0.02, 0.3])
+def test_light_loads_in_loose_lugs_touch_few_cells(load: float, across: float) -> None:
+    """A pin in single shear turns until it touches both lugs at their ends, on a few cells of a
+    thousand; conditions and balance hold there, from any start.
+    """
+    contact = small_and_loose()
+    forces = load * np.array([[1.0, across], [-1.0, -across]])
+    found = contact.solve(forces)
+    touching = np.count_nonzero(found.pressure)
+    assert found.pressure.min() >= 0.0
+    assert found.gap.min() >= 0.0
+    assert not (found.pressure * found.gap).any()
+    ring = resultants(contact, found)
+    assert np.add.reduceat(ring, [0, 12]) == pytest.approx(forces, abs=1e-9 * load)
+    assert np.abs((contact.bands.z - 0.051) @ ring).max() < 1e-9 * load
+    loaded = np.ones((24, 48), dtype=bool)
+    again = contact.solve(forces, start=loaded)
+    assert again.pressure == pytest.approx(found.pressure, abs=1e-7 * found.pressure.max())
+    if load <= 300.0:
+        assert touching < 24

@@ -25,8 +25,8 @@ from fea.support.foundation.variations import FoundationRange, prescribed_ranges
 from fea.support.lugs.lug import Bushing, Lug
 from fea.support.support import PinProblem, Solution
 from geometry import Pin, Segment
-from tests.fea.support.contact.test_contact import PERSSON
 from tests.support.each import each, sampled
+from tests.support.exact.plane_contact import PERSSON
 
 D, FORCE = 0.02, 50e3
 STEEL = Material("steel", 210e9, 0.3, density=7850.0)

@@ -99,6 +99,12 @@ def test_what_just_fits() -> None:
     fitted(PIN, ELASTIC, [replace(A, material=ELASTIC, clearance=-0.01), B])
 
 
+def test_formulas_alone_take_any_clearance() -> None:
+    """A hook's pin may be loose: contact with its plate cannot be solved, but it is checked."""
+    loose = replace(A, clearance=0.005)
+    assert fitted(PIN, STEEL, [loose, B], in_contact=False) == (loose, B)
+
+
 def test_bands_are_apart_and_on_the_pin() -> None:
     """Bands are segments, one after the other, so that lugs neither overlap nor lie outside; two
     lugs cannot bear on one.

@@ -171,3 +171,14 @@ def test_an_eye_that_the_defaults_give_grows_with_its_pin() -> None:
     assert new.table.lug_defaults is not None
     assert math.isclose(new.table.lug_defaults.outer_diameter or 0.0, 0.05)
     assert lugs(parse_study(Path("study.toml"), new.text)) == lugs(new)
+
+
+def test_friction_of_all_lugs_is_a_coefficient() -> None:
+    assert study(DEFAULTS + "friction = 0.15").table.pin["P"].lug["M"].friction == 0.15
+    for wrong, message in (
+        ("friction = 1.5", "lug_defaults.friction: must be at most 1"),
+        ("friction = -0.1", "lug_defaults.friction: must be at least 0"),
+        ('friction = "15 %"', "lug_defaults.friction"),
+    ):
+        with pytest.raises(InputError, match=message):
+            study(DEFAULTS + wrong)

@@ -1,0 +1,36 @@
+"""Crushing of a hardened case under the pressure of lugs: the stress in the core beneath it.
+
+No standard has it. The formula is that of an elastic half-plane under the pressure that contact
+has found (fea.support.contact.case_crushing), against first yield of the core.
+"""
+
+from __future__ import annotations
+
+from assess.check import CheckText, check
+from assess.margin import Margin
+from assess.situation import Situation
+
+
+@check(
+    "case crushing",
+    "rule of pinstress: half-plane, Johnson, Contact Mechanics, 2.5",
+    kind="model",
+    takes="results",
+    omits="bending of the pin, which the von Mises stress has; the edges of lugs",
+)
+def crushed_case(text: CheckText, s: Situation) -> list[Margin]:
+    """The margin of the core's yield strength beneath the pressure; only of hardened pins in
+    contact.
+    """
+    places = s.row.peak.places if s.row else None
+    crushing = places.contact.crushing if places and places.contact else None
+    if crushing is None:
+        return []
+    return [
+        Margin(
+            text.method, text.clause, text.kind, text.level, s.factors.at(text.level),
+            crushing.max_von_mises, crushing.strength, at=crushing.band, z=crushing.z,
+            material=s.material.name, basis="core beneath the case, by the pressure alone",
+            omits=text.omits,
+        )
+    ]  # fmt: skip

@@ -1,0 +1,1 @@
+"""Predictions of the program beside measured, printed and exact numbers: docs/evidence.md."""

@@ -1,0 +1,138 @@
+"""The stress of a part of one yield strength of a pin with a hardened surface (fea.core.hardened).
+
+Of a pin with prescribed loads all points of the part are read. Where lugs press on a pin, its case
+is read at the surface (fea.harmonic.free_surface), and its core beneath free surface. Beneath
+lugs bending is that of sections, and the rest belongs to contact (fea.harmonic.beneath).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from fea.core.hardened import StrengthPart, depth_below, hardened_edges
+from fea.core.mesh_result import Point
+from fea.core.pin_loads import Loads
+from fea.core.places import BENEATH_DISTANCE
+from fea.core.pressed import ARC_COUNT, PressedArcs
+from fea.harmonic.beneath import Away
+from fea.harmonic.field import HarmonicField
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.superposition import Circumference
+from geometry import Pin
+from pinbase.arrays import Floats, Ints, Mask
+
+Where = Literal["away", "beside", "beneath"]
+
+
+@dataclass(frozen=True)
+class PartMaximum:
+    """The largest von Mises stress of a part, Pa.
+
+    location: (x, y, z), m.
+    depth: there, beneath the hardened surface, m; None for what is not hardened.
+    instant: its number.
+    """
+
+    value: float
+    location: Point
+    depth: float | None
+    instant: int
+
+
+class BeneathFree:
+    """The part of the circumference beneath free surface: within a band on no arc that its lug
+    presses anywhere along it, or one sector beside it (fea.harmonic.superposition.Region).
+
+    points: (S, 2) m.
+    away: the part farther than BENEATH_DISTANCE diameters from pressed cells, and from the ends of
+    bands on their pressed arcs; None for all.
+    """
+
+    def __init__(self, points: Floats, pressed: PressedArcs, away: Away | None) -> None:
+        self._pressed, self._away, self._under = pressed, away, list[tuple[Ints, Mask]]()
+        for band in np.unique(pressed.rings.band):
+            rings = np.flatnonzero(pressed.rings.band == band)
+            beside = 2.0 * BENEATH_DISTANCE * pressed.rings.radius[rings].max() if away else 0.0
+            first, last = pressed.rings.start[rings].min(), pressed.rings.end[rings].max()
+            near = (points[:, 1] >= first - beside) & (points[:, 1] <= last + beside)
+            self._under.append((rings, near))
+
+    def masked(self, points: Ints) -> Mask:
+        """Mask of the points that are read on a part of the circumference only."""
+        masks = [near[points] for _, near in self._under]
+        masks += [self._away.masked(points)] if self._away else []
+        return np.asarray(np.any(masks, axis=0))
+
+    def read(self, points: Ints, instants: Ints) -> Mask:
+        """The arcs (J, ARC_COUNT) on which pairs of points and instants are read."""
+        out = np.ones((len(points), ARC_COUNT), dtype=bool)
+        if self._away:
+            out = self._away.read(points, instants)
+        for t in np.unique(instants).tolist():
+            for rings, near in self._under:
+                shut = self._pressed.widened(self._pressed.on[t, rings].any(axis=0))
+                out[np.flatnonzero((instants == t) & near[points])] &= ~shut
+        return out
+
+
+class PartField:
+    """The stress of a part of a pin in one case (fea.core.solution.StressMaxima).
+
+    pin: as it is meshed.
+    where: "away" from pressed cells, also "beside" them where the surface is free, or all that lies
+    "beneath" contact, farther than that distance from them; of pins with prescribed loads all is
+    read.
+    """
+
+    def __init__(
+        self, field: HarmonicField, pin: Pin, part: StrengthPart, where: Where = "away"
+    ) -> None:
+        self.field, self.pin, self.part, self.where = field, pin, part, where
+
+    def maxima(self, loads: Loads, least: float = 0.0) -> Floats:
+        """The largest stress (T,), Pa, at every instant, or `least` where it does not exceed it."""
+        around = self._around(loads)
+        return around.maxima(self._read(around), least)
+
+    def largest(self, loads: Loads) -> tuple[float, int]:
+        """The largest of these, Pa, and the number of its instant."""
+        around = self._around(loads)
+        top = around.top(self._read(around))
+        return top.value, top.instant
+
+    def maximum(self, loads: Loads) -> PartMaximum:
+        """The largest of these, and where it is."""
+        around = self._around(loads)
+        top = around.top(self._read(around))
+        r, z = (float(x) for x in around.fields.points[top.point])
+        place = r * float(np.cos(top.angle)), r * float(np.sin(top.angle)), z
+        depth, case = None, self.part.case
+        if case is not None:
+            depth = float(depth_below(hardened_edges(self.pin, case), np.array([[r, z]]))[0])
+        return PartMaximum(top.value, place, depth, top.instant)
+
+    def _around(self, loads: Loads) -> Circumference:
+        fields = self.field.fields
+        if loads.pressed is None or (self.where != "beneath" and self.part.part != "core"):
+            return self.field.reader(loads)
+        if self.where == "beneath":
+            return Circumference(fields, loads, Away(fields.points, loads.pressed))
+        away = Away(fields.points, loads.pressed) if self.where == "away" else None
+        return Circumference(fields, loads, BeneathFree(fields.points, loads.pressed, away))
+
+    def _read(self, around: Circumference) -> Mask:
+        """Mask (S,) of the points of the part outside of singular zones."""
+        read = around.fields.outside(self.field.singularities)
+        return read & part_mask(around.fields, self.pin, self.part)
+
+
+def part_mask(fields: MeridianFields, pin: Pin, part: StrengthPart) -> Mask:
+    """Mask (S,) of the points of a section that belong to a part; made once."""
+    key: tuple[object, ...] = ("part", part)
+    known: dict[tuple[object, ...], Mask] = fields.derived
+    if key not in known:
+        known[key] = part.holds(pin, fields.points)
+    return known[key]

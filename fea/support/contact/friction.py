@@ -1,0 +1,152 @@
+"""Friction of a pin in its lugs, bounded by the pressures of contact without it.
+
+Torque: where pin and lug turn on each other, friction is mu p on every cell, against the sliding:
+the torque between them is at most mu times the integral of p R over the band. That is more than mu
+F R, since pressures on an arc do not all point along their resultant. Which lugs turn on the pin,
+and which way, is not known: a section's torque is at most that of all rings on one side of it, and
+of all rings on the other, which react it.
+
+Bending: as the pin bends, its surface slides along the bores where it is pressed, and friction mu
+p along the axis takes a part of the bending moment while the load grows, up to mu R F on each band.
+When the load falls after a larger one the sliding reverses, and friction adds to the moment. How
+far that has come depends on the history, and on what sticks. Full slip under the pressures without
+friction bounds it: on every ring as it changes the moment of a section most, in balance.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from fea.core.pin_loads import UnitLoad
+from fea.support.bands import Bands
+from fea.support.contact.contact import ContactState
+from fea.support.contact.pressure_loads import (
+    MODE_TOLERANCE,
+    PressureLoads,
+    PressureModes,
+    pressure_modes,
+)
+from fea.support.contact.solve_joint import ContactModel, JointContact
+from fea.support.lugs.lug import Lug
+from pinbase.arrays import Floats
+
+SLIDING, TURNING = "pin sliding as it bends", "links turning on the pin"
+# Shares of the friction along the axis and around it, in both senses. On one cell they are parts of
+# one friction, so that a pin that slides while links turn has some of both.
+HALF, MOST = 0.5, math.sqrt(0.75)
+SENSES = 1.0, -1.0
+SHARES: dict[str, tuple[tuple[float, float], ...]] = {
+    SLIDING: (
+        *((along, 0.0) for along in SENSES),
+        *(
+            (along * a, around * b)
+            for a, b in ((MOST, HALF), (HALF, MOST))
+            for along in SENSES
+            for around in SENSES
+        ),
+    ),
+    TURNING: tuple((0.0, around) for around in SENSES),
+}
+
+
+def rubs(lugs: Sequence[Lug]) -> bool:
+    """Return whether any of the lugs has friction."""
+    return any(lug.friction for lug in lugs)
+
+
+def coefficient_words(lugs: Sequence[Lug]) -> str:
+    """Return the coefficients of friction of lugs in words."""
+    ends = dict.fromkeys(f"{f(lug.friction for lug in lugs):g}" for f in (min, max))
+    return " to ".join(ends)
+
+
+def ring_torques(model: ContactModel, states: Sequence[ContactState]) -> Floats:
+    """The largest torque of friction between each ring and its lug, (T, R) N m."""
+    bands = model.bands
+    friction = np.array([lug.friction for lug in model.lugs])[bands.band]
+    mean = np.stack([state.pressure.mean(axis=1) for state in states])
+    return np.asarray(mean * _areas(bands) * bands.radius * friction)
+
+
+def band_torques(model: ContactModel, states: Sequence[ContactState]) -> Floats:
+    """The largest torque of friction between the pin and each lug, (T, B) N m."""
+    rings = ring_torques(model, states)
+    each = [rings[:, model.bands.band == b].sum(axis=1) for b in range(len(model.lugs))]
+    return np.stack(each, axis=1)
+
+
+def opposed(torques: Floats, z: Floats) -> Floats:
+    """The torques (R,) on rings, in balance, by which every section has the largest torque that
+    friction can cause there.
+
+    torques: the largest of each ring, (R,) N m. z: of their middles, (R,) m.
+    """
+    order = np.argsort(z)
+    before = np.cumsum(torques[order])
+    total = before[-1]
+    at_ends = np.minimum(before, total - before)  # of each ring
+    at_ends[-1] = 0.0
+    most = at_ends.max()
+    if most <= 0.0:
+        return np.zeros_like(torques)
+    # Within the ring where one half of all torque is reached, a section has that half.
+    out = np.zeros_like(torques)
+    out[order] = np.diff(at_ends, prepend=0.0) * (0.5 * total / most)
+    return out
+
+
+def along_axis(model: ContactModel, contact: JointContact) -> Floats:
+    """The friction along the axis over the pressure, by ring, (R,), by which every section has the
+    largest change of moment that friction can cause there.
+    """
+    bands = model.bands
+    friction = np.array([lug.friction for lug in model.lugs])[bands.band]
+    force = contact.line_load[0] * bands.length[:, None]
+    of_lugs = np.stack([force[bands.band == b].sum(axis=0) for b in range(len(model.lugs))])
+    largest = of_lugs[np.linalg.norm(of_lugs, axis=1).argmax()]
+    # mu p along the axis turns a ring by mu R times its force.
+    arm = bands.radius * (force @ (largest / (np.linalg.norm(largest) or 1.0)))
+    couples = opposed(friction * np.abs(arm), bands.z)
+    share: Floats = np.divide(couples, arm, out=np.zeros_like(couples), where=arm != 0.0)
+    return share
+
+
+def rubbed(
+    model: ContactModel, contact: JointContact, known: PressureModes | None
+) -> tuple[PressureLoads, dict[str, list[PressureLoads]]]:
+    """The loads of a contact at one instant, and those with friction by SHARES.
+
+    known: patterns of the pressures.
+    """
+    waves = model.waves(contact.contact)
+    patterns = model.patterns([(waves, MODE_TOLERANCE)], known)
+    plain = patterns.loads(waves, contact.loads.links, model.arcs(contact.contact))
+    axial = waves * along_axis(model, contact)[:, None]
+    modes = pressure_modes(model.pin, model.rings, [(axial, MODE_TOLERANCE)])
+    torque = opposed(ring_torques(model, contact.contact)[0], model.bands.z)
+
+    def loads(along: float, around: float) -> PressureLoads:
+        acting = {**plain.acting, **modes.amounts(along * axial, "axial")}
+        return with_torques(replace(plain, acting=acting), around * torque)
+
+    return plain, {name: [loads(*share) for share in every] for name, every in SHARES.items()}
+
+
+def _areas(bands: Bands) -> Floats:
+    return 2.0 * np.pi * bands.radius * bands.length
+
+
+def with_torques(loads: PressureLoads, torque: Floats) -> PressureLoads:
+    """Loads on rings with further torques (R,) N m on them at every instant."""
+    moments, acting = loads.moments.copy(), dict(loads.acting)
+    moments[:, :, 2] += torque
+    for r in np.flatnonzero(torque):
+        unit = UnitLoad(loads.surfaces[r], "moment", 0)
+        amount = np.zeros((len(loads), 2)) + acting.get(unit, 0.0)
+        amount[:, 1] += torque[r]
+        acting[unit] = amount
+    return replace(loads, moments=moments, acting=acting)

@@ -1,0 +1,76 @@
+"""The fit of a pin in its lug, and of a bushing in it, at another temperature.
+
+Pin, bushing and lug have one temperature, the same throughout. Alone each would only grow: the pin
+by alpha_pin d per kelvin, the bore of a lug by alpha_lug d. A bushing, of outer diameter h, would
+outgrow its hole by (alpha_bushing - alpha_lug) h: so much is added to its interference, and presses
+its bore inwards, as two of Lame's tubes one in the other do (fea.support.lugs.fit). A bonded one is
+pulled outwards as well; a pressed one loses its fit where its interference is used up.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from fea.core.material import Material
+from fea.support.lugs.fit import bushing_press_fit, widening
+from fea.support.lugs.lug import Lug, LugRange
+from geometry import ArgumentError
+
+
+def at_temperature(lug: Lug, pin: Material, radius: float, rise: float) -> Lug:
+    """The lug, with its clearance and its bushing's interference, at another temperature.
+
+    pin: the material of the pin. radius: of its band, m. rise: above the temperature at which the
+    dimensions of the lug hold, K.
+
+    Raises: ArgumentError for a material without thermal expansion.
+    """
+    if not rise:
+        return lug
+    alpha = {m.name: _expansion(m, lug) for m in (pin, lug.material, lug.bearing)}
+    d, bushing = 2.0 * radius, lug.bushing
+    growth = (alpha[lug.bearing.name] - alpha[pin.name]) * d * rise
+    if bushing is not None:
+        hole = d + 2.0 * bushing.thickness
+        outgrown = (alpha[lug.bearing.name] - alpha[lug.material.name]) * hole * rise
+        bushing = replace(bushing, outgrown=outgrown)
+        growth += bore_widening(lug, radius) * outgrown
+    known = lug.range.clearance
+    ends = None if known is None else (known[0] + growth, known[1] + growth)
+    return replace(
+        lug,
+        clearance=lug.clearance + growth,
+        growth=growth,
+        bushing=bushing,
+        range=LugRange(ends, lug.range.stiffness, lug.range.tilt),
+    )
+
+
+def bore_widening(lug: Lug, radius: float) -> float:
+    """By how much the bore of a bushing widens per interference in its lug, both of diameters:
+    a negative number.
+    """
+    assert lug.bushing is not None
+    constants = bushing_press_fit(lug, radius)[0]
+    return 2.0 * float(widening(radius, lug.bushing.material) @ constants)
+
+
+def bushing_opening_rise(lug: Lug, rise: float) -> float | None:
+    """The rise of temperature, K, at which a pressed bushing becomes loose; None where it holds.
+
+    lug: at a temperature, which is `rise` above that of its dimensions.
+    """
+    bushing = lug.bushing
+    if bushing is None or not bushing.pressed or bushing.misfit > 0.0:
+        return None
+    return -rise * bushing.interference / bushing.outgrown
+
+
+def _expansion(material: Material, lug: Lug) -> float:
+    if material.thermal_expansion is None:
+        raise ArgumentError(
+            f"material {material.name} has no thermal_expansion, which the fit in lug "
+            f"{lug.connection} needs at another temperature",
+            "no-expansion",
+        )
+    return material.thermal_expansion

@@ -1,0 +1,227 @@
+"""A table as columns of cells with their places, whatever kind of file it comes from."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from loads.tables.csv_table import MAX_COLUMNS, MAX_SHOWN_CHARACTERS, TableError
+from pinbase.arrays import Floats
+
+MAX_TABLE_ROWS = 250_000
+NUMBER_PATTERN = re.compile(r"[-+]?(?:\d[\d.,]*|[.,]\d+)(?:[eEdD][-+]?\d+)?|[-+]?(?i:nan|inf)")
+EMPTY_UNITS = "", "-", "--"  # of names and plain numbers, in a row of units
+
+
+@dataclass(frozen=True)
+class Unreadable:
+    """A cell of a workbook with neither a number nor a text. what: it is, with the remedy."""
+
+    what: str
+
+    def __str__(self) -> str:
+        return self.what
+
+
+Cell = str | float | Unreadable
+Column = Sequence[Cell] | Floats
+Separator = Literal[",", ";", "tab", "blank"]
+Decimal = Literal[".", ","]
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What a study says of a file that the file does not say itself.
+
+    sheet: name of the sheet of a workbook; None: its only one.
+    header_line: line or row of the header, from 1; None: the first that is no comment.
+    separator, decimal: None: as the file shows.
+    encoding: of a text; None: UTF-8, or what its byte order mark says.
+    numbered: whether columns are stated by number, so that no header is needed.
+    texts: headers and numbers of columns with names, even if these look like numbers.
+    """
+
+    sheet: str | None = None
+    header_line: int | None = None
+    separator: Separator | None = None
+    decimal: Decimal | None = None
+    encoding: str | None = None
+    numbered: bool = False
+    texts: frozenset[str | int] = frozenset()
+
+
+@dataclass(frozen=True)
+class Source:
+    """A file and, of a workbook, its sheet, for messages.
+
+    workbook: whether it is one.
+    rows: whether its rows have numbers, not lines.
+    """
+
+    file: str
+    workbook: bool = False
+    rows: bool = False
+
+    def at(self, place: int, column: int | None = None) -> str:
+        """File and line, or the cell of a workbook. column: its index."""
+        if self.workbook and column is not None:
+            return f"{self.file}, cell {letters(column)}{place}"
+        return f"{self.file}, {'row' if self.workbook or self.rows else 'line'} {place}"
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The rows of a file that are no comments.
+
+    places: lines, or rows of a workbook, from 1.
+    cells: of each row.
+    comma: whether numbers may have a decimal comma.
+    heading: cells of the comment above the first row.
+    separator: the character between the cells of a text.
+    """
+
+    source: Source
+    places: list[int]
+    cells: list[Sequence[Cell]]
+    comma: bool = False
+    heading: Sequence[Cell] | None = None
+    separator: str = ""
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A table.
+
+    names: headers of the columns; empty without a header.
+    units: texts of the row of units, empty where there are none.
+    unit_place: line of that row.
+    columns: cells of each column.
+    places: line of each row, or its row in a workbook.
+    comma: whether numbers may have a decimal comma.
+    """
+
+    source: Source
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    unit_place: int
+    columns: tuple[Column, ...]
+    places: Sequence[int]
+    comma: bool = False
+
+    def where(self, row: int, column: int | None = None) -> str:
+        """File and line of a row, or the cell of a workbook, for messages."""
+        return self.source.at(self.places[row], column)
+
+    def name(self, column: int) -> str:
+        """A column's header, or its number."""
+        return (self.names[column] if self.names else "") or f"column {column + 1}"
+
+
+def letters(column: int) -> str:
+    """The letters of a column of a workbook by its index: A, B, ..., Z, AA."""
+    text, k = "", column + 1
+    while k:
+        k, rest = divmod(k - 1, 26)
+        text = chr(ord("A") + rest) + text
+    return text
+
+
+def is_number(cell: Cell) -> bool:
+    """Whether a cell has the form of a number, whatever its decimals."""
+    if isinstance(cell, str):
+        return NUMBER_PATTERN.fullmatch(cell.strip()[:MAX_SHOWN_CHARACTERS]) is not None
+    return isinstance(cell, float)
+
+
+def text_of(cell: object) -> str:
+    """The text of a cell; 12.0 of a workbook is 12."""
+    if isinstance(cell, float) and cell.is_integer():
+        return str(int(cell))
+    return str(cell).strip()
+
+
+def grid_of(rows: Rows, numbered: bool) -> Grid:
+    """The table in rows of cells.
+
+    numbered: whether the study states columns by number, so that the table needs no header.
+
+    Raises: TableError for rows of different length, or none.
+    """
+    source, places, cells = rows.source, rows.places, rows.cells
+    first = cells[0] if cells else ()
+    numbers = [is_number(cell) for cell in first]
+    if numbered and any(numbers):
+        header: Sequence[Cell] = ()
+    elif rows.heading is not None and all(numbers):
+        header = rows.heading
+    else:
+        header, places, cells = first, places[1:], cells[1:]
+    width = len(header or first)
+    if width > MAX_COLUMNS:
+        raise TableError(
+            f"{source.file}: has {width:,} columns; the limit is {MAX_COLUMNS:,}",
+            "too-many-columns",
+        )
+    units, unit_place = ("",) * width, 0
+    if header and len(cells) > 1 and not any(map(is_number, cells[0])):
+        _require_cells(source.at(places[0]), cells[0], width)
+        units, unit_place = tuple(map(bare_unit, cells[0][:width])), places[0]
+        places, cells = places[1:], cells[1:]
+    if not cells:
+        raise TableError(f"{source.file}: the table has no rows below its header", "no-rows")
+    if len(cells) > MAX_TABLE_ROWS:
+        raise TableError(
+            f"{source.at(places[MAX_TABLE_ROWS])}: the table has more than {MAX_TABLE_ROWS:,} "
+            "rows, the limit; give fewer",
+            "too-many-rows",
+        )
+    if not set(map(len, cells)) <= {width}:
+        for place, row in zip(places, cells, strict=True):
+            _require_cells(source.at(place), row, width)
+        cells = [row[:width] for row in cells]
+    columns = tuple(zip(*cells, strict=True))
+    names = tuple(" ".join(str(cell).split()) for cell in header)
+    return Grid(source, names, units, unit_place, columns, places, rows.comma)
+
+
+def _require_cells(where: str, cells: Sequence[Cell], width: int) -> None:
+    """Raises: TableError for a row that is longer or shorter than the header, but for an empty
+    cell after a last separator.
+    """
+    count = len(cells)
+    if count == width or (count == width + 1 and cells[-1] == ""):
+        return
+    what = f"{where}: {count} cells, but the header has {width}"
+    if count > width and sum(isinstance(c, str) and c.strip().isdigit() for c in cells) > 1:
+        what += "; decimals are written with a point: 1.5"
+    raise TableError(what, "cell-count")
+
+
+def bare_unit(cell: Cell) -> str:
+    """The unit in a cell, without brackets; empty where it has none."""
+    text = " ".join(str(cell).split())
+    if len(text) > 1 and (text[0], text[-1]) in (("[", "]"), ("(", ")")):
+        text = text[1:-1].strip()
+    return "" if text in EMPTY_UNITS else text
+
+
+def unique_names(grid: Grid) -> None:
+    """Raises: TableError for a table in which two columns have the same name."""
+    for k, name in enumerate(grid.names):
+        if name in grid.names[:k]:
+            raise TableError(
+                f"{grid.source.file}: column {name[:MAX_SHOWN_CHARACTERS]!r} occurs twice; keep "
+                "one",
+                "duplicate-column",
+            )
+
+
+def empty_columns(grid: Grid) -> frozenset[int]:
+    """Columns without a name and without a cell that is not empty."""
+    return frozenset(
+        k
+        for k, name in enumerate(grid.names)
+        if not name and not any(cell != "" for cell in grid.columns[k])
+    )

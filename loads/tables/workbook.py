@@ -1,0 +1,314 @@
+"""The rows of a sheet of a workbook (.xlsx), as they are stored.
+
+Only values count: a formula's stored value may be old, or 0 where a program never computed it, so
+formulas are refused; likewise dates, which are numbers of days with a format, and merged cells,
+of which all but one are empty. The format is that of ECMA-376, part 1, clause 18.
+"""
+
+from __future__ import annotations
+
+import re
+import zipfile
+import zlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from io import BytesIO
+from posixpath import join, normpath
+from xml.parsers import expat
+
+from loads.tables.csv_table import MAX_COLUMNS, TableError
+from loads.tables.grid import Cell, Reading, Rows, Source, Unreadable, letters
+from loads.tables.regular_file import MB
+from loads.tables.text_rows import COMMENT_MARKS
+
+MAX_PART_BYTES = 256 * MB  # of a workbook, unpacked: a sheet of 200,000 rows and 7 columns has 60
+MAX_SHEET_ROWS = 1_048_576  # of a sheet, by the format
+MAX_SHEET_CELLS = 10_000_000
+MAX_SHOWN_SHEETS = 20
+REFERENCE_PATTERN = re.compile(r"([A-Z]{1,3})(\d{1,7})")
+# Numbers of formats for dates and times, clause 18.8.30; others are recognised by their codes.
+DATE_FORMATS = {*range(14, 23), *range(27, 37), *range(45, 48), *range(50, 59)}
+NO_DATE_PATTERN = re.compile(r'"[^"]*"|\\.|_.|\*.|\[(?!h+\]|m+\]|s+\])[^\]]*\]', re.IGNORECASE)
+FORMULA = Unreadable("is a formula; replace it by its value (copy, paste values only)")
+DATE = Unreadable("is a date or a time of day; format the cell as a number")
+TRUTH = Unreadable("is TRUE or FALSE, not a number")
+
+Attributes = Mapping[str, str]
+
+
+class _NotAWorkbook(Exception):
+    """A file is not a workbook; the message says why."""
+
+
+def workbook_rows(file: str, content: bytes, reading: Reading) -> Rows:
+    """The rows of a sheet of a workbook. Raises: TableError for a file that is none."""
+    try:
+        with zipfile.ZipFile(BytesIO(content)) as archive:
+            book = _Book(archive)
+            name = _sheet_name(file, book.sheets, reading.sheet)
+            part = book.sheets[name]
+            sheet = _Sheet(book.texts(), book.date_styles(), reading.header_line or 1)
+            sheet.read(_part(archive, part))
+    except TableError:
+        raise
+    except (_NotAWorkbook, expat.ExpatError, zipfile.BadZipFile, ValueError, LookupError) as error:
+        raise TableError(f"{file}: is not a workbook (.xlsx): {error}", "not-a-workbook") from None
+    except (OSError, EOFError, NotImplementedError, RuntimeError, zlib.error) as error:
+        raise TableError(f"{file}: cannot be unpacked ({error})", "not-a-workbook") from None
+    source = Source(f"{file}, sheet {name!r}", workbook=True)
+    if sheet.merged:
+        raise TableError(
+            f"{source.file}: cells {sheet.merged} are merged; separate them (unmerge), so that "
+            "each has its own text or number",
+            "merged-cells",
+        )
+    return sheet.rows(source, reading.decimal == ",")
+
+
+def _sheet_name(file: str, sheets: Mapping[str, str], wanted: str | None) -> str:
+    """The name of the sheet to read. Raises: TableError where it is not clear which."""
+    names = ", ".join(map(repr, list(sheets)[:MAX_SHOWN_SHEETS]))
+    if wanted is None and len(sheets) > 1:
+        raise TableError(
+            f"{file}: has {len(sheets)} sheets; state which: sheet = {next(iter(sheets))!r}; "
+            f"there are {names}",
+            "which-sheet",
+        )
+    if wanted is not None and wanted not in sheets:
+        raise TableError(f"{file}: has no sheet {wanted!r}; there are {names}", "no-such-sheet")
+    if not sheets:
+        raise _NotAWorkbook("it has no sheets")
+    return wanted or next(iter(sheets))
+
+
+def _part(archive: zipfile.ZipFile, name: str) -> bytes:
+    """A file in a workbook. Raises: _NotAWorkbook where it is missing or too large."""
+    try:
+        with archive.open(name) as part:
+            content = part.read(MAX_PART_BYTES + 1)
+    except KeyError:
+        raise _NotAWorkbook(f"it has no {name}") from None
+    if len(content) > MAX_PART_BYTES:
+        raise _NotAWorkbook(f"its {name} has more than {MAX_PART_BYTES // MB} MB")
+    return content
+
+
+Start = Callable[[str, Attributes], None]
+
+
+def _parse(
+    content: bytes, start: Start, end: Callable[[str], None], text: Callable[[str], None]
+) -> None:
+    """Read XML; names come without their namespace. Raises: _NotAWorkbook, ExpatError."""
+
+    def refuse(*_: object) -> None:
+        raise _NotAWorkbook("it declares a document type")
+
+    parser = expat.ParserCreate(namespace_separator=None)
+    parser.buffer_text = True
+    parser.StartDoctypeDeclHandler = refuse  # entities could grow without end
+    parser.StartElementHandler = lambda name, values: start(name.rpartition(":")[2], values)
+    parser.EndElementHandler = lambda name: end(name.rpartition(":")[2])
+    parser.CharacterDataHandler = text
+    parser.Parse(content, True)
+
+
+def _elements(content: bytes) -> list[tuple[str, Attributes]]:
+    """The elements of an XML file in their order, each with its attributes."""
+    out = list[tuple[str, Attributes]]()
+    _parse(content, lambda name, values: out.append((name, values)), lambda _: None, lambda _: None)
+    return out
+
+
+class _Book:
+    """The parts of a workbook. sheets: their paths in the archive by name."""
+
+    def __init__(self, archive: zipfile.ZipFile) -> None:
+        self.archive = archive
+        relations = {
+            values.get("Id", ""): values
+            for name, values in _elements(_part(archive, "xl/_rels/workbook.xml.rels"))
+            if name == "Relationship"
+        }
+        self.kinds = {
+            values.get("Type", "").rpartition("/")[2]: _path(values.get("Target", ""))
+            for values in relations.values()
+        }
+        self.sheets = dict[str, str]()
+        for name, values in _elements(_part(archive, "xl/workbook.xml")):
+            if name == "sheet":
+                key = next((v for k, v in values.items() if k.endswith(":id")), "")
+                self.sheets[values.get("name", "")] = _path(relations[key].get("Target", ""))
+
+    def texts(self) -> list[str]:
+        """The texts that cells refer to by number."""
+        path = self.kinds.get("sharedStrings")
+        out, part = list[str](), _Texts()
+        if path is not None:
+            _parse(_part(self.archive, path), part.start, lambda n: part.end(n, out), part.text)
+        return out
+
+    def date_styles(self) -> frozenset[int]:
+        """The numbers of the cell styles whose numbers are dates or times."""
+        path = self.kinds.get("styles")
+        if path is None:
+            return frozenset()
+        dates, styles, inside = set(DATE_FORMATS), list[int](), False
+        for name, values in _elements(_part(self.archive, path)):
+            if name == "numFmt":
+                code = NO_DATE_PATTERN.sub("", values.get("formatCode", ""))
+                number = int(values.get("numFmtId", "-1"))
+                (dates.add if set(code.lower()) & set("dmyhs") else dates.discard)(number)
+            elif name in ("cellXfs", "cellStyles"):
+                inside = name == "cellXfs"
+            elif name == "xf" and inside:
+                styles.append(int(values.get("numFmtId", "0")))
+        return frozenset(k for k, number in enumerate(styles) if number in dates)
+
+
+def _path(target: str) -> str:
+    """The path of a part, from the workbook's folder or the root."""
+    return normpath(target[1:] if target.startswith("/") else join("xl", target))
+
+
+@dataclass
+class _Texts:
+    """A reader of shared texts, which may be in pieces of different style."""
+
+    pieces: list[str] = field(default_factory=list)
+    inside: bool = False
+    phonetic: bool = False
+
+    def start(self, name: str, _: Attributes) -> None:
+        """Begin an element."""
+        if name == "rPh":
+            self.phonetic = True
+        self.inside = name == "t" and not self.phonetic
+
+    def end(self, name: str, out: list[str]) -> None:
+        """End an element; a text goes to `out`."""
+        self.inside = False
+        if name == "rPh":
+            self.phonetic = False
+        elif name == "si":
+            out.append("".join(self.pieces))
+            self.pieces.clear()
+
+    def text(self, text: str) -> None:
+        """Take characters."""
+        if self.inside:
+            self.pieces.append(text)
+
+
+class _Sheet:
+    """A reader of a sheet.
+
+    texts: shared texts.
+    dates: numbers of styles of dates.
+    first: the first row that counts, from 1.
+    """
+
+    def __init__(self, texts: list[str], dates: frozenset[int], first: int) -> None:
+        self.texts, self.dates, self.first = texts, dates, first
+        self.cells: dict[int, dict[int, Cell]] = {}
+        self.merged = ""
+        self.row: dict[int, Cell] = {}
+        self.place, self.column = 0, -1
+        self.kind, self.style, self.formula = "n", "", False
+        self.pieces: list[str] = []
+        self.inside = False
+
+    def read(self, content: bytes) -> None:
+        """Read the sheet's XML."""
+        _parse(content, self._start, self._end, self._text)
+
+    def rows(self, source: Source, comma: bool) -> Rows:
+        """The rows with cells that are no comments."""
+        places, rows = list[int](), list[list[Cell]]()
+        width = max((max(row) + 1 for row in self.cells.values() if row), default=0)
+        if width * len(self.cells) > MAX_SHEET_CELLS:
+            raise TableError(
+                f"{source.file}: {len(self.cells):,} rows of {width} columns are more than "
+                f"{MAX_SHEET_CELLS:,} cells, the limit; save fewer, or as text",
+                "too-many-rows",
+            )
+        for place in sorted(self.cells):
+            row = self.cells[place]
+            cells = [row.get(k, "") for k in range(width)]
+            first = next((c for c in cells if c != ""), "")
+            if first == "" or (isinstance(first, str) and first.startswith(COMMENT_MARKS)):
+                continue
+            places.append(place)
+            rows.append(cells)
+        return Rows(source, places, list(rows), comma)
+
+    def _start(self, name: str, values: Attributes) -> None:
+        if name == "c":
+            self._start_cell(values)
+        elif name in ("v", "t"):
+            self.inside = True
+        elif name == "f":
+            self.formula = True
+        elif name == "row":
+            self.place = int(values.get("r", self.place + 1))
+            if not 0 < self.place <= MAX_SHEET_ROWS:
+                raise _NotAWorkbook(f"it has a row {self.place}")
+            self.row = self.cells.setdefault(self.place, {})
+            self.column = -1
+        elif name == "mergeCell" and not self.merged:
+            self._merge(values.get("ref", ""))
+        elif name == "rPh":
+            raise _NotAWorkbook("a cell has phonetic text")
+
+    def _start_cell(self, values: Attributes) -> None:
+        match = REFERENCE_PATTERN.fullmatch(values.get("r", ""))
+        self.column = self.column + 1 if match is None else _index(match[1])
+        if self.column >= MAX_COLUMNS:
+            raise _NotAWorkbook(
+                f"it has a column {letters(self.column)}; the limit is {MAX_COLUMNS}"
+            )
+        self.kind, self.style = values.get("t", "n"), values.get("s", "")
+        self.formula = False
+        self.pieces.clear()
+
+    def _end(self, name: str) -> None:
+        if name in ("v", "t"):
+            self.inside = False
+        elif name == "c" and (self.pieces or self.formula) and self.place >= self.first:
+            self.row[self.column] = self._value("".join(self.pieces))
+
+    def _text(self, text: str) -> None:
+        if self.inside:
+            self.pieces.append(text)
+
+    def _value(self, text: str) -> Cell:
+        """The value of a cell with this content."""
+        if self.formula:
+            return FORMULA
+        if self.kind == "n":
+            if self.style and int(self.style) in self.dates:
+                return DATE
+            return float(text)
+        if self.kind == "s":
+            return self.texts[int(text)].strip() if text.isdigit() else ""
+        if self.kind in ("str", "inlineStr"):
+            return text.strip()
+        if self.kind == "b":
+            return TRUTH
+        if self.kind == "d":
+            return DATE
+        return Unreadable(f"is an error value, {text[:20]}")
+
+    def _merge(self, reference: str) -> None:
+        """Note merged cells, unless they are above the table."""
+        last = REFERENCE_PATTERN.fullmatch(reference.rpartition(":")[2])
+        if last is None or int(last[2]) >= self.first:
+            self.merged = reference
+
+
+def _index(name: str) -> int:
+    """The index of a column by its letters."""
+    number = 0
+    for letter in name:
+        number = 26 * number + ord(letter) - ord("A") + 1
+    return number - 1

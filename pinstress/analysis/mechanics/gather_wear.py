@@ -1,0 +1,99 @@
+"""Sliding of links on their pins, pressure, and their product over a motion, in SI."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from geometry import Band
+from loads import Dynamics, Joint
+from loads.motion.mobility import is_particle
+from pinbase.arrays import Floats
+from pinstress.study.model.cases import CaseLoads
+from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.reading.file import Study
+from reports.data.wear import BandWear
+
+
+def wear(study: Study, loads: dict[str, CaseLoads]) -> tuple[BandWear, ...]:
+    """Return the sliding of every band of the turned pins in every case that is a motion.
+
+    It is that of the instants between which the loads are polynomials, and of the samples.
+    """
+    moving = {n: c for n, c in loads.items() if c.moving is not None and c.solve is not None}
+    return tuple(row for n, c in moving.items() for row in _of_case(n, c, _bands(study)))
+
+
+def _bands(study: Study) -> dict[str, tuple[str, Band]]:
+    """Return the pin and the band of every connection of a pin with a profile."""
+    return {
+        connection: (name, shape.band(connection))
+        for name, table in study.table.pin.items()
+        if table.geometry is None
+        for shape in [pin_of(study, name)]
+        for connection in shape.connections
+    }
+
+
+def _of_case(name: str, case: CaseLoads, bands: dict[str, tuple[str, Band]]) -> Iterator[BandWear]:
+    assert case.moving is not None
+    assert case.solve is not None
+    dynamics = case.solve(case.moving.instants)
+    for k, (joint, connection) in enumerate(dynamics.motion.linkage.connections):
+        if connection.name not in bands:
+            continue
+        pin, band = bands[connection.name]
+        force = np.hypot(*dynamics.reactions.forces[:, k, :2].T)
+        pressure = force / (2.0 * band.radius * band.length)
+        slides = [
+            (against, *sliding(dynamics, connection.body, against, band.radius))
+            for against in _references(dynamics, joint, connection.body)
+        ]
+        row = BandWear(
+            name, pin, connection.name, connection.body, joint.fixed_in or "",
+            joint.fixed_in is None, float(pressure.max()),
+        )  # fmt: skip
+        yield _with_sliding(row, slides, pressure, dynamics.motion.times)
+
+
+def sliding(dynamics: Dynamics, body: str, against: str, radius: float) -> tuple[float, Floats]:
+    """Return the path (m) of a body on a pin that turns with another body, and its velocity (T,)
+    m/s.
+
+    radius: of the pin, m.
+    """
+    motion = dynamics.motion
+    angle = motion.angle(body) - motion.angle(against)
+    rate = motion.angular_velocity(body) - motion.angular_velocity(against)
+    return float(radius * np.abs(np.diff(angle)).sum()), radius * np.abs(rate)
+
+
+def _references(dynamics: Dynamics, joint: Joint, body: str) -> list[str]:
+    """Return the bodies with which a pin may turn: the one that carries it, or any other link on a
+    floating one. There are none where a rotation is not known.
+    """
+    linkage = dynamics.motion.linkage
+    particles = {b.name for b in linkage.bodies if is_particle(linkage, b.name)}
+    if body in particles:
+        return []
+    if joint.fixed_in is not None:
+        return [] if joint.fixed_in in particles else [joint.fixed_in]
+    others = dict.fromkeys(c.body for c in joint.connections if c.body != body)
+    return [other for other in others if other not in particles]
+
+
+def _with_sliding(
+    row: BandWear, slides: list[tuple[str, float, Floats]], pressure: Floats, times: Floats
+) -> BandWear:
+    """Return a row with the largest sliding of those that are possible."""
+    if not slides:
+        return row
+    against, distance, _ = max(slides, key=lambda slide: slide[1])
+    velocity = np.max([speed for _, _, speed in slides], axis=0)
+    product = pressure * velocity
+    most = int(product.argmax())
+    return BandWear(
+        row.case, row.pin, row.connection, row.body, against, row.floats, row.mean_pressure,
+        float(velocity.max()), distance, float(product[most]), float(times[most]),
+    )  # fmt: skip

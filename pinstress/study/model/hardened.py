@@ -1,0 +1,124 @@
+"""Hardened surfaces of a study's pins."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import groupby
+
+from fea.core.hardened import Hardened
+from fea.core.material import Material
+from geometry import Pin, PinLike
+from pinstress.study.model.pins import material
+from pinstress.study.reading.file import Study
+from pinstress.study.schema.pins import HardenedTable
+
+Stretch = tuple[float, float, HardenedTable | None, str]  # z from and to, m; table and its key
+
+
+def pin_material(study: Study, pin: PinLike) -> Material:
+    """Return the material of a pin with the hardened stretches of its surface.
+
+    Raises: InputError for a case that is as deep as the wall, for a pin that is no body of
+    revolution, and where what is not hardened has no strength.
+    """
+    name = study.table.pin[pin.name].material
+    made_of, key = material(study, name), hardened_key(study, pin.name)
+    if key is None:
+        return made_of
+    if not isinstance(pin, Pin):
+        raise study.error(
+            f"{key}: pin {pin.name} is not a body of revolution without holes, flats, slots or "
+            "passages, whose stress by depth is known; give yield_strength, that of the core to "
+            "be safe",
+            at=f"pin.{pin.name}",
+            code="hardened-model",
+        )
+    hardened, bare = [], False
+    for start, end, table, at in _stretches(study, pin):
+        if table is None:
+            bare = True
+            continue
+        _require_wall(study, pin, (start, end), table, at)
+        hardened.append(Hardened(start, end, table.surface, table.core, table.depth))
+    unhardened = study.table.material[name].yield_strength
+    if bare and unhardened is None:
+        raise study.error(
+            f"{key}: the rest of pin {pin.name} has no yield strength; give "
+            f"material.{name}.yield_strength",
+            at=f"pin.{pin.name}",
+            code="hardened-in-part",
+        )
+    weakest = min([case.core for case in hardened] + ([unhardened] if bare and unhardened else []))
+    return replace(
+        made_of, yield_strength=weakest, hardened=tuple(hardened),
+        unhardened=unhardened if bare else None,
+    )  # fmt: skip
+
+
+def hardened_key(study: Study, pin: str) -> str | None:
+    """Return the first key that hardens a pin; None where none does."""
+    table = study.table.pin[pin]
+    for i, segment in enumerate(table.profile or (), 1):
+        if segment.hardened is not None:
+            return f"pin.{pin}.profile[{i}].hardened"
+    if table.hardened is not None:
+        return f"pin.{pin}.hardened"
+    if study.table.material[table.material].hardened is not None:
+        return f"material.{table.material}.hardened"
+    return None
+
+
+def require_no_hardened(study: Study, pin: str, what: str) -> None:
+    """Raise InputError for a pin with a hardened surface, which something does not know.
+
+    what: that, as the subject of a sentence.
+    """
+    if key := hardened_key(study, pin):
+        raise study.error(
+            f"{key}: {what} takes one yield strength for a pin, and pin {pin} has two; give "
+            "yield_strength instead, that of the core to be safe",
+            code="hardened-not-known",
+        )
+
+
+def hardened_reason(key: str) -> str:
+    """Return the reason why something does not know the two strengths of a pin, by their key."""
+    return f"{key} gives it two yield strengths; give yield_strength, that of the core to be safe"
+
+
+def _stretches(study: Study, pin: Pin) -> list[Stretch]:
+    """Return the stretches of a pin from its start on, those that are hardened alike as one."""
+    table = study.table.pin[pin.name]
+    everywhere, key = table.hardened, f"pin.{pin.name}.hardened"
+    if everywhere is None:
+        everywhere, key = study.table.material[table.material].hardened, ""
+        key = f"material.{table.material}.hardened"
+    if table.profile is None:
+        return [(0.0, pin.length, everywhere, key)]
+    ends = list(zip(pin.stations, pin.stations[1:], strict=False))
+    of_each = [
+        (*at, segment.hardened or everywhere, f"pin.{pin.name}.profile[{i}].hardened"
+         if segment.hardened else key)
+        for i, (at, segment) in enumerate(zip(ends, table.profile, strict=True), 1)
+    ]  # fmt: skip
+    groups = [list(same) for _, same in groupby(of_each, key=lambda x: x[2])]
+    return [(same[0][0], same[-1][1], *same[0][2:]) for same in groups]
+
+
+def _require_wall(
+    study: Study, pin: Pin, stretch: tuple[float, float], table: HardenedTable, key: str
+) -> None:
+    """Raise InputError where a case is as deep as the wall of its stretch."""
+    segments = zip(pin.segments, pin.stations, strict=False)
+    walls = [min(s.walls) / 2.0 for s, z in segments if stretch[0] <= z < stretch[1]]
+    if table.depth < min(walls):
+        return
+    length = study.system.length
+    factor = study.system.factor("length")
+    depth, wall = (f"{x / factor:.4g} {length}" for x in (table.depth, min(walls)))
+    what = "wall" if any(any(s.bores) for s in pin.segments) else "radius"
+    raise study.error(
+        f"{key}.depth: the case, {depth} deep, leaves no core in pin {pin.name}, whose {what} is "
+        f"{wall}; give a depth less than that, or one yield_strength for a pin hardened through",
+        code="out-of-range",
+    )

@@ -1,0 +1,38 @@
+"""Pins pressed into their lugs that the temperature of a case loosens."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from pinstress.study.model.tasks import Task
+from pinstress.study.model.temperature import rise_of, temperature_words
+from pinstress.study.reading.file import Study
+
+
+def lost_fits(study: Study, task: Task, case: str) -> tuple[str, ...]:
+    """Return the lugs from which a pin pressed into them comes loose at the temperature of a case,
+    in words: "LEFT above 143 degC".
+    """
+    rise, out = rise_of(study, case), []
+    for lug in task.given:
+        given = lug.clearance - lug.growth
+        if rise and given < 0.0 <= lug.clearance:
+            opens = temperature_words(study, -rise * given / lug.growth)
+            out.append(f"{lug.connection} {'above' if rise > 0.0 else 'below'} {opens}")
+    return tuple(out)
+
+
+def lost_fit_warnings(study: Study, todo: Iterable[Task]) -> list[str]:
+    """Return a warning for each case whose temperature loosens pins pressed into their lugs."""
+    return [
+        str(
+            study.error(
+                f"case.{case.case}.temperature: pin {task.pin.name} is no longer pressed in at "
+                f"{temperature_words(study, rise_of(study, case.case))}: its press fit is lost in "
+                f"{', '.join(lost)}; use a tighter fit, or say what else retains the pin"
+            )
+        )
+        for task in todo
+        for case in task.loads
+        if (lost := lost_fits(study, task, case.case))
+    ]

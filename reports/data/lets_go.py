@@ -1,0 +1,271 @@
+"""What lets go first: the load factors at which parts of a pin's joint yield, fail or collapse.
+
+A load factor multiplies all loads of the case. That of a check is its allowable over its demand.
+Where the demand comes from contact with a clearance or rounded edges it grows less or more than in
+proportion, which the step says; where a press fit stresses the part without any load the ratio is
+no load factor, and there is none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from math import inf, isclose
+
+from assess.margin import JOINT_MODEL_BASIS, Margin
+from assess.strength.lug_stress import METHOD as LUG_METHOD
+from assess.strength.model_stress import CLAUSE, YIELD_METHOD
+from fea.support.records import LugStress
+from reports.data.decision import factor_ends, worst_first
+from reports.data.results import PinResult, PinShape, Results
+
+LOCAL, YIELDS, PLASTIC = "begins to yield locally", "begins to yield", "is fully plastic"
+COLLAPSES, ALLOWED = "collapses", "reaches what the clause allows"
+BY_FORMULA = {"limit": "yields by formula", "ultimate": "ruptures by formula"}
+ELASTIC_RUPTURE = "reaches the ultimate strength (elastic stress)"
+UNDER_EDGE = "pin under the edge of a lug"
+LIMIT_LOAD_NEED = 'analysis.limit_load = "always"'
+PRESS_FIT_NEED = "a run at the larger loads, because a press fit stresses it without any"
+SHARP_EDGE_NEED = "edge_radius of its lugs, because pressure has no bound at a sharp edge"
+SAME_FACTOR = 1e-3  # relative difference of load factors of places that share a step
+
+
+@dataclass(frozen=True)
+class Step:
+    """What lets go, and the factor on all loads of the case at which it does.
+
+    what: the part or the check. at: bands or segments. effect: what happens to it.
+    load_factor: None where it is not known; low, high: its ends by the error of a stress, or by
+    the bracket of a limit load.
+    required: the factor that is required of it, None where none is.
+    in_proportion: whether the demand grows in proportion to the loads; otherwise the factor is
+    that of a demand that did.
+    needs: what a load factor takes where there is none.
+    """
+
+    what: str
+    at: str
+    effect: str
+    load_factor: float | None = None
+    low: float | None = None
+    high: float | None = None
+    required: float | None = None
+    in_proportion: bool = True
+    clause: str = ""
+    needs: str = ""
+
+    @property
+    def missed(self) -> bool:
+        """Whether it lets go before the required factor."""
+        least = self.load_factor if self.low is None else self.low
+        return None not in (least, self.required) and least < self.required  # type: ignore[operator]
+
+
+@dataclass(frozen=True)
+class PinSteps:
+    """The steps of a pin in its governing case, the first to let go first; those without a load
+    factor come last.
+    """
+
+    row: PinResult
+    steps: tuple[Step, ...]
+
+    @property
+    def known(self) -> tuple[Step, ...]:
+        """The steps with a load factor."""
+        return tuple(step for step in self.steps if step.load_factor is not None)
+
+    @property
+    def unknown(self) -> tuple[Step, ...]:
+        """The steps without one."""
+        return tuple(step for step in self.steps if step.load_factor is None)
+
+
+def lets_go(results: Results) -> list[PinSteps]:
+    """Return the steps of every pin that was solved, in its governing case."""
+    worst = {row.pin: row for row in reversed(worst_first(results))}
+    shapes = {shape.pin: shape for shape in results.shapes}
+    rows = [worst[pin] for pin in dict.fromkeys(row.pin for row in results.pins)]
+    return [
+        PinSteps(row, tuple(steps(row, shapes.get(row.pin)))) for row in rows if row.max_von_mises
+    ]
+
+
+def steps(row: PinResult, shape: PinShape | None) -> list[Step]:
+    """Return the steps of a row, the first to let go first."""
+    joint = _Joint.of(row, shape)
+    raw = [*_of_pin(row), *_of_lugs(row), *_of_margins(row)]
+    merged = [*_merged(joint.judged(raw)), *_not_computed(row, joint)]
+    return sorted(merged, key=lambda step: inf if step.load_factor is None else step.load_factor)
+
+
+@dataclass(frozen=True)
+class _Joint:
+    """How the stress of a pin in its lugs depends on the loads.
+
+    solved: whether the joint was. proportional: whether contact grows in proportion: without
+    clearance and with sharp edges. pressed: whether the pin is pressed into a lug; bushed: lugs
+    into which a bushing is. structure: lugs whose force only the joint gives.
+    """
+
+    solved: bool
+    proportional: bool
+    pressed: bool
+    bushed: frozenset[str]
+    structure: frozenset[str]
+
+    @staticmethod
+    def of(row: PinResult, shape: PinShape | None) -> _Joint:
+        lugs = shape.lugs if shape and row.joint and row.joint.bands else ()
+        links = {load.connection for load in row.loads}
+        return _Joint(
+            bool(lugs),
+            all(lug.clearance == lug.edge_radius == 0.0 for lug in lugs),
+            any(lug.clearance < 0.0 for lug in lugs),
+            frozenset(lug.connection for lug in lugs if lug.interference > 0.0),
+            frozenset(lug.connection for lug in lugs) - links,
+        )
+
+    def judged(self, steps: Iterable[tuple[Step, bool]]) -> Iterator[Step]:
+        """Yield steps with what the joint does to them; each comes with whether it is of it."""
+        for step, of_joint in steps:
+            if not (of_joint and self.solved) and step.at not in self.structure:
+                yield step
+            elif self.pressed or step.at in self.bushed:
+                yield replace(step, load_factor=None, low=None, high=None, needs=PRESS_FIT_NEED)
+            else:
+                yield replace(step, in_proportion=self.proportional)
+
+
+def _of_pin(row: PinResult) -> Iterator[tuple[Step, bool]]:
+    """Yield the yielding of surface, section, and of what lugs press on."""
+    strength, required = row.yield_strength, _required(row)
+    if not strength:
+        return
+    places = row.places
+    if places is None:
+        low, high = factor_ends(row)
+        step = Step("pin", "", LOCAL, row.safety_factor, low, high, required, clause=CLAUSE)
+        yield step, True
+        return
+    surface, outside = places.surface, places.surface.strength or strength
+    at_surface = _of_stress(surface.max_von_mises, surface.error_estimate, outside)
+    if row.safety_factor_interval and places.governs == "surface":
+        at_surface = row.safety_factor or 0.0, *factor_ends(row)
+    yield Step("surface of the pin", "", LOCAL, *at_surface, required, clause=CLAUSE), True
+    if (section := places.section) is not None and section.max_von_mises:
+        there = section.strength or strength
+        ends = _of_stress(section.max_von_mises, section.error_estimate, there)
+        yield Step("section of the pin", "", YIELDS, *ends, required, clause=CLAUSE), True
+        if section.plastic_utilisation:
+            factor = 1.0 / section.plastic_utilisation
+            yield Step("section of the pin", "", PLASTIC, factor), True
+    for part in (x for x in places.hardened if x.part == "core"):
+        ends = _of_stress(part.max_von_mises, part.error_estimate, part.strength)
+        yield Step("core of the pin", "", LOCAL, *ends, required, clause=CLAUSE), True
+    if (contact := places.contact) is None:
+        return
+    if contact.beneath:
+        there = contact.strength or strength
+        ends = _of_stress(contact.beneath, contact.beneath_error, there)
+        yield Step("pin beneath the contact", "", LOCAL, *ends, required, clause=CLAUSE), True
+    at_edges: dict[str, float] = {}
+    for edge in contact.edges:
+        at_edges[edge.band] = max(at_edges.get(edge.band, 0.0), edge.max_von_mises or 0.0)
+    for band, stress in at_edges.items():
+        if stress > 0.0:
+            yield Step(UNDER_EDGE, band, LOCAL, outside / stress), True
+
+
+def _of_lugs(row: PinResult) -> Iterator[tuple[Step, bool]]:
+    """Yield the yielding of lugs and bushings at their bores."""
+    for stress in row.joint.lugs if row.joint else ():
+        if stress.yield_strength and stress.max_von_mises:
+            ends = _of_stress(stress.max_von_mises, stress.error_estimate, stress.yield_strength)
+            required = _required(row) if stress.place != "beneath" else None
+            what, at = _wall(stress), stress.connection
+            yield Step(what, at, LOCAL, *ends, required, clause=CLAUSE), True
+
+
+def _wall(stress: LugStress) -> str:
+    part = {"bore": "bore of the lug", "bushing": "bushing"}.get(stress.wall, "hole of the lug")
+    return f"{part}, {'free side' if stress.place == 'free' else 'where it is pressed'}"
+
+
+def _of_margins(row: PinResult) -> Iterator[tuple[Step, bool]]:
+    """Yield the checks that count, at each of their places, but yield by the models' stress."""
+    for m in row.margins:
+        factor = m.safety_factor
+        by_model = m.method == YIELD_METHOD or (
+            m.method.startswith(LUG_METHOD) and m.level == "limit"
+        )
+        if factor is None or by_model or not m.governs or m.kind == "fatigue":
+            continue
+        high = None
+        if m.kind == "collapse" and row.limit_load and m.dimension == "1":
+            high = row.limit_load.upper
+        elif m.kind == "collapse":
+            high = next((factor * x.upper / x.lower for x in row.lug_collapses
+                         if x.connection == m.at and x.upper and x.lower), None)  # fmt: skip
+        step = Step(m.method, m.at, _effect(m), factor, factor if high else None, high, m.factor,
+                    clause=m.clause)  # fmt: skip
+        yield step, m.kind == "model" or m.basis.startswith(JOINT_MODEL_BASIS)
+
+
+def _effect(m: Margin) -> str:
+    if m.kind == "collapse":
+        return COLLAPSES
+    if m.kind == "model":
+        return ELASTIC_RUPTURE
+    return BY_FORMULA[m.level] if m.kind == "hand" else ALLOWED
+
+
+def _not_computed(row: PinResult, joint: _Joint) -> Iterator[Step]:
+    """Yield what has no load factor, with what it needs."""
+    for m in row.worst:
+        if m.needs and m.governs:
+            yield Step(
+                m.method, m.at, _effect(m), required=m.factor, clause=m.clause, needs=m.needs
+            )
+    if row.limit_load is None and row.yield_strength:
+        yield Step("limit load of the pin", "", COLLAPSES, needs=LIMIT_LOAD_NEED)
+    if joint.solved and not row.lug_collapses:
+        yield Step("limit load of the lugs", "", COLLAPSES, needs=LIMIT_LOAD_NEED)
+    edges = row.places.contact.edges if row.places and row.places.contact else ()
+    sharp = dict.fromkeys(edge.band for edge in edges if edge.max_von_mises is None)
+    if sharp:
+        at = ", ".join(sharp)
+        yield Step(UNDER_EDGE, at, LOCAL, needs=SHARP_EDGE_NEED)
+
+
+def _required(row: PinResult) -> float | None:
+    """Return the factor that is required of stress against yield."""
+    return next((m.factor for m in row.margins if m.method == YIELD_METHOD), row.required)
+
+
+def _of_stress(stress: float, error: float | None, strength: float) -> tuple[float, float, float]:
+    """Return the load factor at which a stress reaches a strength, and its ends by the error."""
+    error = error or 0.0
+    least = stress - error
+    return strength / stress, strength / (stress + error), strength / least if least > 0.0 else inf
+
+
+def _merged(steps: Iterable[Step]) -> list[Step]:
+    """Return steps in which places that let go of the same at the same load share one."""
+    merged: list[Step] = []
+    for step in steps:
+        for k, other in enumerate(merged):
+            if _alike(step, other):
+                at = dict.fromkeys([*other.at.split(", "), step.at])
+                merged[k] = replace(other, at=", ".join(at))
+                break
+        else:
+            merged.append(step)
+    return merged
+
+
+def _alike(a: Step, b: Step) -> bool:
+    if (a.what, a.effect, a.needs) != (b.what, b.effect, b.needs) or not (a.at and b.at):
+        return False
+    x, y = a.load_factor, b.load_factor
+    return x is y is None or (None not in (x, y) and isclose(x, y, rel_tol=SAME_FACTOR))  # type: ignore[arg-type]

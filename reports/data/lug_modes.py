@@ -1,0 +1,42 @@
+"""The failure modes of lugs, and which checks of the codes judge each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+BORE_STRESS = "stress at the bore"
+# The beginnings of the names of checks, by mode, in the order of a table.
+LUG_MODES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        BORE_STRESS: ("lug, von Mises stress at the bore", "lug, elastic stress at the bore"),
+        "net section": (
+            "lug, net section", "AFFDL lug net section", "Melcon-Hoblit tension",
+            "BTH-1 plate, tension", "AISC tensile rupture",
+        ),
+        "gross section": ("AISC yielding",),
+        "shear-out": ("lug, shear-out", "BTH-1 plate, double-plane shear", "AISC shear rupture"),
+        "fracture beyond the bore": ("BTH-1 plate, single-plane fracture",),
+        "shear-out and bearing": ("AFFDL lug bearing", "Melcon-Hoblit shear-bearing"),
+        "bearing": (
+            "lug, bearing", "BTH-1 plate, bearing", "AISC bearing", "EN 1993 bearing",
+            "EN 1993 contact",
+        ),
+        "yield": ("Melcon-Hoblit yield",),
+        "across the shank": ("Melcon-Hoblit transverse", "Ekvall transverse"),
+        "oblique": ("Melcon-Hoblit oblique",),
+        "bushing": ("AFFDL bushing",),
+        "pin and lugs together": ("AFFDL joint in double shear",),
+        "collapse": ("lug, limit load",),
+    }
+)  # fmt: skip
+
+
+def lug_mode(method: str) -> str | None:
+    """Return the failure mode of a lug that a check judges, by the name of the check; None for a
+    check of something else.
+    """
+    for mode, methods in LUG_MODES.items():
+        if method.startswith(methods):
+            return mode
+    return None

@@ -1,0 +1,45 @@
+"""The part of the page on what lets go first of each pin."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from reports.data.lets_go import PinSteps, lets_go
+from reports.data.results import Results, Units
+from reports.tables.column import Grid
+from reports.tables.strength.lets_go import MAX_STEPS, first_sentence, notes, shown_steps
+
+
+@dataclass(frozen=True)
+class LetsGoPart:
+    """What lets go first of a pin in its governing case.
+
+    sentence: on the first. grid: the first steps; more: those after them, None without any.
+    misses: which of the steps of the grid have less than their required factor.
+    notes: on what was not computed, and how to read the factors.
+    """
+
+    case: str
+    sentence: str
+    grid: Grid
+    more: Grid | None
+    misses: tuple[bool, ...]
+    notes: tuple[str, ...]
+
+
+def lets_go_parts(results: Results) -> dict[str, LetsGoPart]:
+    """Return the parts by pin, of those of which any load factor is known."""
+    return {pin.row.pin: _part(pin, results.units) for pin in lets_go(results) if pin.known}
+
+
+def _part(pin: PinSteps, units: Units) -> LetsGoPart:
+    grid = shown_steps(pin).grid(units)
+    first, rest = grid.body[:MAX_STEPS], grid.body[MAX_STEPS:]
+    return LetsGoPart(
+        pin.row.case,
+        first_sentence(pin),
+        replace(grid, body=first),
+        replace(grid, body=rest) if rest else None,
+        tuple(step.missed for step in pin.known[:MAX_STEPS]),
+        tuple(notes(pin)),
+    )

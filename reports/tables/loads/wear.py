@@ -1,0 +1,42 @@
+"""The table of sliding, pressure and their product at the bands of pins."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from reports.data.results import Results, Units
+from reports.data.wear import BandWear
+from reports.tables.column import Column, Table, texts, unit_columns
+
+WEAR_NOTE = (
+    "Over the whole motion. The link slides on the pin, which turns with the body that carries it; "
+    "a floating pin may turn with any of its links: then the largest values for any of them. Mean "
+    "pressure: force over diameter and length of the band. p v: the largest product of mean "
+    "pressure and sliding velocity at one instant."
+)
+
+
+@dataclass(frozen=True)
+class WearRow:
+    """A band with the units of its numbers."""
+
+    of: BandWear
+    units: Units
+
+
+COLUMNS: list[Column[WearRow]] = [
+    *texts("case=of.case pin=of.pin connection=of.connection body=of.body"),
+    Column("turns_with", lambda row: row.of.against, "", "pin turns with", numeric=False),
+    Column("floats", lambda row: row.of.floats, "", "pin floats", numeric=False),
+    Column("mean_pressure", lambda row: row.of.mean_pressure, "stress", "mean pressure"),
+    Column("velocity", lambda row: row.of.velocity, "velocity", "velocity"),
+    Column("sliding_distance", lambda row: row.of.distance, "length", "sliding distance"),
+    Column("pressure_velocity", lambda row: row.of.pressure_velocity, "stress velocity", "p v"),
+    Column("time", lambda row: row.of.time, "time", "time"),
+    *unit_columns("length stress time"),
+]
+
+
+def wear_table(results: Results) -> Table[WearRow]:
+    """Return a line for each band of each motion."""
+    return Table("wear", COLUMNS, [WearRow(row, results.units) for row in results.wear])

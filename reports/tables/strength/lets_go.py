@@ -1,0 +1,116 @@
+"""The ladder of what lets go first, of every pin in its governing case."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import isfinite
+
+from reports.data.lets_go import PinSteps, Step, lets_go
+from reports.data.results import PinResult, Results
+from reports.format.numbers import DASH, engineering, short
+from reports.tables.column import Column, Table, fields, read_only
+
+LETS_GO_NOTE = (
+    "Load factor: on all loads of the case, in proportion. Yield that begins locally, at a fillet "
+    "or a bore, is no failure: the part carries more until a section is plastic, or it collapses "
+    "or ruptures. Checks by formula and clauses are at what they allow, their own factors "
+    "included. Fatigue has no load factor."
+)
+CONTACT_NOTE = (
+    "≈: by contact with a clearance or rounded edges, which spreads as the load grows; the factor "
+    "is strength over stress under the loads of the case. At twice the loads of the clevis it came "
+    "out up to 1 % higher for the pin, 2 % at the free side of its lugs' bores, 8 % where the pin "
+    "presses on them, and 34 % at their edges."
+)
+MAX_STEPS = 12  # that are shown at once
+
+
+@dataclass(frozen=True)
+class StepRow:
+    """A step of a pin's row."""
+
+    pin: PinResult
+    of: Step
+
+
+def _factor(row: StepRow) -> str:
+    """Return the load factor with its ends."""
+    step = row.of
+    if step.load_factor is None:
+        return DASH
+    about = "" if step.in_proportion else "≈ "
+    if step.low is None or step.high is None or step.low == step.high:
+        return f"{about}{engineering(step.load_factor, 3)}"
+    high = engineering(step.high, 3) if isfinite(step.high) else "∞"
+    ends = f"{engineering(step.low, 3)} to {high}"
+    return (
+        f"{about}{ends}"
+        if step.low == step.load_factor
+        else (f"{about}{engineering(step.load_factor, 3)} ({ends})")
+    )
+
+
+def _required(row: StepRow) -> str:
+    return DASH if row.of.required is None else short(row.of.required)
+
+
+COLUMNS: list[Column[StepRow]] = [
+    *fields("pin=pin.pin case=pin.case"),
+    read_only("load factor", _factor),
+    *fields("of.load_factor of.low of.high"),
+    Column("required", lambda row: row.of.required, "", "required", _required),
+    Column("what", lambda row: row.of.what, heading="what", numeric=False),
+    Column("at", lambda row: row.of.at, "", "at", lambda row: row.of.at or DASH, numeric=False,
+           drop_if_empty=True),
+    Column("effect", lambda row: row.of.effect, heading="lets go", numeric=False),
+    Column("clause", lambda row: row.of.clause, "", "clause", lambda row: row.of.clause or DASH,
+           numeric=False, rank=1),
+    *fields("of.in_proportion of.needs"),
+]  # fmt: skip
+
+
+def lets_go_table(results: Results) -> Table[StepRow]:
+    """Return the steps of all pins, one below the other, for files."""
+    return Table("lets_go", COLUMNS, [row for pin in lets_go(results) for row in _rows(pin)])
+
+
+def shown_steps(pin: PinSteps) -> Table[StepRow]:
+    """Return the steps with a load factor, for people."""
+    return Table("lets_go", COLUMNS, [StepRow(pin.row, step) for step in pin.known])
+
+
+def _rows(pin: PinSteps) -> list[StepRow]:
+    return [StepRow(pin.row, step) for step in pin.steps]
+
+
+def notes(pin: PinSteps) -> list[str]:
+    """Return how to read the ladder of a pin, and what has no load factor."""
+    about = [CONTACT_NOTE] if any(not step.in_proportion for step in pin.known) else []
+    return [*not_computed_words(pin.unknown), LETS_GO_NOTE, *about]
+
+
+def first_sentence(pin: PinSteps) -> str:
+    """Return a sentence on what lets go first, and on the first that is more than local yield."""
+    if not pin.known:
+        return ""
+    first = pin.known[0]
+    text = f"At {engineering(first.load_factor, 3)} times the loads the {_words(first)}"
+    more = next((s for s in pin.known if "locally" not in s.effect), None)
+    if more is not None and more is not first:
+        text += f"; at {engineering(more.load_factor, 3)} times, {_words(more)}"
+    return f"{text}."
+
+
+def _words(step: Step) -> str:
+    at = f" ({step.at})" if step.at else ""
+    return f"{step.what}{at} {step.effect}"
+
+
+def not_computed_words(steps: Sequence[Step]) -> list[str]:
+    """Return a line for each thing that is missing, with what has no load factor without it."""
+    by_need: dict[str, dict[str, None]] = {}
+    for step in steps:
+        named = f"{step.what} ({step.at})" if step.at else step.what
+        by_need.setdefault(step.needs, {})[named] = None
+    return [f"Not computed, needs {needs}: {'; '.join(what)}." for needs, what in by_need.items()]

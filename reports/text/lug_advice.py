@@ -1,0 +1,161 @@
+"""What to change in a lug that fails: its thickness, its eye, its material, or the joint.
+
+Where the pin loads a lug evenly, the stress at the bore is F / (D t) times a factor of the eye,
+Ekvall's 2.75 (W/D - 1)^-0.675: it falls with the thickness and with a wider eye. Where a pin bends
+and loads the face of its lug, neither helps much: a stiffer pin does, in an eye that grows with it.
+All of a joint larger in the same ratio has the same stress times its inverse square. On clevises
+that were solved again the needed factor was reached within 4 %, or exceeded. A clause gives the
+dimension that just passes itself.
+
+Source: J. C. Ekvall, J. Aircraft 23(5), 1986, 438-443.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from math import sqrt
+
+from assess.clauses.ekvall import BORE_EXPONENT, TESTED_WIDTHS
+from assess.judgement import FAILS
+from reports.data.headline import JudgedCheck
+from reports.data.lug_modes import BORE_STRESS, lug_mode
+from reports.data.overview import PinLine
+from reports.data.results import LugSketch, PinShape, Results, Units
+from reports.format.numbers import engineering
+from reports.format.units import unit_name
+
+MAX_STRENGTH_RATIO = 3.0  # times the strength, which no other steel has
+MAX_THICKNESS_RATIO = 3.0  # times the thickness, beyond which the whole joint has to grow
+FACE_SHARE = 0.2  # of a lug's thickness: a largest stress nearer to a face is that of bending
+MAX_TOLD_LUGS = 3  # with what to change; the others are named
+SIZE_NOTE = "The command changes pins, not lugs."
+PASSING_WORDS = {
+    "outer_diameter": "an eye of {}",
+    "thickness": "{} of thickness",
+    "diameter": "a pin of {}",
+}
+
+
+def lug_advice(results: Results, lines: Iterable[PinLine]) -> list[str]:
+    """Return sentences on the lugs that fail where a check of one is the worst of its pin."""
+    failing = _failing(lines)
+    whole = [c for c in failing if c.used > MAX_THICKNESS_RATIO and _at_bore(c)]
+    alone = [c for c in failing if c not in whole]
+    told = [_of_whole(whole)] if whole else []
+    told += [_of_lug(check, results) for check in alone[:MAX_TOLD_LUGS]]
+    if rest := alone[MAX_TOLD_LUGS:]:
+        told.append(f"Likewise {_and([f'lug {c.lug} of {c.pin}' for c in rest])}.")
+    return [*told, SIZE_NOTE] if failing and results.changes else told
+
+
+def lug_peaks(lines: Iterable[PinLine], units: Units) -> str:
+    """Return a sentence on the stress of the lugs that fail by it; empty without any."""
+    told = [
+        f"{c.lug} {engineering(c.margin.demand, 3)} {units.stress}"
+        for c in _failing(lines)
+        if c.margin and _at_bore(c)
+    ]
+    return f"At the bore of lug{'s' * (len(told) > 1)} {_and(told)} (with error)." if told else ""
+
+
+def _failing(lines: Iterable[PinLine]) -> list[JudgedCheck]:
+    checks = [line.check for line in lines if line.check.outcome == FAILS]
+    return [check for check in checks if check.lug and check.factor]
+
+
+def _at_bore(check: JudgedCheck) -> bool:
+    return lug_mode(check.check) == BORE_STRESS
+
+
+def _of_whole(checks: Sequence[JudgedCheck]) -> str:
+    """Return the sentence on lugs that no change of the eye alone mends."""
+    named = _and([f"{c.lug} of {c.pin}" for c in checks])
+    factors = _and([engineering(c.factor, 3) for c in checks])
+    times = _and([engineering(sqrt(c.used), 2) for c in checks])
+    s, verb = ("s", "need") if len(checks) > 1 else ("", "needs")
+    return (
+        f"Lug{s} {named} (factor{s} {factors} at the bore) {verb} pin, eye and thickness about "
+        f"{times} times as large: no wider eye and no stronger steel is enough."
+    )
+
+
+def _of_lug(check: JudgedCheck, results: Results) -> str:
+    shape = next((s for s in results.shapes if s.pin == check.pin), None)
+    where = "at the bore" if _at_bore(check) else check.check
+    factor = f"factor {engineering(check.factor, 3)} {where}"
+    return f"Lug {check.lug} of {check.pin} ({factor}) needs {_or(_ways(check, shape, results))}."
+
+
+def _ways(check: JudgedCheck, shape: PinShape | None, results: Results) -> list[str]:
+    """Return the changes of which each alone is enough, as an estimate."""
+    ways, units = list[str](), results.units
+    lug = next((x for x in shape.lugs if x.connection == check.lug), None) if shape else None
+    if _at_bore(check) and shape and lug:
+        bore = _bore(shape, lug)
+        ways += (
+            _of_face(check.used, lug, bore, units)
+            if _at_face(check, lug)
+            else [*_of_eye(check.used, lug, bore + 2.0 * lug.bushing, units)]
+        )
+    elif check.margin and (passing := check.margin.passing):
+        size = f"{engineering(passing.value, 3)} {units.length}"
+        ways.append(PASSING_WORDS.get(passing.symbol, f"{passing.symbol} {{}}").format(size))
+    if check.used <= MAX_STRENGTH_RATIO:
+        ways.append(_stronger(check, units))
+    return ways
+
+
+def _at_face(check: JudgedCheck, lug: LugSketch) -> bool:
+    """Return whether the stress is largest near a face of the lug."""
+    z = check.margin.z if check.margin else None
+    start, end = lug.z
+    return z is not None and min(z - start, end - z) < FACE_SHARE * (end - start)
+
+
+def _of_face(used: float, lug: LugSketch, pin: float, units: Units) -> list[str]:
+    """Return the pin and eye that are enough where a bending pin loads the face of a lug."""
+    return [
+        f"a stiffer pin, of {_now(used, pin, units)}, in an eye of "
+        f"{_now(used, lug.outer_diameter, units)}"
+    ]
+
+
+def _of_eye(used: float, lug: LugSketch, hole: float, units: Units) -> Iterator[str]:
+    """Yield the thickness, and the width of the eye within those of the tests, that are enough."""
+    width, thickness = lug.outer_diameter, lug.z[1] - lug.z[0]
+    yield f"a thickness of {_now(used, thickness, units)}"
+    if hole > 0.0:
+        wider = hole * (1.0 + (width / hole - 1.0) * used ** (-1.0 / BORE_EXPONENT))
+        if wider <= TESTED_WIDTHS[1] * hole:
+            yield f"an eye of {_now(wider / width, width, units)}"
+
+
+def _now(times: float, now: float, units: Units) -> str:
+    return f"{engineering(times * now, 3)} {units.length} (now {engineering(now, 3)})"
+
+
+def _stronger(check: JudgedCheck, units: Units) -> str:
+    margin = check.margin
+    if margin is None or margin.dimension != "stress" or margin.allowable is None:
+        return f"{engineering(100.0 * (check.used - 1.0), 2)} % more strength"
+    kind = "a yield" if margin.level == "limit" else "an ultimate"
+    strength = f"{engineering(check.used * margin.allowable, 3)} {unit_name('stress', units)}"
+    return f"{kind} strength of {strength}"
+
+
+def _bore(shape: PinShape, lug: LugSketch) -> float:
+    """Return the diameter of the pin in a lug."""
+    z = 0.0
+    for length, diameter, *_ in shape.segments:
+        if z <= 0.5 * (lug.z[0] + lug.z[1]) < z + length:
+            return diameter
+        z += length
+    return 0.0
+
+
+def _and(parts: Sequence[str]) -> str:
+    return " and ".join(filter(None, [", ".join(parts[:-1]), parts[-1]]))
+
+
+def _or(ways: Sequence[str]) -> str:
+    return " or ".join(filter(None, [", ".join(ways[:-1]), ways[-1]])) if ways else "less load"

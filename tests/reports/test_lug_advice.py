@@ -1,0 +1,151 @@
+"""What to change in a lug that fails: in words, and by solving the changed joint again."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import pinstress
+from assess.margin import Margin
+from assess.work import WorkQuantity
+from reports.data.overview import PinLine, pin_lines
+from reports.data.results import LugSketch, Results
+from reports.format.words import headline
+from reports.tables.strength.overview import check_words
+from reports.text.lug_advice import lug_advice, lug_peaks
+from reports.text.overview import actions
+from tests.conftest import ROOT
+from tests.support.results.made_up_run import make_results
+from tests.support.results.rows import with_values
+
+STRESS = Margin(
+    "lug, von Mises stress at the bore", "14 CFR 25.305", "model", "limit", 2.0, 50e3, 80e3,
+    at="L", z=0.5,
+)  # fmt: skip
+CLAUSE = Margin(
+    "BTH-1 plate, tension", "ASME BTH-1", "clause", "limit", 1.0, 1200.0, 1000.0, "force", "L",
+    passing=WorkQuantity("outer_diameter", 3.25, "length"),
+)  # fmt: skip
+
+
+def failing(margin: Margin) -> tuple[Results, list[PinLine]]:
+    """A pin of 1 in a lug of 2.5 by 1 in, whose margin is the worst of its checks."""
+    results = make_results()
+    row = with_values(
+        results.pins[0], safety_factor=9.0, required=2.0, decided=True, safety_factor_interval=None,
+        verdict="converged",
+    )  # fmt: skip
+    row = replace(row, worst=(margin,), margins=(margin,), depends_on=())
+    lug = LugSketch("L", (0.0, 1.0), 2.5, 0.0, "steel")
+    shape = replace(
+        results.shapes[0], pin=row.pin, segments=((1.0, 1.0, 0.0, "L", "band"),), lugs=(lug,)
+    )
+    results = replace(results, pins=(row,), shapes=(shape,), changes=(), stated=())
+    return results, pin_lines(results)
+
+
+def test_a_lug_that_is_loaded_evenly() -> None:
+    """Used 1.25: thickness by that, W/D - 1 by its power 1 / 0.675, strength by that."""
+    (text,) = lug_advice(*failing(STRESS))
+    wide = 1.0 + 1.5 * 1.25 ** (1.0 / 0.675)
+    assert text == (
+        "Lug L of A (factor 1.60 at the bore) needs a thickness of 1.25 in (now 1.00), an eye of "
+        f"{wide:.2f} in (now 2.50) or a yield strength of 100,000 psi."
+    )
+
+
+def test_a_lug_whose_face_a_bending_pin_loads() -> None:
+    (text,) = lug_advice(*failing(replace(STRESS, z=0.95)))
+    assert "thickness" not in text
+    assert "a stiffer pin, of 1.25 in (now 1.00), in an eye of 3.12 in (now 2.50)" in text
+
+
+def test_a_joint_that_is_much_too_small() -> None:
+    """Of 16 times the stress no eye is free: all of the joint 4 times as large."""
+    results, lines = failing(replace(STRESS, demand=640e3))
+    (text,) = lug_advice(results, lines)
+    assert "pin, eye and thickness about 4.0 times as large" in text
+    assert lug_peaks(lines, results.units) == "At the bore of lug L 640,000 psi (with error)."
+
+
+def test_a_clause_gives_the_dimension_that_passes() -> None:
+    (text,) = lug_advice(*failing(CLAUSE))
+    assert text == (
+        "Lug L of A (factor 0.833 BTH-1 plate, tension) needs an eye of 3.25 in or 20 % more "
+        "strength."
+    )
+
+
+def test_first_screen_names_the_lug() -> None:
+    results, lines = failing(STRESS)
+    assert check_words(lines[0]) == "lug L, bore: 1.60"
+    assert not any("more strength" in text for text in actions(results, lines).repairs)
+    second = with_values(results.pins[0], pin="B")
+    both = replace(results, pins=(results.pins[0], second))
+    assert headline(both) == f"2 of 2 pins fail ({second.case}): A (lug L), B (lug L)."
+
+
+def test_a_pin_that_fails_by_itself_gets_no_advice_on_lugs() -> None:
+    of_pin = replace(STRESS, method="bending", at="L")
+    assert lug_advice(*failing(of_pin)) == []
+
+
+def clevis(folder: Path, required: float, **sizes: float) -> Results:
+    """The clevis with shanks; sizes of the pin, its eyes, and the thickness of side and middle."""
+    text = (ROOT / "studies" / "clevis.toml").read_text(encoding="utf-8")
+    size = {"pin": 20.0, "eye": 50.0, "side": 10.0, "middle": 20.0} | sizes
+    changes = {
+        "required_safety_factor = 1.5": f"required_safety_factor = {required}",
+        "outer_diameter = 50": f"outer_diameter = {size['eye']}\nshank = {{}}",
+        "{ length = 10, diameter = 20": f"{{ length = {size['side']}, diameter = 20",
+        "{ length = 20, diameter = 20": f"{{ length = {size['middle']}, diameter = 20",
+        "diameter = 20,": f"diameter = {size['pin']},",
+        "diameter = 20 }": f"diameter = {size['pin']} }}",
+    }
+    for old, new in changes.items():
+        assert old in text
+        text = text.replace(old, new)
+    path = folder / "clevis.toml"
+    path.write_text(text, encoding="utf-8")
+    return pinstress.run(pinstress.load_study(path))
+
+
+def advised(results: Results, lug: str) -> dict[str, float]:
+    """The numbers of the advice on a lug, by the words before them."""
+    (text,) = [x for x in lug_advice(results, pin_lines(results)) if x.startswith(f"Lug {lug}")]
+    words = "a thickness of", "an eye of", "a stiffer pin, of"
+    return {w: float(m[1]) for w in words if (m := re.search(rf"{w} ([\d.]+)", text))}
+
+
+def least(results: Results, lug: str) -> float:
+    """The factor of a lug at its bore, with its error."""
+    stresses = results.pins[0].joint.lugs  # type: ignore[union-attr]
+    return min(
+        (x.yield_strength or 0.0) / (x.max_von_mises + x.error_estimate)
+        for x in stresses
+        if x.connection == lug and x.place == "free"
+    )
+
+
+@pytest.mark.slow
+def test_a_stiffer_pin_in_a_wider_eye_is_enough(tmp_path: Path) -> None:
+    """The slender pin of the clevis loads the faces: the advice holds, a thicker lug would not."""
+    given = advised(clevis(tmp_path, 2.6), "EYE")
+    assert set(given) == {"a stiffer pin, of", "an eye of"}
+    changed = clevis(tmp_path, 2.6, pin=given["a stiffer pin, of"], eye=given["an eye of"])
+    assert least(changed, "EYE") > 2.6
+    assert least(clevis(tmp_path, 2.6, middle=28.4), "EYE") < 2.6
+
+
+@pytest.mark.slow
+def test_a_thicker_lug_or_a_wider_eye_is_enough_of_a_stiff_pin(tmp_path: Path) -> None:
+    stiff = {"pin": 40.0, "eye": 100.0}
+    given = advised(clevis(tmp_path, 6.0, **stiff), "EYE")
+    thick = given["a thickness of"]
+    thicker = clevis(tmp_path, 6.0, **stiff, middle=thick, side=thick / 2.0)
+    assert least(thicker, "EYE") == pytest.approx(6.0, rel=0.04)
+    wider = clevis(tmp_path, 6.0, pin=40.0, eye=given["an eye of"])
+    assert least(wider, "EYE") == pytest.approx(6.0, rel=0.04)

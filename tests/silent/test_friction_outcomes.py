@@ -1,0 +1,64 @@
+"""What friction takes off the stress while a load grows must not make a pin safe; what it adds when
+a load falls, or links turn, must not be silent.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from fea.support.contact.variations import NOWHERE, ResolutionComparison
+from fea.support.records import FRICTION, JointRange, Variation
+from reports.data.dependence import depends_on
+from reports.data.results import PinResult
+from reports.data.unknowns import unknowns
+from reports.format.words import result_words
+from tests.fea.support.contact.test_solve_in_lugs import STEADY
+from tests.silent.test_outcomes import in_contact
+
+
+def with_friction(factor: float, low: float, high: float) -> PinResult:
+    """A pin whose stress friction changes by these ratios; 1.5 is required."""
+    pin = in_contact(factor)
+    assert pin.joint is not None
+    stress = pin.max_von_mises or 0.0
+    variations = (
+        Variation(FRICTION, "0.15, load growing", low * stress),
+        Variation(FRICTION, "0.15, load falling", high * stress),
+    )
+    over = JointRange((stress, max(stress, high * stress)), variations)
+    return replace(pin, joint=replace(pin.joint, range=over))
+
+
+def test_a_safe_pin_depends_on_friction_that_adds() -> None:
+    pin = with_friction(1.8, 0.8, 1.3)
+    (over,) = depends_on(pin)
+    assert (over.what, over.value, over.over) == ("friction", "0.15, load falling", "joint")
+    assert over.factor == pytest.approx(1.8 / 1.3)
+    assert result_words(replace(pin, depends_on=(over,))) == "depends: joint"
+    assert depends_on(with_friction(1.8, 0.8, 1.1)) == ()
+
+
+def test_a_pin_that_fails_is_never_safe_by_friction() -> None:
+    assert depends_on(with_friction(1.4, 0.8, 1.3)) == ()
+
+
+def test_the_range_over_the_joint_has_no_lower_end_by_friction() -> None:
+    over = (
+        Variation("tilt", "guided", 0.95),
+        Variation(FRICTION, "0.15, load growing", 0.8),
+        Variation(FRICTION, "0.15, load falling", 1.3),
+    )
+    known = ResolutionComparison(NOWHERE, NOWHERE, STEADY, over)
+    assert known.range(200.0).max_von_mises == pytest.approx((190.0, 260.0))
+
+
+def test_friction_is_an_open_value_that_only_lowers_the_factor() -> None:
+    pin = with_friction(1.8, 0.8, 1.3)
+    pin = replace(pin, depends_on=depends_on(pin))
+    ((_, value),) = (row for unknown in unknowns([pin]) for row in unknown.rows)
+    assert value.what == "friction"
+    assert value.high == pytest.approx(1.8)
+    assert value.low == pytest.approx(1.8 / 1.3)
+    assert value.flips is not None
