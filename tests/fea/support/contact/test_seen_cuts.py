@@ -116,18 +116,20 @@ def test_a_joint_that_is_turned_with_its_cut_is_the_same() -> None:
 
 @pytest.mark.slow
 def test_cuts_add_compliance_each_on_its_own() -> None:
-    """Far apart they add up. What they add is reciprocal, and with it cells are still stable: any
-    forces on them do positive work.
+    """In pieces of their own they add up. What they add is reciprocal, and with it cells are still
+    stable: any forces on them do positive work.
     """
     added = []
-    for cuts in ((FLAT,), (HOLE,), (FLAT, HOLE)):
+    hole = Hole(0.005, 0.1 * D)
+    for cuts in ((FLAT,), (hole,), (FLAT, hole)):
         of = model(LOOSE, *cuts)
         assert of.cuts is not None
         matrix = of.cuts.added(of.bands, ROUGH.sectors, np.eye(len(of.rings)))
         assert matrix == pytest.approx(matrix.T, abs=1e-9 * np.abs(matrix).max())
         assert np.linalg.eigvalsh(of.contact._fixed)[0] > 0.0
         added.append(of.cuts.work)
-    assert added[2] == pytest.approx(added[0] + added[1], abs=0.02 * np.abs(added[2]).max())
+    together = np.linalg.norm(added[2])
+    assert np.linalg.norm(added[2] - added[0] - added[1]) < 0.02 * together
 
 
 @pytest.mark.slow
