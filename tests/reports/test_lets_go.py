@@ -199,7 +199,7 @@ def test_proportion_of_the_clevis(tmp_path: Path) -> None:
     once = ladder_of(tmp_path, text)
     twice = ladder_of(tmp_path, re.sub(r"\[(-?\d+), 0\]", lambda m: f"[{2 * int(m[1])}, 0]", text))
 
-    def factors(ladder: tuple[Step, ...], step: Step) -> list[float]:
+    def factors(ladder: tuple[LettingGo, ...], step: LettingGo) -> list[float]:
         """Of the same thing, at one place after another: where shear is largest is a tie."""
         alike = [s for s in ladder if (s.what, s.effect) == (step.what, step.effect)]
         return [s.load_factor or 0.0 for s in alike]
