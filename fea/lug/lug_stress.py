@@ -221,7 +221,7 @@ class _Around:
 
 
 def _beyond(times: Floats, values: Floats) -> float:
-    """By how much a parabola through the largest of values (T,) and its neighbours exceeds it."""
+    """The excess over the largest of values (T,) of a parabola through it and its neighbours."""
     k = int(values.argmax())
     if not 0 < k < len(values) - 1 or not np.isfinite(values[k - 1 : k + 2]).all():
         return 0.0
@@ -265,8 +265,8 @@ def _along_shank(load: LugLoad) -> Floats:
 
 
 def _added(eye: EyeStress, load: LugLoad, angles: Floats, hole: bool = False) -> Floats:
-    """What uneven pressure through the thickness adds, (T, R, P) Pa, at angles (P,) from the
-    shank.
+    """The stress (T, R, P), Pa, that pressure adds by being uneven through the thickness, at angles
+    (P,) from the shank.
     """
     amplitude = eye.added(load.pressure, load.length, hole)
     turns = angles + load.angle[:, None]  # (T, P)
@@ -347,7 +347,7 @@ def _shares(load: LugLoad) -> Floats:
 def _ends_of_contact(
     pressure: Floats,
 ) -> tuple[Floats, np.ndarray[tuple[int, int], np.dtype[np.bool_]]]:
-    """Where contact ends, (T, 2 M) in sectors from the first one's middle, and which of these
+    """The ends of contact, (T, 2 M) in sectors from the first one's middle, and which of these
     exist.
 
     Of a pressure that rises as a root, the last pressed sector has a mean that tells how far

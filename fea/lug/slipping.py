@@ -171,7 +171,7 @@ class SlippingBushing:
 
     @property
     def angles(self) -> Floats:
-        """Of the points at which stress is read, (P,) rad from the shank."""
+        """The angles (P,), rad from the shank, of the points at which stress is read."""
         wall: Wall = self.fields.bore
         return wall.angles
 

@@ -87,7 +87,7 @@ class FoundPart:
 
 @dataclass(frozen=True)
 class PartSearch:
-    """What the largest stresses of parts are looked for in.
+    """The fields in which the largest stresses of parts are looked for.
 
     reading: of the field. pin: as it is meshed. between: loads on the pin at any times.
     surface: the evidence of the surface, whose relative error that of other parts is at least.

@@ -262,7 +262,7 @@ class Linkage:
 
     @cached_property
     def rigid(self) -> dict[str, tuple[str, ...]]:
-        """Of each body and the ground, all that are welded together with it, itself included."""
+        """The bodies, and the ground, that each is welded to, itself included."""
         names = [*(b.name for b in self.bodies), GROUND]
         groups: dict[str, tuple[str, ...]] = {name: (name,) for name in names}
         for body in self.bodies:

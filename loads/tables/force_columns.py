@@ -26,7 +26,7 @@ Unit = Callable[[str, str], float]  # (unit, dimension) -> its SI value; "": the
 
 @dataclass(frozen=True)
 class JointAxes:
-    """How the force of a connection is written in a table.
+    """The way in which a table gives the force of a connection.
 
     turn: (3, 3) the pin's axes x, y, z in the table's axes, by row; negative where the table has
     the force of the pin on the link.
@@ -77,14 +77,14 @@ class Layout:
 
     @property
     def file_reading(self) -> FileReading:
-        """How the file is read: also without a header, where all columns are stated by number."""
+        """The rules for reading the file, which needs no header if all columns are numbers."""
         columns = self.columns.values()
         numbered = bool(columns) and all(isinstance(c, int) for c in columns)
         texts = frozenset(self.columns.get(meaning, meaning) for meaning in TEXT_COLUMNS)
         return replace(self.reading, numbered=numbered, texts=texts)
 
     def axes_of(self, connection: str) -> JointAxes:
-        """How the force of a connection is written."""
+        """The axes in which the force of a connection is written."""
         return self.axes.get(connection) or self.axes.get("") or JointAxes()
 
 

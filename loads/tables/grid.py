@@ -33,7 +33,7 @@ Decimal = Literal[".", ","]
 
 @dataclass(frozen=True)
 class FileReading:
-    """What a study says of a file that the file does not say itself.
+    """The properties of a file that a study states because the file does not.
 
     sheet: name of the sheet of a workbook; None: its only one.
     header_line: line or row of the header, from 1; None: the first that is no comment.

@@ -35,7 +35,10 @@ def rows_by_case(path: Path, reading: FileReading, column: int) -> dict[str, lis
 
 @lru_cache(maxsize=1)  # the cases of one table follow each other
 def _open(path: Path, _: str, reading: FileReading) -> TableGrid:
-    """As open_table; _: the file's stamp, which makes the cache notice a changed file."""
+    """Open a table as open_table does.
+
+    _: the stamp of the file, which makes the cache notice a changed one.
+    """
     content, source = read_content(path), Source(str(path))
     for mark, what in OTHER_MARKS.items():
         if content.startswith(mark):

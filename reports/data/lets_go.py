@@ -32,7 +32,7 @@ SAME_FACTOR = 1e-3  # relative difference of load factors of places that share a
 
 @dataclass(frozen=True)
 class LettingGo:
-    """What lets go, and the factor on all loads of the case at which it does.
+    """A part that lets go, and the factor on all loads of the case at which it does.
 
     what: the part or the check. at: bands or segments. effect: what happens to it.
     load_factor: None where it is not known; low, high: its ends by the error of a stress, or by
@@ -101,7 +101,7 @@ def steps(row: PinResult, shape: PinShape | None) -> list[LettingGo]:
 
 @dataclass(frozen=True)
 class _Joint:
-    """How the stress of a pin in its lugs depends on the loads.
+    """The way in which the stress of a pin in its lugs depends on the loads.
 
     solved: whether the joint was. proportional: whether contact grows in proportion: without
     clearance and with sharp edges. pressed: whether the pin is pressed into a lug; bushed: lugs

@@ -56,7 +56,7 @@ class Unknown:
 
     @property
     def what(self) -> str:
-        """What is open."""
+        """The name of the open value."""
         return self.rows[0][1].what
 
     @property

@@ -12,7 +12,7 @@ from reports.tables.strength.lets_go import MAX_STEPS, first_sentence, notes, sh
 
 @dataclass(frozen=True)
 class LetsGoPart:
-    """What lets go first of a pin in its governing case.
+    """The parts of a pin's joint that let go first, in its governing case.
 
     sentence: on the first. grid: the first steps; more: those after them, None without any.
     misses: which of the steps of the grid have less than their required factor.

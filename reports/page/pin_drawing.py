@@ -65,7 +65,7 @@ class _Piece:
 
 @dataclass(frozen=True)
 class _Layout:
-    """Where a pin is drawn.
+    """The place at which a pin is drawn.
 
     left, scale, length: of the pin. radius: the largest. tops: rows of the labels, of segments
     that have words.

@@ -64,7 +64,7 @@ class SeenCuts:
         return np.concatenate(out)
 
     def added(self, bands: Bands, sectors: int, groups: Floats) -> Floats:
-        """What the cuts add to the displacement of cells under forces on cells, (U, U) m/N.
+        """The displacement of cells under forces on cells that the cuts add, (U, U) m/N.
 
         groups: (R, C) 1 where a ring of the pin belongs to a ring of the cells.
         """

@@ -47,7 +47,7 @@ def at_temperature(lug: Lug, pin: Material, radius: float, rise: float) -> Lug:
 
 
 def bore_widening(lug: Lug, radius: float) -> float:
-    """By how much the bore of a bushing widens per interference in its lug, both of diameters:
+    """The widening of a bushing's bore per interference in its lug, both of diameters:
     a negative number.
     """
     assert lug.bushing is not None

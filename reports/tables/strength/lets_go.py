@@ -17,7 +17,7 @@ LETS_GO_NOTE = (
     "or ruptures. Checks by formula and clauses are at what they allow, their own factors "
     "included. Fatigue has no load factor."
 )
-CONTACT_NOTE = (
+LOAD_FACTOR_NOTE = (
     "≈: by contact with a clearance or rounded edges, which spreads as the load grows; the factor "
     "is strength over stress under the loads of the case. At twice the loads of the clevis it came "
     "out up to 1 % higher for the pin, 2 % at the free side of its lugs' bores, 8 % where the pin "
@@ -86,7 +86,7 @@ def _rows(pin: PinSteps) -> list[StepRow]:
 
 def notes(pin: PinSteps) -> list[str]:
     """Return how to read the ladder of a pin, and what has no load factor."""
-    about = [CONTACT_NOTE] if any(not step.in_proportion for step in pin.known) else []
+    about = [LOAD_FACTOR_NOTE] if any(not step.in_proportion for step in pin.known) else []
     return [*not_computed_words(pin.unknown), LETS_GO_NOTE, *about]
 
 
