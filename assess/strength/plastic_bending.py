@@ -28,8 +28,8 @@ import numpy as np
 from assess.check import CheckText, check
 from assess.margin import RATIO_DIMENSION, Margin, strength_key
 from assess.situation import Situation
+from fea.beam.plastic_interaction import cased_rings
 from fea.beam.round_section import Circle
-from fea.section.section_stress import cased_rings
 
 INTERACTION_RULE = "(M/M_pl)^2 + (V/V_pl)^2 <= 1, without axial force and torque"
 

@@ -24,12 +24,19 @@ from collections.abc import Sequence
 import numpy as np
 
 from fea.beam.round_section import Circle
+from fea.core.hardened import Hardened
 from pinbase.arrays import Floats
 
 CURVE_POINTS = 201  # points of the curve, whose chords and tangents are within 1e-4 of it
 
 
 Ring = tuple[Circle, float]  # a concentric part of a section, and its yield strength
+
+
+def cased_rings(section: Circle, case: Hardened) -> tuple[Ring, ...]:
+    """The case and the core of a hardened section."""
+    core = section.outer - case.depth
+    return (Circle(section.outer, core), case.surface), (Circle(core, section.inner), case.core)
 
 
 def bending_and_axial_use(section: Circle, moment: Floats, axial: Floats) -> tuple[Floats, Floats]:

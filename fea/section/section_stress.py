@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from fea.beam.error_model import between_clamps
 from fea.beam.line_load import acting, shares
-from fea.beam.plastic_interaction import Ring, plastic_use
+from fea.beam.plastic_interaction import Ring, cased_rings, plastic_use
 from fea.beam.round_section import Circle, thinnest_section
 from fea.beam.stress import RZ, TZ, ZZ, section_stress
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
@@ -76,12 +76,6 @@ class AtSection:
         for case in (x for x in hardened if x.start <= self.z <= x.end):
             rings = cased_rings(self.section, case)
         return plastic_use(rings, *forces)
-
-
-def cased_rings(section: Circle, case: Hardened) -> tuple[Ring, ...]:
-    """The case and the core of a hardened section."""
-    core = section.outer - case.depth
-    return (Circle(section.outer, core), case.surface), (Circle(core, section.inner), case.core)
 
 
 class SectionField:

@@ -139,7 +139,7 @@ def test_a_lug_at_a_clamp_is_not_left_out_without_a_word() -> None:
 
 @pytest.mark.parametrize(
     ("lug", "code"),
-    [({"outer_diameter": 20}, "lug-too-narrow"), ({"clearance": 5}, "clearance-too-large")],
+    [({"outer_diameter": 20}, "lug-too-narrow"), ({"clearance": 30}, "clearance-too-large")],
 )
 def test_a_lug_that_cannot_be_is_refused_before_anything_is_solved(
     lug: dict[str, Any], code: str

@@ -111,6 +111,12 @@ def _require_gap(lug: Lug, band: Band, in_contact: bool) -> None:
             '"prescribed", formulas take any',
             "clearance-too-large",
         )
+    if not in_contact and lug.outer_diameter - d - lug.clearance < 2.0 * MIN_WALL * d:
+        raise ArgumentError(
+            f"{what}: with its clearance the bore is {(d + lug.clearance) / d:.4g} of the pin's "
+            f"diameter, which leaves a wall of less than {MIN_WALL:g} diameters in the eye",
+            "clearance-too-large",
+        )
     if lug.edge_radius > band.length / 2.0:
         raise ArgumentError(
             f"{what}: the radius of its edges is {lug.edge_radius / band.length:.3g} of the length "
