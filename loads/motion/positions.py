@@ -14,6 +14,7 @@ from pinbase.arrays import Floats
 
 NEWTON_TOLERANCE = 1e-10  # last correction, over the length scale; the error is its square
 CLOSURE_TOLERANCE = 1e-11  # largest gap of a closed loop, over the length scale
+OPEN_STEPS = 64  # of the drives, on which it is seen how far a loop that does not close is apart
 MAX_STEP_TURN = 0.25  # rad (or length scales) that a coordinate may move in a continuation step
 MAX_CONTRACTION_RATIO = 0.25  # largest ratio of a Newton correction to the one before
 MIN_PIVOT_RATIO = 1e-10  # smallest to largest pivot: below it rank is lost
@@ -128,8 +129,10 @@ class Path:
             except (_Lost, _Open) as problem:
                 step = (end - time) / 2.0
                 if step < min_step:
-                    opened = problem.q if isinstance(problem, _Open) else None
                     wanted = self._furthest(start, marks[grid > time])
+                    opened = None
+                    if isinstance(problem, _Open):
+                        opened = _widest(loops, problem.q, start, wanted)
                     raise motion_blocked(loops, q, start, wanted, opened) from None
                 continue
             # A change of sign of the determinant shows that the step passed a singular position.
@@ -282,12 +285,38 @@ def _quintic(s: Floats, q: Floats, rate: Floats, bend: Floats) -> Floats:
     )
 
 
-def _newton(loops: Loops, q: Floats, drives: Floats, first: float = np.inf) -> Floats:
+def _widest(loops: Loops, q: Floats, reached: Floats, wanted: Floats) -> Floats:
+    """Coordinates (n,) at which loops that stay open are furthest apart, on a straight way of the
+    drives and as far as they can be followed on it; at best, by least squares.
+
+    q: (n,) near `reached`. reached, wanted: (D,) values of the drives.
+    """
+    widest, largest = q, 0.0
+    for part in np.linspace(0.0, 1.0, OPEN_STEPS + 1)[1:]:
+        drives = (reached + part * (wanted - reached))[None]
+        try:
+            q = _newton(loops, q[None], drives, closure=np.inf)[0]
+        except _Lost:
+            break
+        gap = float(np.abs(loops.residual(q[None], loops.pose(q[None]), drives)).max())
+        if gap > largest:
+            widest, largest = q, gap
+    return widest
+
+
+def _newton(
+    loops: Loops,
+    q: Floats,
+    drives: Floats,
+    first: float = np.inf,
+    closure: float = CLOSURE_TOLERANCE,
+) -> Floats:
     """Coordinates (T, n) that satisfy the equations, by Newton's method from q (T, n).
 
     Every correction must be at most MAX_CONTRACTION_RATIO of the one before.
     drives: (T, D) values of the drives.
     first: largest first correction, m.
+    closure: largest gap of a loop, over the length scale.
 
     Raises: _Lost without such contraction; _Open where the equations contradict each other.
     """
@@ -308,7 +337,7 @@ def _newton(loops: Loops, q: Floats, drives: Floats, first: float = np.inf) -> F
             raise _Lost
         q = q + x / loops.scale
         if size <= NEWTON_TOLERANCE * scale:
-            if np.abs(loops.residual(q, loops.pose(q), drives)).max() > CLOSURE_TOLERANCE * scale:
+            if np.abs(loops.residual(q, loops.pose(q), drives)).max() > closure * scale:
                 raise _Open(q[-1])
             return q
         if size > MAX_CONTRACTION_RATIO * before and size > 1e-9 * scale:

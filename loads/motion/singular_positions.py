@@ -50,6 +50,7 @@ class MotionBlocked(LinkageError):
     reached, wanted: (D,) values of the drives, m or rad.
     bodies: that can move there with the drives locked.
     connections: whose forces are unbounded there; for loops that stay open, those that do not meet.
+    gap: the largest distance by which these miss each other, m; 0 where only teeth do.
     """
 
     def __init__(
@@ -60,8 +61,9 @@ class MotionBlocked(LinkageError):
         wanted: Floats,
         bodies: tuple[str, ...],
         connections: tuple[str, ...],
+        gap: float = 0.0,
     ) -> None:
-        self.linkage, self.kind = linkage, kind
+        self.linkage, self.kind, self.gap = linkage, kind, gap
         self.reached, self.wanted = reached, wanted
         self.bodies, self.connections = bodies, connections
         super().__init__(self.message(), KIND_CODES[kind])
@@ -77,9 +79,10 @@ class MotionBlocked(LinkageError):
         bodies, connections = _listed(self.bodies), _listed(self.connections)
         if self.kind == "open":
             toothed = bool(self.linkage.teeth)
+            apart = f" (at best {show(self.gap, True)} apart)" if self.gap else ""
             return (
                 f"the linkage does not close beyond {at(self.reached)} (requested: "
-                f"{at(self.wanted)}): {connections} do not meet, because the lengths of its "
+                f"{at(self.wanted)}): {connections} do not meet{apart}, because the lengths of its "
                 f"redundant links{' or the ratios of its gears' * toothed} are inconsistent; check "
                 f"the coordinates of the joints{' and the gears' * toothed}"
             )
@@ -110,14 +113,16 @@ def motion_blocked(
         pose = loops.pose(opened[None])
         lag = loops.residual(opened[None], pose, reached[None])[0, 2 * len(loops.closing) :]
         teeth = loops.linkage.teeth
-        gap = np.abs([*loops.place(pose, loops.gaps)[0], *lag[: len(teeth)]])
+        apart = np.abs(loops.place(pose, loops.gaps)[0])
+        gap = np.abs([*apart, *lag[: len(teeth)]])
         members = [
             loops.linkage.sliders[k].name if slides else loops.linkage.connections[k][1].name
             for slides, k in loops.closing
         ]
         members += [t.name for t in teeth]
         names = tuple(n for n, g in zip(members, gap, strict=True) if g > 0.1 * gap.max())
-        return MotionBlocked(loops.linkage, "open", reached, wanted, (), names)
+        largest = float(apart.max(initial=0.0))
+        return MotionBlocked(loops.linkage, "open", reached, wanted, (), names, largest)
     pose = loops.pose(q[None])
     left, _, right = np.linalg.svd(loops.jacobian(pose)[0])
     last = loops.columns - 1

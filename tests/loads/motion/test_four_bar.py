@@ -263,6 +263,33 @@ def test_redundant_links_that_do_not_fit_are_told() -> None:
         move(crooked, [ConstantDrive(1.0, 1.5, 1.0)], np.linspace(0.0, 1.0, 8))
 
 
+def test_the_gap_of_links_that_do_not_fit_is_told() -> None:
+    """A third crank of a parallelogram is 1.5 mm too long in 300. As the others turn its end has
+    to stay at a fixed distance of the pivot: off by what 1.5 mm along one direction are in another.
+    """
+    a, angle, end, off = 0.3, 1.0, 1.6, 1.5e-3
+    linkage = four_bar(1.0, a, 1.0, a, angle=angle)
+    pivot, e = np.array([0.5, 0.2]), np.array([np.cos(angle), np.sin(angle)])
+    top = pivot + a * e + off * np.array([-e[1], e[0]])  # on the coupler, drawn beside its place
+    crooked = replace(
+        linkage,
+        bodies=(*linkage.bodies, Body("third", 1.0, (0.5, 0.3), 0.05)),
+        joints=(
+            *linkage.joints,
+            Joint("O5", tuple(pivot.tolist()), (Connection("F15", "third"),), GROUND),
+            Joint("D", tuple(top.tolist()), (Connection("D5", "third"),), "coupler"),
+        ),
+    )
+    with pytest.raises(MotionBlocked) as blocked:
+        move(crooked, [ConstantDrive(angle, end, 1.0)], np.linspace(0.0, 1.0, 8))
+    # The coupler only shifts: D is at pivot + a e(t) + off, the crank's length is that as drawn.
+    drawn = np.hypot(a, off)
+    now = a * np.array([np.cos(end), np.sin(end)]) + off * np.array([-e[1], e[0]])
+    miss = abs(np.hypot(*now) - drawn)
+    assert 0.2 * miss < blocked.value.gap < miss  # the drive and other joints take a part of it
+    assert f"{blocked.value.gap:.6g} m apart" in str(blocked.value)
+
+
 def test_two_drives_move_a_five_bar() -> None:
     """Two cranks and two rods: the joint between the rods follows from two circles."""
     p, q = 0.3 * np.exp(2.0j), 1.0 + 0.3 * np.exp(1.2j)
