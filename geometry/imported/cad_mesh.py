@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from geometry.imported.body_file import BodyFile
+from geometry.imported.solid_volume import solid_volume
 from geometry.mesh.cut_solid import near
 from geometry.mesh.gmsh_session import failure, formula_size, gmsh_model, set_size, silence
 from geometry.mesh.gmsh_tetrahedra import collect, repair
@@ -38,7 +39,7 @@ def cad_volume(file: BodyFile) -> float:
     """Volume of the solid in a file, m^3. Raises: GeometryError as `cad_mesh`."""
     with gmsh_model(file.name) as gmsh:
         solids = solids_of(gmsh, file)
-        return float(sum(gmsh.model.occ.getMass(*s) for s in solids)) * file.unit**3
+        return solid_volume(gmsh, solids[0]) * file.unit**3
 
 
 def _mesh(file: BodyFile, size: MeshSize) -> SolidMesh:

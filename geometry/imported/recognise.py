@@ -19,6 +19,7 @@ from geometry.imported.cad_mesh import face_names, solids_of
 from geometry.imported.outline_chain import MeridianSide, outlines
 from geometry.imported.recognised_cuts import CutFaces
 from geometry.imported.sampled_face import FACE_TOLERANCE, Axis, SampledFace, sampled_faces
+from geometry.imported.solid_volume import solid_volume
 from geometry.mesh.cut_pin import CutPin
 from geometry.mesh.gmsh_session import MeshError, gmsh_model
 from geometry.shape.features import Cut
@@ -85,7 +86,7 @@ def recognised_profile(file: BodyFile, upright: bool = True) -> RecognisedProfil
         size = float(math.dist((x0, y0, z0), (x1, y1, z1)))
         axis = _axis(file, faces, centre, size, upright)
         inside = _reaches_axis(gmsh, faces, axis)
-        volume = float(gmsh.model.occ.getMass(*solids[0])) * file.unit**3
+        volume = solid_volume(gmsh, solids[0]) * file.unit**3
     profile = _recognised(file, faces, axis, inside, size)
     _require_volume(file, profile, volume)
     return profile
