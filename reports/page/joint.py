@@ -42,6 +42,7 @@ LUG_ORDER = (
     "angle",
     "time",
     "safety_factor",
+    "limit_load",
 )
 LUGS_NOTE = (
     "Stress of a lug: the largest about its bore over all instants. Free: where the pin does not "

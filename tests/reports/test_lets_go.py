@@ -13,7 +13,7 @@ import pytest
 
 import pinstress
 from assess.margin import Margin
-from assess.plastic.records import LimitLoad
+from assess.plastic.records import LimitLoad, LugCollapse
 from fea.core.places import ContactEdge, ContactPlace, Places, SectionPlace, SurfacePlace
 from fea.support.records import LugStress
 from reports.data.lets_go import COLLAPSES, LOCAL, PLASTIC, LettingGo, lets_go, steps
@@ -24,6 +24,7 @@ from reports.tables.strength.lets_go import (
     not_computed_words,
     shown_steps,
 )
+from reports.tables.stress.joint import lugs_table
 from tests.conftest import ROOT
 from tests.support.programs.once import Shipped
 from tests.support.results.made_up_joint import in_lugs, make_joint
@@ -163,6 +164,16 @@ def test_press_fits_have_no_load_factor() -> None:
     assert any(s.what == "surface of the pin" and s.load_factor for s in of_bushing)
     pressed = made_up(replace(LOOSE, clearance=-0.002))
     assert not [step for step in pressed if step.load_factor]
+
+
+def test_a_lug_has_its_limit_load_beside_its_stress() -> None:
+    """The lower end of its bracket, N, where one was computed for it."""
+    results = in_lugs(make_results(), replace(make_joint(), lugs=(FREE,)))
+    for lower in (4.0e5, None):
+        collapse = LugCollapse("left", lower, lower and 1.03 * lower)
+        pin = replace(results.pins[0], lug_collapses=(LugCollapse("right", 1.0), collapse))
+        (row,) = lugs_table(replace(results, pins=(pin, *results.pins[1:]))).records()
+        assert row["limit_load"] == lower
 
 
 def test_what_was_not_computed_is_named() -> None:

@@ -101,6 +101,12 @@ RANGE_COLUMNS: list[Column[PinRow[Variation]]] = [
 ]
 
 
+def _limit_load(row: PinRow[LugStress]) -> float | None:
+    """Return the lower end of the limit load of a row's lug, N, where it was computed."""
+    lug = row.of.connection
+    return next((x.lower for x in row.pin.lug_collapses if x.connection == lug), None)
+
+
 LUG_COLUMNS: list[Column[PinRow[LugStress]]] = [
     *PIN_AND_CASE,
     *texts("connection=of.connection wall=of.wall place=of.place"),
@@ -122,6 +128,8 @@ LUG_COLUMNS: list[Column[PinRow[LugStress]]] = [
     *unit_columns("length stress time"),
     *fields("of.mesh of.rings of.sampling", "stress"),
     *fields("of.material of.assumed"),
+    Column("limit_load", _limit_load, "force", "limit load, at least", drop_if_empty=True),
+    *unit_columns("force"),
 ]
 # The keys of results.json.
 JOINT = fields("model bands bending_moment bending_moments remark")
