@@ -14,7 +14,7 @@ import numpy as np
 EXACT_FACES = frozenset({"Plane", "Cylinder", "Cone", "Sphere", "Torus"})  # gmsh's names
 # Elements over a full turn on two meshes. The error falls with the fourth power of their size and
 # is extrapolated: to 4e-7 on turned bodies with cones, fillets and domes, of which the second mesh
-# alone leaves 1e-5, by which profiles are told apart.
+# alone leaves 1e-5, the difference from which on a profile is refused.
 CURVATURE_ELEMENTS = 12, 24
 POINTS_RULE = "Gauss6"  # exact for x . n on triangles of second order
 
