@@ -175,13 +175,10 @@ class LocalModel:
         displaced = np.zeros((*by_class.shape[:2], 3, uncut.shape[3]))
         # Step 2: nodal forces of the tractions that relieve the cuts, and their size in all
         # classes.
-        forces = [self._forces(part / scale) for part in by_class]
-        pressed = self._forces(_pressure(len(self.points)))
-        most = max(float(np.linalg.norm(f)) for f in (pressed, *forces))
-        whole = np.maximum(_size(pressed), np.sum([_size(f) for f in forces], axis=0))
-        # Step 3: solve each class that acts; the smaller ones are noise of the section's mesh.
+        forces, acting, whole = self._relieving(by_class / scale)
+        # Step 3: solve each class that acts.
         for c, parity in enumerate(self.parities.classes):
-            if np.linalg.norm(forces[c]) > MIN_CLASS_TRACTION * most:
+            if acting[c]:
                 more, spread = self._spread(by_class[c] / scale, parity, by_kind)
                 u = self._displace(forces[c] + more, parity, whole)
                 moved += self._moved(u, parity) * scale
@@ -210,19 +207,28 @@ class LocalModel:
         Raises: SolveError.
         """
         by_class, shears = self.parities.split(uncut), np.zeros(uncut.shape[3], dtype=bool)
-        forces = [self._forces(part) for part in by_class]
-        pressed = self._forces(_pressure(len(self.points)))
-        most = max(float(np.linalg.norm(f)) for f in (pressed, *forces))
-        whole = np.maximum(_size(pressed), np.sum([_size(f) for f in forces], axis=0))
+        forces, acting, whole = self._relieving(by_class)
         out = []
-        for part, f, parity in zip(by_class, forces, self.parities.classes, strict=True):
-            if np.linalg.norm(f) <= MIN_CLASS_TRACTION * most:
+        for c, parity in enumerate(self.parities.classes):
+            part, f = by_class[c], forces[c]
+            if not acting[c]:
                 out.append(np.zeros_like(f))
                 continue
             modes = _rigid(self.space.nodes)[:, self.parities.rigid(parity)]
             every = f + self._spread(part, parity, shears)[0]
             out.append(self._balanced(every, modes, whole))
         return out
+
+    def _relieving(self, by_class: Floats) -> tuple[list[Floats], list[bool], Floats]:
+        """The nodal forces (3 N, L) of the tractions that relieve the cuts, by class; which classes
+        act, as the smaller ones are noise of the section's mesh; and the size (L,) of all of them.
+        """
+        forces = [self._forces(part) for part in by_class]
+        pressed = self._forces(_pressure(len(self.points)))
+        sizes = [float(np.linalg.norm(f)) for f in forces]
+        most = max(float(np.linalg.norm(pressed)), *sizes)
+        whole = np.maximum(_size(pressed), np.sum([_size(f) for f in forces], axis=0))
+        return forces, [size > MIN_CLASS_TRACTION * most for size in sizes], whole
 
     def displaced(self, forces: Floats, parity: tuple[int, ...]) -> Floats:
         """Displacements (3 N, L) of a class under balanced nodal forces (3 N, L)."""
