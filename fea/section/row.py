@@ -32,7 +32,8 @@ def row_of(
         return replace(at_surface, places=places)
     used = None
     if material.yield_strength is not None:
-        used = section.at.plastic_use(material.yield_strength)
+        strength = material.unhardened or material.yield_strength
+        used = section.at.plastic_use(strength, material.hardened)
     places = replace(places, section=section.place(tolerance, used))
     if section.at.value > surface.value:
         row = _by_section(surface, at_surface, section, tolerance, links)

@@ -64,6 +64,17 @@ def test_bending_is_governed_by_the_core_up_to_the_crossover(depth: float, gover
     assert depth <= core <= 1.01 * depth
 
 
+@pytest.mark.parametrize("depth", [0.001, 0.008])
+def test_the_plastic_moment_of_a_section_is_that_of_case_and_core(depth: float) -> None:
+    pin, loads, stress = bar()
+    places = row(pin, steel(pin, depth), loads).places
+    assert places is not None
+    assert places.section is not None
+    moment, core = stress * math.pi * R**3 / 4.0, R - depth
+    plastic = 4.0 / 3.0 * (SURFACE * (R**3 - core**3) + CORE * core**3)
+    assert places.section.plastic_utilisation == pytest.approx(moment / plastic, rel=0.01)
+
+
 @pytest.mark.parametrize(("depth", "governs"), [(0.004, "core"), (0.012, "case")])
 def test_torsion(depth: float, governs: str) -> None:
     segments = [Segment(x, 2.0 * R, connection=n) for x, n in ((0.2, "A"), (0.2, None), (0.2, "B"))]
