@@ -76,14 +76,22 @@ def _by_section(
         max(at_surface.lower_end, section.lower_end),
         max(at_surface.upper_end, section.upper_end),
     )
+    return beside_singular(at_surface, in_section, ends)
+
+
+def beside_singular(at_surface: Maximum, evidence: Evidence, ends: tuple[float, float]) -> Maximum:
+    """The row of a singular surface with the maximum of another place.
+
+    ends: between which the stress is, Pa, at the one or the other.
+    """
     return replace(
         at_surface,
-        max_von_mises=at.value,
-        error_estimate=max(at.value - ends[0], ends[1] - at.value),
+        max_von_mises=evidence.value,
+        error_estimate=max(evidence.value - ends[0], ends[1] - evidence.value),
         interval=ends,
-        location=in_section.location,
-        governing=in_section.governing,
-        parts=section.parts,
+        location=evidence.location,
+        governing=evidence.governing,
+        parts=evidence.parts,
     )
 
 

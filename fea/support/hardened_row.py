@@ -25,6 +25,7 @@ from fea.core.verdict import Evidence, judge
 from fea.harmonic.field import HarmonicField
 from fea.harmonic.part_field import PartField, Where
 from fea.section.place import found_section
+from fea.section.row import beside_singular
 from fea.section.section_stress import SectionField
 from fea.support.records import JointResult
 from fea.support.support import StressReading
@@ -201,13 +202,7 @@ def hardened_row(
         ends = scale * at_surface.lower_end, scale * at_surface.upper_end
         interval = max(own[0], bounds[0], ends[0]), max(own[1], bounds[1], ends[1])
         out = replace(
-            at_surface,
-            max_von_mises=worst.value,
-            error_estimate=max(worst.value - interval[0], interval[1] - worst.value),
-            interval=interval,
-            location=worst.location,
-            governing=evidence.governing,
-            parts=worst.errors,
+            beside_singular(at_surface, evidence, interval),
             note=at_surface.note + PART_REASONS[of].text,
             reasons=at_surface.reasons + PART_REASONS[of].codes,
         )
