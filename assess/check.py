@@ -18,7 +18,7 @@ import numpy as np
 
 from assess.margin import Kind, Level, Margin, skipped, strength_key
 from assess.situation import Situation
-from assess.work import Work, scaled
+from assess.work import Work, WorkQuantity, scaled
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from geometry import Band
@@ -92,6 +92,24 @@ class CheckText:
     scatter: str = ""
     omits: str = ""
 
+    def margin(
+        self,
+        s: Situation,
+        demand: float,
+        allowable: float,
+        place: WorstPlace,
+        material: str = "",
+        basis: str = "",
+        work: tuple[Work, ...] = (),
+        passing: WorkQuantity | None = None,
+    ) -> Margin:
+        """The margin of a demand at a place; arguments as in `Margin`."""
+        return Margin(
+            self.method, self.clause, self.kind, self.level, s.factors.at(self.level), demand,
+            allowable, self.dimension, place.at, place.z, place.time, material, basis, work=work,
+            passing=passing, scatter=self.scatter, omits=self.omits,
+        )  # fmt: skip
+
     def at_levels(
         self,
         s: Situation,
@@ -147,11 +165,8 @@ class CheckText:
     ) -> Margin:
         used = demand / allowable
         t, k = np.unravel_index(np.argmax(used), used.shape)
-        margin = Margin(
-            self.method, self.clause, self.kind, self.level, s.factors.at(self.level),
-            float(demand[t, k]), float(allowable[k]), self.dimension, at[int(k)],
-            time=None if times is None else float(times[t]), basis=basis, omits=self.omits,
-        )  # fmt: skip
+        place = WorstPlace(at[int(k)], time=None if times is None else float(times[t]))
+        margin = self.margin(s, float(demand[t, k]), float(allowable[k]), place, basis=basis)
         if shown is None:
             return margin
         formula, symbol, length, power = shown(int(k))

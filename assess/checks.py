@@ -37,6 +37,7 @@ from assess.strength.hand_checks import (
     mean_shear,
     neutral_axis_shear,
 )
+from assess.strength.lug_out_of_plane import lug_out_of_plane
 from assess.strength.lug_stress import lug_stress
 from assess.strength.model_stress import model_rupture, model_yield
 from assess.strength.plastic_bending import plastic_bending
@@ -47,6 +48,7 @@ CHECKS: tuple[Check, ...] = (
     model_rupture,
     crushed_case,
     lug_stress,
+    lug_out_of_plane,
     collapse,
     lug_collapse,
     lug_rupture,
@@ -107,20 +109,17 @@ SETS: Mapping[Code, tuple[Check, ...]] = MappingProxyType(
 )
 
 
-def margins_of(
-    s: Situation, scope: Scope = "case", checks: Iterable[Check] | None = None
-) -> list[Margin]:
+def margins_of(s: Situation, scope: Scope = "case") -> list[Margin]:
     """All margins of a situation, at every place and level, in the order of the checks.
 
     A check that several chosen codes have is made once, with the largest of their factors.
 
-    scope: of the checks that are made. checks: those of the situation's codes if None.
+    scope: of the checks that are made.
 
     Raises: as `with_section_forces`.
     """
     chosen = dict.fromkeys(check for code in s.codes for check in SETS[code])
-    wanted = chosen if checks is None else checks
-    made = [check for check in wanted if check.scope == scope and _can_be_made(check, s)]
+    made = [check for check in chosen if check.scope == scope and _can_be_made(check, s)]
     every = list(with_section_forces(s)) if any(map(_takes_forces, made)) else []
     # Neighbours that take section forces are made together, once with each kind of these.
     return [

@@ -64,11 +64,6 @@ class Margin:
     omits: str = ""
 
     @property
-    def dimension_of(self) -> dict[str, str]:
-        """The dimension of the demand, for the conversion of units (pinbase.records.in_units)."""
-        return {"own": self.dimension}
-
-    @property
     def shown(self) -> str:
         """The method, and the joint model where it takes the section forces of that."""
         named = JOINT_MODEL_BASIS in self.method or not self.basis.startswith(JOINT_MODEL_BASIS)

@@ -19,11 +19,6 @@ class WorkQuantity:
     value: Annotated[float, "own"]
     dimension: str = "1"
 
-    @property
-    def dimension_of(self) -> dict[str, str]:
-        """The dimension of the value, for the conversion of units (pinbase.records.in_units)."""
-        return {"own": self.dimension}
-
 
 @dataclass(frozen=True)
 class Work:

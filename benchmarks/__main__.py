@@ -23,6 +23,7 @@ from benchmarks.joints import (
     joint_ccx,
     joint_derivatives,
     lugs,
+    narrow_arcs,
     places,
 )
 from benchmarks.motion import motion_accuracy, peers_drop, peers_motion, scissor
@@ -56,6 +57,7 @@ from benchmarks.runs import (
     sweep,
 )
 from benchmarks.solids import calculix, ngsolve_peer
+from benchmarks.space import many_bodies, peers_space
 from pinbase.processes.pool import Job, ProcessDied, Tell, cores, in_parallel
 
 ACCURACY = {
@@ -74,6 +76,7 @@ ACCURACY = {
     "edge-peak": edge_peak.edge_peak,
     "places": places.places,
     "cells": cells.cells,
+    "narrow-arcs": narrow_arcs.narrow_arcs,
     "lugs": lugs.lugs,
     "fillet": accuracy.fillet,
     "reliability": reliability.reliability,
@@ -82,6 +85,7 @@ ACCURACY = {
 TIMES = {
     "motion": speed.motion,
     "scissor": scissor.scissor,
+    "space": many_bodies.space,
     "linkages": linkages.linkages,
     "motion-accuracy": motion_accuracy.motion_accuracy,
     "assembly": speed.assembly,
@@ -111,6 +115,7 @@ TIMES = {
     "ngsolve": ngsolve_peer.ngsolve,
     "peers-motion": peers_motion.peers_motion,
     "peers-drop": peers_drop.peers_drop,
+    "peers-space": peers_space.peers_space,
 }
 ALL = ACCURACY | TIMES
 COUNTED = ("--pins", "places", places.places), ("--edits", "edits", edits.edits)

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import csv
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from benchmarks import ROOT
-from loads import LegDynamics, leg_dynamics
-from loads.forces.spatial_leg import t1, t2
 from pinstress import load_study, run
 from pinstress.analysis.gather.gather import loads_only
-from pinstress.study.model.mechanism.spatial_leg import dynamics, instants
-from pinstress.study.schema.cases import LegCase
 from reports.data.results import Results
 from reports.format.files import markdown
 from reports.format.numbers import engineering, ratio
@@ -157,78 +152,14 @@ def four_bar() -> str:
 
 
 def leg() -> str:
-    """The incorrect terms of the publication, each with its value and the correct one."""
-    found = _halfway()
-    symbols = _symbols(found)
-    rows = []
-    for r in _table("kuleuven2014", "errors.csv"):
-        printed, right = (_value(r[key], symbols) for key in ("printed", "right"))
-        rows.append(
-            [
-                *(r["equation"], r["quantity"], f"`{r['printed']}`", printed),
-                *(f"`{r['right']}`", right, r["why"]),
-            ]
-        )
-    head = ("equation", "quantity", "printed term", "value", "correct term", "value ", "reason")
-    table = markdown.table(head, rows, (False, False, False, True, False, True, False))
+    """The incorrect terms of the publication, which has no numbers."""
+    errors = _table("kuleuven2014", "errors.csv")
+    rows = [[r["equation"], r["quantity"], r["why"]] for r in errors]
+    table = markdown.table(("equation", "quantity", "reason"), rows, (False,) * 3)
     return (
         "## Leg in space with a spinning wheel: KU Leuven (2014)\n\n"
-        "The publication has no numbers; its incorrect terms are evaluated halfway through the "
-        "fold of "
-        "`studies/kuleuven2014.toml` (SI, heading 0). Every corrected term is tested against "
-        "numerical "
-        f"differentiation of the motion (`tests/validation/test_kuleuven2014.py`).\n\n{table}\n"
+        "The publication has no numbers. These of its terms are incorrect; "
+        "`studies/kuleuven2014/errors.csv` has each with its correction, which is tested against "
+        "numerical differentiation of the motion "
+        f"(`tests/validation/test_kuleuven2014.py`).\n\n{table}\n"
     )
-
-
-def _halfway() -> LegDynamics:
-    study = load_study(STUDIES / "kuleuven2014.toml")
-    case = study.table.case["fold"]
-    assert isinstance(case, LegCase)
-    found = dynamics(study, instants(study, case))
-    middle = slice(case.samples // 2, case.samples // 2 + 1)
-    motion = found.motion
-    here = {
-        name: getattr(motion, name)[middle]
-        for name in motion.__dataclass_fields__
-        if name != "heading"
-    }
-    return leg_dynamics(found.leg, replace(motion, **here, heading=None))
-
-
-def _symbols(found: LegDynamics) -> dict[str, Any]:
-    """What the terms of errors.csv are written in."""
-    leg, motion = found.leg, found.motion
-    L = found.to_leg(found.L_wheel)[0]
-    names: dict[str, Any] = {
-        **{key: getattr(motion, key)[0] for key in motion.__dataclass_fields__ if key != "heading"},
-        **{key: getattr(leg, key) for key in ("l1", "l2", "l3", "l4")},
-        **{key: getattr(found, key)[0] for key in ("r_BC", "r_BD", "v_B", "v_C", "v_D")},
-        **{key: getattr(found, key)[0] for key in ("a_C", "a_D")},
-        "alpha": leg.slope,
-        "m_D": leg.leg_mass,
-        "m_C": leg.wheel_mass,
-        "G_D": found.weight_leg[0],
-        "G_C": found.weight_wheel[0],
-        "dL_D": found.L_leg_rate[0],
-        "dL_C": found.L_wheel_rate[0],
-        "T1": t1(leg.slope),
-        "T2": t2(motion.beta)[0],
-        "cross": np.cross,
-        "inv": np.linalg.inv,
-        "sin": np.sin,
-        "cos": np.cos,
-    }
-    for i, axis in enumerate("xyz"):
-        names[f"L_{axis}"] = L[i]
-        names[f"I_{axis}"] = leg.wheel_inertia[i, i]
-        names[f"J_{axis}"] = leg.leg_inertia[i, i]
-    return names
-
-
-def _value(term: str, symbols: dict[str, Any]) -> str:
-    """A term's value; a vector's components; nothing for a matrix."""
-    value = np.asarray(eval(term, {"__builtins__": {}}, symbols))  # our own table, not a user's
-    if value.ndim == 2:
-        return ""
-    return "; ".join(engineering(float(x)) for x in np.atleast_1d(value))

@@ -13,6 +13,7 @@ extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
     "captions",
+    "columns",
     "mathml",
     "modules",
     "study_reference",

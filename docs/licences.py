@@ -10,6 +10,7 @@ import re
 import tomllib
 from collections.abc import Iterable
 from importlib import metadata
+from itertools import chain
 from pathlib import Path
 
 from packaging.requirements import Requirement
@@ -32,30 +33,31 @@ HEAD = """# Licences of dependencies
 pinstress is GPL-3.0-or-later. `make setup` installs the packages of `requirements.lock`, benchmarks
 those of `requirements-bench.lock`, each under its own licence, as stated in its metadata; none is
 part of pinstress. `reports/templates/vendor/` has copies of Vega, Vega-Lite and Vega's interpreter
-(BSD-3-Clause), which are part of every report, and `tests/browser/axe/` one of axe-core (MPL-2.0),
-each with its licence.
+(BSD-3-Clause), which are part of every report, `tests/browser/axe/` one of axe-core (MPL-2.0).
 `python -m docs.licences` writes this page.
 
-| package | version | licence | needed |
-| --- | --- | --- | --- |
+| needed | licence | packages |
+| --- | --- | --- |
 """
 
 
-def locked() -> dict[str, str]:
-    """Versions of all packages of the lock files, by name."""
-    found: dict[str, str] = {}
-    for lock in LOCKS:
-        text = (ROOT / lock).read_text(encoding="utf-8")
-        found |= dict(re.findall(r"^([a-z0-9][\w.-]*)==([^\s;]+)", text, re.MULTILINE))
-    return dict(sorted(found.items()))
+def locked() -> list[str]:
+    """The names of all packages of the lock files, which have their versions."""
+    texts = ((ROOT / lock).read_text(encoding="utf-8") for lock in LOCKS)
+    names = (re.findall(r"^([a-z0-9][\w.-]*)==", text, re.MULTILINE) for text in texts)
+    return sorted({*chain.from_iterable(names)})
 
 
-def recorded() -> dict[str, tuple[str, str, str]]:
-    """Version, licence and need of every package on the page."""
+def recorded() -> dict[str, tuple[str, str]]:
+    """Licence and need of every package on the page."""
     if not PAGE.is_file():
         return {}
-    rows = re.findall(r"^\| ([^|]+) \| ([^|]+) \| ([^|]+) \| ([^|]+) \|$", PAGE.read_text(), re.M)
-    return {name: (version, licence, need) for name, version, licence, need in rows[2:]}
+    rows = re.findall(r"^\| ([^|]+) \| ([^|]+) \| ([^|]+) \|$", PAGE.read_text("utf-8"), re.M)
+    return {
+        name: (licence, need)
+        for need, licence, packages in rows[2:]
+        for name in packages.split(", ")
+    }
 
 
 def licence(name: str) -> str | None:
@@ -92,15 +94,20 @@ def page() -> str:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     before, use = recorded(), dict.fromkeys(needed(project["dependencies"], set()), RUN)
     for extra in EXTRAS:
-        lines = project["optional-dependencies"][extra]
-        use |= dict.fromkeys(needed(lines, set()) - set(use), f"extra `{extra}`")
-    rows = []
-    for name, version in locked().items():
-        known = licence(name) or before.get(name, ("", "", ""))[1]
+        packages = project["optional-dependencies"][extra]
+        use |= dict.fromkeys(needed(packages, set()) - set(use), f"extra `{extra}`")
+    rows: dict[tuple[str, str], list[str]] = {}
+    for name in locked():
+        known = licence(name) or before.get(name, ("", ""))[0]
         if not known:
             raise SystemExit(f"{name}: its licence is not known; install it, or name it here")
-        rows.append(f"| {name} | {version} | {known} | {use.get(name, DEVELOP)} |")
-    return HEAD + "\n".join(rows) + "\n"
+        rows.setdefault((use.get(name, DEVELOP), known), []).append(name)
+    order = RUN, *(f"extra `{extra}`" for extra in EXTRAS), DEVELOP
+    lines = (
+        f"| {need} | {known} | {', '.join(rows[need, known])} |"
+        for need, known in sorted(rows, key=lambda row: (order.index(row[0]), row[1]))
+    )
+    return HEAD + "\n".join(lines) + "\n"
 
 
 if __name__ == "__main__":

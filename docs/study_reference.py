@@ -19,6 +19,8 @@ EVERYWHERE = ("provenance", "note")
 PLAIN = {"string": "string", "number": "number", "integer": "integer", "boolean": "true or false"}
 BOUNDS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
 
+IN_SPACE = ", dimension = 3"  # what tells the tables of a linkage in space from those in a plane
+
 Schema = dict[str, Any]
 
 
@@ -56,15 +58,17 @@ def _keys(table: Schema) -> Iterator[tuple[str, Schema]]:
         yield "NAME", table["additionalProperties"]
 
 
-def _below(study: Schema, table: Schema, path: str) -> Iterator[Section]:
+def _below(study: Schema, table: Schema, path: str, within: str = "") -> Iterator[Section]:
+    """The tables below one; within: which of several that is, if they have the same keys."""
     for key, value in _keys(table):
         if key in EVERYWHERE:
             continue
         for where, names in _places(value, f"{path}.{key}" if path else key):
             held = [study["$defs"][name] for name in names]
             for one in held:
-                yield Section(where, _which(one, held), one)
-                yield from _below(study, one, where)
+                which = within + _which(one, held)
+                yield Section(where, which, one)
+                yield from _below(study, one, where, IN_SPACE if IN_SPACE in which else "")
 
 
 def _places(value: Schema, path: str) -> Iterator[tuple[str, list[str]]]:
@@ -84,12 +88,12 @@ def _places(value: Schema, path: str) -> Iterator[tuple[str, list[str]]]:
 
 
 def _which(table: Schema, among: list[Schema]) -> str:
-    """What tells it from the others: its kind, or the key that only it requires."""
+    """What tells it from the others: its kind or dimension, or the key that only it requires."""
     if len(among) == 1:
         return ""
-    kind = table["properties"].get("kind", {}).get("const")
-    if kind:
-        return f', kind = "{kind}"'
+    for key in ("kind", "dimension"):
+        if value := table["properties"].get(key, {}).get("const"):
+            return f", {key} = {json.dumps(value)}"
     others = {key for t in among if t is not table for key in t["properties"]}
     only = next(key for key in table["required"] if key not in others)
     return f", with {only}"
@@ -132,8 +136,12 @@ def reference(study: Schema) -> str:
     """All sections as Markdown. study: the JSON Schema that `pinstress schema` prints."""
     every = list(sections(study))
     # Of several the first; without brackets, as a place may take a list or one.
-    anchors = {s.path.removesuffix("[]"): s.anchor for s in reversed(every)}
+    anchors = {s.path.removesuffix("[]") + _dimension(s): s.anchor for s in reversed(every)}
     return "\n".join(_written(section, anchors) for section in every)
+
+
+def _dimension(section: Section) -> str:
+    return IN_SPACE if IN_SPACE in section.which else ""
 
 
 def _written(section: Section, anchors: dict[str, str]) -> str:
@@ -153,7 +161,8 @@ def _written(section: Section, anchors: dict[str, str]) -> str:
             told = takes(value)
             places = _places(value, f"{section.path}.{key}" if section.path else key)
             # A table or a list of them: both have one section.
-            for anchor in {anchors[path.removesuffix("[]")] for path, _ in places}:
+            held = {path.removesuffix("[]") for path, _ in places}
+            for anchor in {anchors.get(p + _dimension(section)) or anchors[p] for p in held}:
                 told = told.replace("table", f"[table](#{anchor})")
             lines.append(f"| `{key}` | {told} | {_default(key, table)} | {value['description']} |")
     return "\n".join([*lines, ""])

@@ -10,16 +10,14 @@ from loads.forces.inverse_dynamics import Dynamics, motion_reactions
 from loads.forces.measures import Clock, Distance, Measure, Position
 from loads.forces.over_time import (
     Effort,
-    Extremum,
     OverTime,
     PeakForces,
     over_time,
     peak_forces,
     require_possible,
 )
-from loads.forces.power_balance import Energy, Ledger, energy, ledger
+from loads.forces.power_balance import energy, ledger
 from loads.forces.reactions import Reactions, given_reactions, read_reactions, tabled_reactions
-from loads.forces.spatial_leg import Contact, LegDynamics, LegMotion, SpatialLeg, leg_dynamics
 from loads.landing.impulse import impulse_force
 from loads.linkage.drives import (
     ConstantDrive,
@@ -47,7 +45,7 @@ from loads.linkage.linkage import (
     Turn,
 )
 from loads.motion.lever import Lever
-from loads.motion.mobility import Mobility, mobility
+from loads.motion.mobility import mobility
 from loads.motion.motion import Course, Motion, at_rest, move
 from loads.motion.refine import Resolved, resolved
 from loads.motion.singular_positions import MotionBlocked
@@ -69,15 +67,12 @@ __all__ = [
     "CodedError",
     "Connection",
     "ConstantDrive",
-    "Contact",
     "CosineDrive",
     "Course",
     "CycloidalDrive",
     "Distance",
     "Dynamics",
     "Effort",
-    "Energy",
-    "Extremum",
     "FileError",
     "FileReading",
     "ForceLaw",
@@ -88,15 +83,11 @@ __all__ = [
     "JointAxes",
     "Law",
     "Layout",
-    "Ledger",
-    "LegDynamics",
-    "LegMotion",
     "Lever",
     "Linkage",
     "LinkageError",
     "Load",
     "Measure",
-    "Mobility",
     "Motion",
     "MotionBlocked",
     "OverTime",
@@ -108,7 +99,6 @@ __all__ = [
     "Resolved",
     "Sharing",
     "Slider",
-    "SpatialLeg",
     "Spring",
     "StateDrive",
     "TableDrive",
@@ -123,7 +113,6 @@ __all__ = [
     "impulse_force",
     "jump_times",
     "ledger",
-    "leg_dynamics",
     "locked",
     "mobility",
     "motion_reactions",

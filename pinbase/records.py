@@ -2,9 +2,10 @@
 to JSON, to other units, and to bytes and back.
 
 The types of their fields say what a value is. Numbers have their dimension in an annotation
-(pinbase.dimensions): a name, or several with exponents, "stress length^0.5". A class whose
-dimensions differ from object to object has a property `dimension_of`, which maps the dimension of
-the annotation to that of the object; it holds for all that the object holds.
+(pinbase.dimensions): a name, or several with exponents, "stress length^0.5". Of an object with a
+field `dimension`, "own" is that one; a class of which more dimensions differ from object to object
+has a property `dimension_of`, which maps the dimension of the annotation to that of the object.
+Both hold for all that the object holds.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ Unit = Callable[[str], float]
 
 # The same in every system
 SYSTEM_INDEPENDENT_DIMENSIONS = "1", "degrees", "rad", "rad/s", "rad/s^2"
+PLAIN_TYPES = frozenset((type(None), bool, int, float, str))  # as JSON has them
 JSON_ENTRY = "text"  # the name of the JSON in an npz file; arrays are called by their numbers
 
 
@@ -52,7 +54,8 @@ def in_units(value: T, unit: Unit) -> T:
 
     unit: returns the SI value of the unit of a dimension.
     """
-    dimension_of: Mapping[str, str] = getattr(value, "dimension_of", {})
+    own_dimension = {"own": value.dimension} if hasattr(value, "dimension") else {}
+    dimension_of: Mapping[str, str] = getattr(value, "dimension_of", own_dimension)
 
     def own(dimension: str) -> float:
         return _factor(dimension_of.get(dimension, dimension), unit)
@@ -69,7 +72,7 @@ def pack(value: object) -> bytes:
     """Return a value as bytes; equal values give equal bytes.
 
     They are an npz file of the arrays and a JSON text with the rest, numbers bit for bit.
-    value: records, tuples, lists, dicts by text, arrays, numbers, texts and None.
+    value: records, tuples (named ones too), lists, dicts by text, arrays, numbers, texts and None.
 
     Raises: TypeError for anything else.
     """
@@ -112,6 +115,16 @@ def _types(kind: type) -> dict[str, Any]:
     """Return the types of the fields of a record by name, with their dimensions."""
     hints = get_type_hints(kind, include_extras=True)
     return {f.name: hints[f.name] for f in fields(kind)}
+
+
+@cache
+def _names(kind: type) -> tuple[str, ...]:
+    """Return the names of the fields of a record."""
+    return tuple(f.name for f in fields(kind))
+
+
+def _is_named_tuple(kind: Any) -> bool:
+    return isinstance(kind, type) and issubclass(kind, tuple) and hasattr(kind, "_fields")
 
 
 def _present(hint: Any) -> Any:
@@ -166,15 +179,17 @@ def _converted(hint: Any, value: Any, unit: Unit) -> Any:
 
 def _written(value: object, arrays: list[Array]) -> object:
     """Return a value as JSON has it, each array as its number in `arrays`."""
+    if type(value) in PLAIN_TYPES:  # most values, told apart in one step
+        return value
     if isinstance(value, np.generic):
         return value.item()
-    if value is None or isinstance(value, bool | int | float | str):
+    if isinstance(value, bool | int | float | str):
         return value
     if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":  # savez pickles objects
         arrays.append(value)
         return len(arrays) - 1
     if is_dataclass(value) and not isinstance(value, type):
-        content = [_written(getattr(value, f.name), arrays) for f in fields(value)]
+        content = [_written(getattr(value, name), arrays) for name in _names(type(value))]
         return [type(value).__name__, *content]
     if isinstance(value, tuple | list):
         return [_written(item, arrays) for item in value]
@@ -202,12 +217,17 @@ def _read(hint: Any, value: Any, arrays: dict[str, Array]) -> Any:
             return array
     if origin is tuple and isinstance(value, list):
         return tuple(_read(item_kind, item, arrays) for item_kind, item in _each(kind, value))
+    if origin in (dict, Mapping) and isinstance(value, dict):
+        return {key: _read(inner[1], item, arrays) for key, item in value.items()}
     if is_dataclass(kind) and isinstance(value, list):
         name, *content = value
         if name == kind.__name__:  # type: ignore[union-attr]
             kinds = _types(kind).values()  # type: ignore[arg-type]
             items = zip(kinds, content, strict=True)
             return kind(*(_read(k, item, arrays) for k, item in items))  # type: ignore[operator]
+    if _is_named_tuple(kind) and isinstance(value, list):
+        items = zip(get_type_hints(kind).values(), value, strict=True)
+        return kind(*(_read(k, item, arrays) for k, item in items))
     if type(value) is kind or (kind is float and type(value) is int):
         return value
     raise ValueError(f"{kind} expected, not {value!r:.60}")

@@ -12,7 +12,7 @@ from reports.page.page import write_page
 from reports.tables.all import load_tables, sheets, stress_tables
 from reports.tables.column import Table
 from reports.tables.json_results import write_json
-from reports.tables.published import write_published_reactions, write_published_values
+from reports.tables.published import write_published
 from reports.tables.strength.hand_checks import write_hand_checks
 from reports.tables.strength.landing import write_landing
 from reports.tables.strength.safety_factors import write_safety_factors
@@ -42,7 +42,7 @@ def write_loads(results: Results, directory: Path) -> Path:
 
 def write_pages(results: Results, directory: Path) -> Path:
     """Write report.html and the animations that it shows; return the page's path."""
-    if results.motion:
+    if results.skeletons:
         write_animations(results, directory)
     return write_page(results, directory)
 
@@ -60,7 +60,6 @@ def _write_tables(results: Results, directory: Path, others: Sequence[Table[Any]
     shown = sheets(tables)
     left_out = [table.name for table in tables if table not in shown]
     write_workbook(results, shown, directory / "tables.xlsx", left_out)
-    write_published_reactions(results, directory)
-    write_published_values(results, directory)
+    write_published(results, directory)
     if results.reactions:
         write_loads_summary(results, directory / "loads.md")

@@ -26,8 +26,10 @@ from pinbase.platform import portable
 from pinstress import load_study
 from pinstress.study.model.mechanism.linkage import linkage
 from pinstress.study.reading.file import Study
+from tests.support.programs.command_line import pinstress
 from tests.support.programs.once import Shipped, once
 from tests.support.programs.process_group import children
+from tests.support.programs.swept import LONG_SWEEP
 from tests.support.programs.terminal import on_terminal
 
 os.environ["PINSTRESS_CACHE"] = ""  # what is tested is solved, in other processes too
@@ -90,6 +92,19 @@ def shipped(tmp_path_factory: pytest.TempPathFactory) -> Shipped:
         return once(tmp_path_factory, f"study-{study}", run) / "out"
 
     return found
+
+
+@pytest.fixture(scope="session")
+def whole_sweep(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """The table that one process makes of LONG_SWEEP, once for all tests that interrupt it."""
+
+    def sweep(folder: Path) -> None:
+        (folder / "study.toml").write_text(LONG_SWEEP, encoding="utf-8")
+        options = "--jobs", "1", "--out", "out"
+        made = pinstress("sweep", "study.toml", *options, cwd=folder)
+        assert made.returncode == 0, made.stderr
+
+    return (once(tmp_path_factory, "sweep", sweep) / "out" / "designs.parquet").read_bytes()
 
 
 @pytest.fixture(scope="session")

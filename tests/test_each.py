@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.each import each, sampled
+from tests.support.each import each, in_turn, sampled
 
 
 def test_all_failures_are_reported_together() -> None:
@@ -60,6 +60,30 @@ def test_a_sample_is_fixed_and_the_others_are_long() -> None:
         ((2, "b"), ["long"]),
         ((3, "c"), ["long"]),
     ]
+
+
+def test_a_sample_may_begin_later() -> None:
+    assert sampled("abc", every=2, first=1)[1] == "b"
+    assert [hasattr(case, "marks") for case in sampled("abc", every=2, first=1)] == [
+        True,
+        False,
+        True,
+    ]
+
+
+def test_tests_take_cases_in_turn() -> None:
+    """Each runs one in CI, and all of them together run every one."""
+    turn = in_turn("seed", (4, 6, 9))
+
+    def run_in_ci() -> list[int]:
+        @turn
+        def decorated(seed: int) -> None:
+            assert seed
+
+        (mark,) = decorated.pytestmark  # type: ignore[attr-defined]
+        return [case for case in mark.args[1] if not hasattr(case, "marks")]
+
+    assert [run_in_ci() for _ in range(4)] == [[4], [6], [9], [4]]
 
 
 def test_a_loop_over_nothing_is_refused() -> None:

@@ -19,7 +19,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from assess.check import CheckText, check
+from assess.check import CheckText, WorstPlace, check
 from assess.clauses.affdl_lugs import (
     LUG_OMITS,
     MANUAL,
@@ -140,14 +140,9 @@ def affdl_joint(text: CheckText, s: Situation) -> list[Margin]:
         if across := not_axial(text, s, eye):
             return [across]
     t = int(loaded[1].size.argmax())
-    time = None if s.loads.times is None else float(s.loads.times[t])
-    return [
-        Margin(
-            text.method, text.clause, text.kind, text.level, s.factors.at(text.level),
-            float(loaded[1].size[t]), joint.load, text.dimension, bands[1].name, bands[1].middle,
-            time, s.material.name, loaded[1].basis, work=joint.works(), omits=text.omits,
-        )
-    ]  # fmt: skip
+    force, place = float(loaded[1].size[t]), WorstPlace.at_band(bands[1], s.loads, t)
+    name, basis = s.material.name, loaded[1].basis
+    return [text.margin(s, force, joint.load, place, name, basis, joint.works())]
 
 
 def joint_of(s: Situation) -> DoubleShear | list[str]:

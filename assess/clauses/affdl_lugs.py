@@ -25,7 +25,6 @@ from assess.check import CheckText, check
 from assess.clauses.eye import LoadedEye, PlateEye, loaded_eyes
 from assess.clauses.eye_margin import (
     EyeCapacity,
-    Strengths,
     eye_margin,
     lug_key,
     strengths_of,
@@ -122,18 +121,23 @@ def affdl_bushing(text: CheckText, s: Situation) -> list[Margin]:
 
 def bearing_capacity(s: Situation, x: LoadedEye) -> EyeCapacity | list[str]:
     """The load of an eye in bearing as a function of it, or the keys that the study lacks."""
-    K, strengths = s.factors_of(x.connection).K, strengths_of(x.lug)
-    if K is None or strengths.missing:
-        return _lacking(s, x, "K" if K is None else "", strengths)
-    return partial(bearing_load, K=K, yields=strengths.yields, ultimate=strengths.ultimate)
+    return _capacity(s, x, "K", bearing_load)
 
 
 def net_section_capacity(s: Situation, x: LoadedEye) -> EyeCapacity | list[str]:
     """The same of the load of its net section."""
-    K_n, strengths = s.factors_of(x.connection).K_n, strengths_of(x.lug)
-    if K_n is None or strengths.missing:
-        return _lacking(s, x, "K_n" if K_n is None else "", strengths)
-    return partial(net_section_load, K_n=K_n, yields=strengths.yields, ultimate=strengths.ultimate)
+    return _capacity(s, x, "K_n", net_section_load)
+
+
+def _capacity(
+    s: Situation, x: LoadedEye, key: str, load: Callable[[PlateEye, float, float, float], Work]
+) -> EyeCapacity | list[str]:
+    """key: of the efficiency factor of a load."""
+    factor, strengths = getattr(s.factors_of(x.connection), key), strengths_of(x.lug)
+    if factor is None or strengths.missing:
+        named = [lug_key(s, x.connection, f"factors.{key}")] if factor is None else []
+        return [*named, *strengths.missing]
+    return lambda eye: load(eye, factor, strengths.yields, strengths.ultimate)
 
 
 def bushing_capacity(x: LoadedEye) -> EyeCapacity | str | None:
@@ -146,11 +150,6 @@ def bushing_capacity(x: LoadedEye) -> EyeCapacity | str | None:
     if crushes is None:
         return strength_key(x.bushing.name, "yield")
     return partial(bushing_load, crushes=crushes)
-
-
-def _lacking(s: Situation, x: LoadedEye, factor: str, strengths: Strengths) -> list[str]:
-    named = [lug_key(s, x.connection, f"factors.{factor}")] if factor else []
-    return [*named, *strengths.missing]
 
 
 def _margins(

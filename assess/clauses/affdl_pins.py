@@ -15,7 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from assess.check import CheckText, check
+from assess.check import CheckText, WorstPlace, check
 from assess.clauses.affdl_joint import DoubleShear, joint_of
 from assess.clauses.cozzone import bending_strength
 from assess.margin import Margin, for_comparison, strength_key
@@ -24,11 +24,11 @@ from assess.work import Work, scaled, work
 from fea.beam.round_section import Circle
 from geometry import ArgumentError
 
-OMITS = "Not covered: shear together with bending, axial force, a bore that is crushed."
+PIN_OMITS = "Not covered: shear together with bending, axial force, a bore that is crushed."
 
 
 @check("pin shear, rupture", "AFFDL-TR-69-42, 9.4, eq. 9-12", kind="clause",
-       takes="section forces", level="ultimate", dimension="force", omits=OMITS)  # fmt: skip
+       takes="section forces", level="ultimate", dimension="force", omits=PIN_OMITS)  # fmt: skip
 def pin_shear(text: CheckText, s: Situation) -> list[Margin]:
     """The shear force in every section against A F_su."""
     fsu = s.material.shear_strength
@@ -45,7 +45,7 @@ def pin_shear(text: CheckText, s: Situation) -> list[Margin]:
 
 
 @check("pin bending, rupture", "AFFDL-TR-69-42, 9.4, eq. 9-15; Cozzone", kind="clause",
-       takes="section forces", level="ultimate", dimension="moment", omits=OMITS)  # fmt: skip
+       takes="section forces", level="ultimate", dimension="moment", omits=PIN_OMITS)  # fmt: skip
 def pin_bending(text: CheckText, s: Situation) -> list[Margin]:
     """The bending moment in the worst section against F_b W.
 
@@ -84,12 +84,11 @@ def _of_section(
     text: CheckText, s: Situation, quantity: str, place: tuple[int, int], allowed: tuple[Work, ...]
 ) -> Margin:
     forces, (t, k) = s.forces, place
-    margin = Margin(
-        text.method, text.clause, text.kind, text.level, s.factors.at(text.level),
-        float(getattr(forces, quantity)[t, k]), allowed[-1].result.value, text.dimension,
-        forces.labels[k], float(forces.z[k]),
-        None if forces.times is None else float(forces.times[t]), s.material.name, forces.basis,
-        work=allowed, omits=text.omits,
+    time = None if forces.times is None else float(forces.times[t])
+    margin = text.margin(
+        s, float(getattr(forces, quantity)[t, k]), allowed[-1].result.value,
+        WorstPlace(forces.labels[k], float(forces.z[k]), time), s.material.name, forces.basis,
+        allowed,
     )  # fmt: skip
     d, power = 2.0 * forces.sections[k].outer, 2.0 if quantity == "shear" else 3.0
     return replace(margin, passing=scaled("diameter", d, margin.used, power))

@@ -27,7 +27,7 @@ from assess.work import Work, work
 
 RUPTURE_PHI, YIELD_PHI = 0.75, 0.90  # resistance factors; the second is not verified
 WIDTH_BEYOND_THICKNESS = 0.63 * 0.0254  # m, of b_e
-OMITS = (
+AISC_D5_OMITS = (
     "Not covered: forces across the plate, the proportions that D5.2 demands of plate and hole, "
     "load combinations. phi = 0.90 of yielding is not verified against the specification."
 )
@@ -85,7 +85,7 @@ _FORMS = (
 
 
 @check("AISC pin-connected member", "ANSI/AISC 360-16, D5", kind="clause", takes="loads",
-       level="ultimate", dimension="force", omits=OMITS)  # fmt: skip
+       level="ultimate", dimension="force", omits=AISC_D5_OMITS)  # fmt: skip
 def aisc_member(text: CheckText, s: Situation) -> list[Margin]:
     """The force on every plate against its limit states."""
     margins = []

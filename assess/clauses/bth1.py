@@ -38,7 +38,7 @@ FRACTURE_FACTOR = 1.2  # on N_d, of limit states of fracture
 SHEAR_PLANE_DEGREES = 55.0  # of a pin that fills its hole
 MAX_WIDTH_OVER_THICKNESS = 4.0  # of b_eff, against dishing
 DESIGN_FACTOR_KEY = "analysis.design_factor (N_d of ASME BTH-1)"
-OMITS = (
+BTH1_OMITS = (
     "Not covered: forces across the plate, bushings of their own strength, buckling out of plane "
     "beyond the limit of 4 t, stiffened plates, fatigue, the pin. By spreadsheets "
     "after the standard, not read itself."
@@ -111,7 +111,7 @@ def bearing_strength(eye: PlateEye, yields: float, ultimate: float, design_facto
     )  # fmt: skip
 
 
-_of_plates = partial(check, kind="clause", takes="loads", dimension="force", omits=OMITS)
+_of_plates = partial(check, kind="clause", takes="loads", dimension="force", omits=BTH1_OMITS)
 Strength = Callable[[PlateEye, float, float, float], Work]  # arguments as `tension_strength`
 
 

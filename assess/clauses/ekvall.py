@@ -29,7 +29,7 @@ SCATTER = (
     "243 tests: test over prediction 1.003 in the mean, standard deviation 0.065; 90 % of tests "
     "exceed 0.910, 99 % 0.837 times the prediction (95 % confidence)"
 )
-OMITS = (
+EKVALL_OMITS = (
     "Not covered: localised bearing failure, eccentric heads, W/D outside 1.33 to 4.5; pins that "
     "bend plastically lower the strength by up to 14 %."
 )
@@ -66,7 +66,7 @@ def bore_stress(eye: PlateEye, force: float) -> Work:
 
 
 @check("Ekvall transverse", f"{EKVALL}, K_BR", kind="clause", takes="loads", level="ultimate",
-       dimension="force", scatter=SCATTER, omits=OMITS)  # fmt: skip
+       dimension="force", scatter=SCATTER, omits=EKVALL_OMITS)  # fmt: skip
 def ekvall_transverse(text: CheckText, s: Situation) -> list[Margin]:
     """The force across the shank of every symmetric lug against K_BR F_tu D t."""
     margins = []
@@ -95,14 +95,9 @@ def ekvall_bore_stress(text: CheckText, s: Situation) -> list[Margin]:
         if fy is None or not _tested(x) or not x.axial.any() or x.transverse.any():
             continue
         stress, place = bore_stress(x.eye, float(x.axial[t])), place_of(s, x, t)
-        margins.append(
-            Margin(
-                text.method, text.clause, text.kind, text.level, s.factors.at(text.level),
-                stress.result.value, fy, at=x.connection, z=place.z, time=place.time,
-                material=x.lug.name, basis=x.basis, work=(stress,), omits=text.omits,
-            )
-        )  # fmt: skip
-    return [for_comparison(margin) for margin in margins]
+        margin = text.margin(s, stress.result.value, fy, place, x.lug.name, x.basis, (stress,))
+        margins.append(for_comparison(margin))
+    return margins
 
 
 def _tested(x: LoadedEye) -> bool:

@@ -73,10 +73,8 @@ def eye_margin(
         return factor * largest / value if value > 0.0 else math.inf
 
     passing = loaded.eye.would_pass(dimension, utilisation) if largest > 0.0 else None
-    return Margin(
-        text.method, text.clause, text.kind, text.level, factor, largest, allowed.result.value,
-        "force", loaded.connection, place.z, place.time, loaded.lug.name, loaded.basis,
-        work=(allowed,), scatter=text.scatter, omits=text.omits,
-        passing=None if passing is None
-        else WorkQuantity(DIMENSION_NAMES[dimension], passing, "length"),
-    )  # fmt: skip
+    of_size = (
+        None if passing is None else WorkQuantity(DIMENSION_NAMES[dimension], passing, "length")
+    )
+    value, material = allowed.result.value, loaded.lug.name
+    return text.margin(s, largest, value, place, material, loaded.basis, (allowed,), of_size)

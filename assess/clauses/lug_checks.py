@@ -47,10 +47,10 @@ SHEAR_OUT_FORMULA = "F / (2 t (sqrt(e^2 - (D/2 sin 40°)^2) - D/2 cos 40°))"
 SQUARE_SHEAR_OUT_FORMULA = "F / (2 t (e - D/2 cos 40°))"
 BEARING_FORMULA = "F / (d t)"
 SHEAR_PLANE_ANGLE = math.radians(40.0)  # of shear-out, off the direction of the force
-OMITS = "Not covered: stress concentration at the bore, forces across the shank, fatigue."
-NET_SECTION = CheckText("lug, net section", BTH1, "hand", omits=OMITS)
-SHEAR_OUT = CheckText("lug, shear-out", BRUHN, "hand", omits=OMITS)
-BEARING = CheckText("lug, bearing", BEARING_SOURCE, "hand", omits=OMITS)
+LUG_CHECK_OMITS = "Not covered: stress concentration at the bore, forces across the shank, fatigue."
+NET_SECTION = CheckText("lug, net section", BTH1, "hand", omits=LUG_CHECK_OMITS)
+SHEAR_OUT = CheckText("lug, shear-out", BRUHN, "hand", omits=LUG_CHECK_OMITS)
+BEARING = CheckText("lug, bearing", BEARING_SOURCE, "hand", omits=LUG_CHECK_OMITS)
 _LugCheck = tuple[CheckText, Callable[[PlateEye], Work], float | None, Rupture, str, str]
 
 

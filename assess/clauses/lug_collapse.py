@@ -17,7 +17,7 @@ from assess.margin import Margin
 from assess.plastic.records import LugCollapse
 from assess.situation import Situation
 
-OMITS = (
+COLLAPSE_OMITS = (
     "Not covered: loads across the shank, hardening, fracture, thin lugs in which metal escapes "
     "across."
 )
@@ -36,7 +36,7 @@ ENDS = {
 
 
 @check("lug, limit load", "14 CFR 25.305", kind="collapse", takes="loads", level="ultimate",
-       dimension="force", omits=OMITS)  # fmt: skip
+       dimension="force", omits=COLLAPSE_OMITS)  # fmt: skip
 def lug_collapse(text: CheckText, s: Situation) -> list[Margin]:
     """The largest force on every lug whose limit load was requested against that."""
     limits = {limit.connection: limit for limit in s.lug_collapses}
@@ -84,10 +84,6 @@ def _against(
 ) -> Margin:
     """The margin of the largest force along a shank against a load, N."""
     instant = int(loaded.axial.argmax())
-    place = place_of(s, loaded, instant)
-    return Margin(
-        text.method, text.clause, text.kind, text.level, s.factors.at(text.level),
-        float(loaded.axial[instant]), allowable, text.dimension, place.at, place.z, place.time,
-        loaded.lug.name, "; ".join(x for x in (loaded.basis, basis) if x), scatter=text.scatter,
-        omits=text.omits,
-    )  # fmt: skip
+    force, place = float(loaded.axial[instant]), place_of(s, loaded, instant)
+    basis = "; ".join(x for x in (loaded.basis, basis) if x)
+    return text.margin(s, force, allowable, place, loaded.lug.name, basis)

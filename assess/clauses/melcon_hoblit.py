@@ -8,7 +8,7 @@
 
 R_a and R_tr are the axial and the transverse part of the force over what the lug carries of each.
 The efficiency factors are those of the method's figures, which no formula gives: the study states
-them. `average_area` is the ratio with which the figure of the transverse ones is entered.
+them.
 
 The study has one ultimate and one yield strength of a material; those across the grain (F_tux,
 F_tyx) are to be stated there where they are lower.
@@ -34,7 +34,7 @@ from pinbase.arrays import Floats
 
 NIU = "Niu, Airframe Stress Analysis, 9.8, after Melcon & Hoblit"
 OBLIQUE_EXPONENT = 1.6  # of the interaction; 0.625 is its inverse
-OMITS = (
+NIU_OMITS = (
     "Not covered: elongations under 5 %, strength across the grain other than the material's, "
     "bending of the lug, fatigue."
 )
@@ -75,15 +75,6 @@ def transverse_yield_load(k_try: float, yields: float, eye: PlateEye) -> Work:
     return _on_bearing_area("P_try", "k_try", eye, k_try, "F_ty", yields)
 
 
-def average_area(outer: tuple[float, float], inner: tuple[float, float]) -> float:
-    """The average area A_av = 6 / (3/A1 + 1/A2 + 1/A3 + 1/A4) of a transverse load, m^2.
-
-    outer: A1 and A4; inner: A2 and A3, the net sections around the hole, m^2.
-    """
-    (first, fourth), (second, third) = outer, inner
-    return 6.0 / (3.0 / first + 1.0 / second + 1.0 / third + 1.0 / fourth)
-
-
 def oblique_ratio(axial: Floats | float, transverse: Floats | float) -> Floats:
     """(R_a^1.6 + R_tr^1.6)^0.625 of the ratios of both parts of a force."""
     n = OBLIQUE_EXPONENT
@@ -91,7 +82,7 @@ def oblique_ratio(axial: Floats | float, transverse: Floats | float) -> Floats:
 
 
 _of_lugs = partial(
-    check, kind="clause", takes="loads", level="ultimate", dimension="force", omits=OMITS
+    check, kind="clause", takes="loads", level="ultimate", dimension="force", omits=NIU_OMITS
 )
 
 
@@ -130,7 +121,7 @@ def _with_factor(
     return load(eye, k, ultimate)
 
 
-@check("Melcon-Hoblit yield", NIU, kind="clause", takes="loads", dimension="force", omits=OMITS)
+@check("Melcon-Hoblit yield", NIU, kind="clause", takes="loads", dimension="force", omits=NIU_OMITS)
 def lug_yield(text: CheckText, s: Situation) -> list[Margin]:
     """The axial force on every eye whose k_br and k_t are given against its yield load."""
     margins = []
@@ -161,7 +152,7 @@ def transverse(text: CheckText, s: Situation) -> list[Margin]:
 
 
 @check("Melcon-Hoblit transverse yield", NIU, kind="clause", takes="loads", dimension="force",
-       omits=OMITS)  # fmt: skip
+       omits=NIU_OMITS)  # fmt: skip
 def transverse_yield(text: CheckText, s: Situation) -> list[Margin]:
     """The force across the shank of every eye against k_try."""
     return _across(text, s, "k_try", "yield")
@@ -187,7 +178,7 @@ def _across(text: CheckText, s: Situation, key: str, which: str) -> list[Margin]
 
 
 @check("Melcon-Hoblit oblique", NIU, kind="clause", takes="loads", level="ultimate",
-       dimension=RATIO_DIMENSION, omits=OMITS)  # fmt: skip
+       dimension=RATIO_DIMENSION, omits=NIU_OMITS)  # fmt: skip
 def oblique(text: CheckText, s: Situation) -> list[Margin]:
     """Both parts of an oblique force together on every eye, against 1."""
     eyes = [x for x in loaded_eyes(s) if (x.axial * x.transverse).any()]
@@ -205,7 +196,7 @@ def _oblique(text: CheckText, s: Situation, x: LoadedEye) -> Margin:
 
 
 @check("Melcon-Hoblit oblique yield", NIU, kind="clause", takes="loads", dimension=RATIO_DIMENSION,
-       omits=OMITS)  # fmt: skip
+       omits=NIU_OMITS)  # fmt: skip
 def oblique_yield(text: CheckText, s: Situation) -> list[Margin]:
     """The same at yield, of every eye whose factors of ultimate load are given."""
     return [
@@ -240,11 +231,7 @@ def _combined(
         "R", used[t], RATIO_DIMENSION, "({R_a}^1.6 + {R_tr}^1.6)^0.625", R_a=(R_a, "1"),
         R_tr=(R_tr, "1"),
     )  # fmt: skip
-    return Margin(
-        text.method, text.clause, text.kind, text.level, s.factors.at(text.level), float(used[t]),
-        1.0, RATIO_DIMENSION, x.connection, place.z, place.time, x.lug.name, x.basis,
-        work=(*works, both), omits=text.omits,
-    )  # fmt: skip
+    return text.margin(s, float(used[t]), 1.0, place, x.lug.name, x.basis, (*works, both))
 
 
 def _pulled(s: Situation) -> list[LoadedEye]:

@@ -21,10 +21,11 @@ import numpy as np
 
 from assess.derivatives.ring_work import Pair
 from fea.core.pin_loads import PinLoads
-from fea.support.contact.contact import Mask, rotation
+from fea.support.contact.contact import rotation
 from fea.support.contact.pressure_loads import waves_of_sectors
 from fea.support.contact.solve_joint import ContactModel
-from pinbase.arrays import Floats
+from fea.support.lugs.links import tilting_bands
+from pinbase.arrays import Floats, Mask
 
 AMPLITUDE_TOLERANCE = 1e-13  # of the largest amplitude: smaller ones are round-off
 # Of the largest pressure or gap: a cell with less is about to open or to close.
@@ -41,7 +42,7 @@ class FixedContact:
     """
 
     def __init__(self, model: ContactModel, links: PinLoads, gradient: Floats) -> None:
-        self._model, self._links, self._contact = model, links, model.contact
+        self._model, self._links, self._contact = model, links, model.freed(links)
         (pressed,) = model.pressed(links)
         self._turn = rotation(pressed.angle)
         waves = waves_of_sectors(model.cells.sectors, model.cells.highest, pressed.angle)
@@ -66,9 +67,11 @@ class FixedContact:
 
     def _right_hand_side(self, model: ContactModel, links: PinLoads) -> Floats:
         """The right-hand side of the equilibrium, in the directions of the cells."""
-        forces, couples = model.forces(links)[0], model.couples(links)[0]
-        x, y = (couples @ self._turn).tolist()
-        return self._contact.required_resultants(forces @ self._turn, (x, y))
+        forces, couples, moments = (
+            of(links)[0] @ self._turn for of in (model.forces, model.couples, model.moments)
+        )
+        x, y = couples.tolist()
+        return self._contact.required_resultants(forces, (x, y), moments)
 
     def with_fixed_cells(self, model: ContactModel) -> float:
         """The stress, Pa, on another shape (ContactModel.reshaped) with the same cells in contact.
@@ -77,7 +80,8 @@ class FixedContact:
         """
         at, bands, sectors = self._at, model.bands, self._contact.sectors
         area = self._contact.cells_area(bands)
-        tilt = [lug.tilt for lug in model.lugs]
+        free = tilting_bands(model.whole, self._links)
+        tilt = [0.0 if f else lug.tilt for f, lug in zip(free, model.lugs, strict=True)]
         motions, tilts = self._contact.rigid(bands, tilt)
         opened = np.repeat(bands.gap, sectors) + motions @ at.motion + tilts @ (tilts.T @ at.force)
         right_hand_side = self._right_hand_side(model, self._links)

@@ -69,7 +69,7 @@ class JointDerivatives:
     without: why others have none.
     by_force: Pa/N, by the force of each link, by connection and axis of the pin, the imbalance then
     being shared by the links.
-    by_moment: Pa/(N m), about its axis.
+    by_moment: Pa/(N m), about its axis, and across it where links state moments.
     tied_places, tied_times: as in assess.derivatives.records.Derivatives.
     changing: number of cells that are about to open or to close, with which the derivatives hold on
     one side only.
@@ -214,8 +214,8 @@ class _InLugs:
         number = self.model.lugs.index(lug)
         others = [one.lugs[number] for one in change.models]
         work, total = self.lug_works[name], 0.0
-        if any(_made_of(one) != _made_of(lug) for one in others):
-            elasticities = [[elasticity(part) for part in _made_of(one)] for one in others]
+        if any(one.materials != lug.materials for one in others):
+            elasticities = [[elasticity(part) for part in one.materials] for one in others]
             rates = [rate_of(parts, change.step) for parts in zip(*elasticities, strict=True)]
             total += work.by_material(name, rates)
         at = _knots(self.model, lug)
@@ -251,25 +251,33 @@ class _InLugs:
         return out
 
     def _by_moments(self) -> By:
-        """Derivatives by moments about the axis, where any act."""
-        links = self.links
+        """Derivatives by moments about the axis, where any act, and by those stated across it."""
+        links, length = self.links, self.model.pin.length
+        tilting = links.tilting_links(length)
+        links = replace(links, tilting=tilting)
         turns = enumerate(links.surfaces if self._acts("moments") else ())
-        return {(surface, "z"): self._by_one("moments", c) for c, surface in turns}
+        out = {(surface, "z"): self._by_one("moments", c) for c, surface in turns}
+        scale = max(np.abs(links.forces).max() * length, np.abs(links.moments).max())
+        step, before = JOINT_FORCE_STEP * float(scale), self.contact.by_loads(links)
+        for surface in tilting:
+            for a, axis in enumerate(TRANSVERSE_AXES):
+                one = np.zeros_like(links.moments)
+                one[:, links.surfaces.index(surface), a] = step
+                more = replace(links, moments=links.moments + one)
+                out[surface, axis] = (self.contact.by_loads(more) - before) / step
+        return out
 
     def _by_one(self, what: str, c: int) -> float:
         """The derivative by a link's force along the axis or moment about it."""
         none = np.zeros_like(self.links.forces)
         one = none.copy()
-        one[:, c, 2] = 1.0
+        # A force bears on one side of its lug or on the other.
+        way = -1.0 if what == "forces" and self.links.forces[0, c, 2] < 0.0 else 1.0
+        one[:, c, 2] = way
         both = (one, none) if what == "forces" else (none, one)
         unit = replace(self.links, forces=both[0], moments=both[1], body=none[:, 0])
         along = others_along(self.model.pin, self.model.rings, unit).coefficients()
-        return self.stress.of_amounts({load: both[0] for load, both in along.items()})
-
-
-def _made_of(lug: Lug) -> tuple[Material, ...]:
-    """The materials of a lug's section, from the inside out."""
-    return (lug.material,) if lug.bushing is None else (lug.bushing.material, lug.material)
+        return self.stress.of_amounts({load: way * both[0] for load, both in along.items()})
 
 
 def _knots(model: ContactModel, lug: Lug) -> tuple[Floats, Floats]:

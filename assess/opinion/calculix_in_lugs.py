@@ -22,7 +22,8 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.peak import Maximum
 from fea.core.pin_loads import Floats, PinLoads
-from fea.support.lugs.links import link_forces
+from fea.support.lugs.fit import fitted
+from fea.support.lugs.links import link_forces, link_moments
 from fea.support.lugs.lug import Lug
 from fea.support.records import BandContact, JointResult
 from geometry import ArgumentError, Pin
@@ -70,7 +71,7 @@ def opinion_in_lugs(
 
 
 def transverse(seated: PinInLugs, governing: PinLoads | None) -> PinLoads:
-    """The transverse forces of the links, in balance.
+    """The transverse forces and moments of the links, in balance.
 
     Raises: ArgumentError for what CalculiX's model lacks; SolveError for forces out of balance.
     """
@@ -80,14 +81,20 @@ def transverse(seated: PinInLugs, governing: PinLoads | None) -> PinLoads:
     weight = (seated.material.density or 0.0) * seated.pin.volume
     for what, size in (
         ("forces along the axis", np.abs(loads.forces[..., 2]).max()),
-        ("torques", np.abs(loads.moments).max() / seated.pin.smallest_diameter),
+        ("torques", np.abs(loads.moments[..., 2]).max() / seated.pin.smallest_diameter),
         ("weight and inertia of the pin", weight * np.abs(loads.body).max()),
     ):
         if size > MAX_OMITTED_FORCE * largest:
             raise ArgumentError(f"CalculiX's model has no {what}", "other-loads")
-    plain = PinLoads(loads.case, loads.surfaces, loads.forces * [1.0, 1.0, 0.0])
-    force = link_forces(seated.pin, 0.0, plain)
-    return PinLoads(loads.case, seated.pin.connections, np.pad(force, ((0, 0), (0, 0), (0, 1))))
+    across, tilting = np.array([1.0, 1.0, 0.0]), loads.tilting_links(seated.pin.length)
+    plain = PinLoads(
+        loads.case, loads.surfaces, loads.forces * across, loads.moments * across, tilting=tilting
+    )
+    pin, lugs = seated.pin, fitted(seated.pin, seated.material, seated.lugs)
+    force = link_forces(pin, 0.0, plain)
+    moment = link_moments((pin, pin), lugs, plain, force, (0.0, 0.0))
+    forces, moments = (np.pad(x, ((0, 0), (0, 0), (0, 1))) for x in (force, moment))
+    return PinLoads(loads.case, pin.connections, forces, moments, tilting=tilting)
 
 
 def _require_modelled(seated: PinInLugs) -> None:
@@ -105,7 +112,10 @@ def _require_modelled(seated: PinInLugs) -> None:
 
 def meshes_for(loads: PinLoads) -> Meshes:
     """The coarser and the finer mesh, as fine as can be solved in minutes."""
-    _, half = plane_of(loads.forces[0, :, :2])
+    # A moment lies in the plane of the forces that make it, a right angle from its vector.
+    largest = np.abs(loads.forces).max(initial=0.0) / (np.abs(loads.moments).max() or 1.0)
+    turning = largest * loads.moments[0][:, [1, 0]] * [1.0, -1.0]
+    _, half = plane_of(np.concatenate([loads.forces[0, :, :2], turning]))
     return HALF_MODEL_MESHES if half else FULL_MODEL_MESHES
 
 

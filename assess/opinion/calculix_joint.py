@@ -100,10 +100,7 @@ class JointOpinion:
 
         It is without the stress of pressure on a ring (fea.harmonic.free_surface).
         """
-        c, s = np.cos(self.angle), np.sin(self.angle)
-        x = point @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-        if self.half:
-            x[1] = abs(x[1])
+        x = self._turned(point[None])[0]
         stress = self._stress_at(x)
         on = (x[2] > self.ends[:, 0]) & (x[2] < self.ends[:, 1])
         if on.any():
@@ -112,11 +109,15 @@ class JointOpinion:
 
     def von_mises_at(self, points: Floats) -> Floats:
         """Von Mises stress (P,) Pa at points (P, 3) m of the pin."""
+        return von_mises(np.array([self._stress_at(x) for x in self._turned(points)]))
+
+    def _turned(self, points: Floats) -> Floats:
+        """Points (P, 3) of the pin where the model has them."""
         c, s = np.cos(self.angle), np.sin(self.angle)
         x = points @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
         if self.half:
             x[:, 1] = np.abs(x[:, 1])
-        return von_mises(np.array([self._stress_at(p) for p in x]))
+        return np.asarray(x)
 
     def largest(self, distance: float) -> float:
         """Largest von Mises stress at a node, Pa, farther than a distance (m) from the edges."""
@@ -144,7 +145,7 @@ def joint_opinion(
     loads: PinLoads,
     fineness: Fineness = DEFAULT_FINENESS,
 ) -> JointOpinion:
-    """CalculiX's opinion on a pin under the transverse forces of its links at one instant.
+    """CalculiX's opinion on a pin under transverse forces and moments of its links at one instant.
 
     Raises: ArgumentError for loads or shapes that this model lacks; CalculixError.
     """
@@ -178,35 +179,41 @@ def joint_deck(
 
     Arguments and errors as `joint_opinion`.
     """
-    force = _forces(loads, [lug.connection for lug in lugs])
-    angle, half = plane_of(force)
+    force, couple = _forces(loads, [lug.connection for lug in lugs])
+    angle, half = plane_of(np.concatenate([force, couple / pin.length]))
     c, s = np.cos(angle), np.sin(angle)
-    turned = force @ np.array([[c, -s], [s, c]]) * (0.5 if half else 1.0) * fineness.scale
+    turn = np.array([[c, -s], [s, c]]) * (0.5 if half else 1.0) * fineness.scale
+    tilting = loads.tilting_links(pin.length)
     radii = {lug.connection: lug.edge_radius for lug in lugs}
     stations = _stations(pin, radii, fineness)
     mesh = pin_mesh(pin, stations, fineness, half)
     eyes = [
-        _eye(pin, lug, f, mesh, stations, fineness, half)
-        for lug, f in zip(lugs, turned, strict=True)
-    ]
+        _eye(
+            pin, replace(lug, tilt=0.0) if lug.connection in tilting else lug, (f @ turn, m @ turn),
+            mesh, stations, fineness, half,
+        )
+        for lug, f, m in zip(lugs, force, couple, strict=True)
+    ]  # fmt: skip
     eyes.sort(key=lambda eye: float(eye.part.mesh.nodes[:, 2].min()))
     hard = fineness.stiffness * material.youngs_modulus / pin.smallest_diameter
     return JointDeck(Part("PIN", mesh, material), tuple(eyes), hard, half), angle
 
 
-def _forces(loads: PinLoads, connections: Sequence[str]) -> Floats:
-    """The transverse forces (B, 2), N, of the links.
+def _forces(loads: PinLoads, connections: Sequence[str]) -> tuple[Floats, Floats]:
+    """The transverse forces (B, 2), N, of the links, and their couples (B, 2), N m, as those of
+    forces along x and y.
 
     Raises: ArgumentError for more than one instant, or other loads.
     """
     if len(loads) != 1:
         raise ArgumentError("the contact is solved for one instant", "not-one-instant")
-    if loads.body.any() or loads.moments.any() or loads.forces[..., 2].any():
-        raise ArgumentError("only forces across the pin are modelled", "other-loads")
-    out = np.zeros((len(connections), 2))
-    for name, force in zip(loads.surfaces, loads.forces[0], strict=True):
-        out[list(connections).index(name)] = force[:2]
-    return out
+    if loads.body.any() or loads.moments[..., 2].any() or loads.forces[..., 2].any():
+        raise ArgumentError("only forces and moments across the pin are modelled", "other-loads")
+    out = np.zeros((2, len(connections), 2))
+    for c, name in enumerate(loads.surfaces):
+        x, y, _ = loads.moments[0, c]
+        out[:, list(connections).index(name)] = loads.forces[0, c, :2], (y, -x)
+    return out[0], out[1]
 
 
 def plane_of(force: Floats) -> tuple[float, bool]:
@@ -260,7 +267,7 @@ def _ring_ends(length: float, radius: float, count: int) -> Floats:
 def _eye(
     pin: Pin,
     lug: Lug,
-    force: Floats,
+    acting: tuple[Floats, Floats],
     mesh: Hexahedra,
     stations: list[Floats],
     fineness: Fineness,
@@ -272,6 +279,7 @@ def _eye(
     lining = None if inside is None else (radius + inside.thickness, inside.material)
     radii = (radius, *(lining[:1] if lining else ()), lug.outer_diameter / 2.0)
     plain = annulus_mesh(radii, z, fineness, half)
+    force, (x, y) = acting[0], acting[1].tolist()
     body = _opened(plain, lug, force, fineness.scale)
     before = sum(len(x) - 1 for x in stations[:i])
     surface = np.abs(mesh.outer - radius) < 1e-9 * radius
@@ -279,7 +287,7 @@ def _eye(
     count = (len(z) - 1) // fineness.parts
     rings = tuple(np.flatnonzero(surface & (ring == k)) for k in range(count))
     part = Part(f"LUG{i}", body, lug.material, lining)
-    return Eye(part, force, lug.tilt * (0.5 if half else 1.0), rings)
+    return Eye(part, force, lug.tilt * (0.5 if half else 1.0), rings, (x, y))
 
 
 def _opened(mesh: Hexahedra, lug: Lug, force: Floats, scale: float) -> Hexahedra:

@@ -67,12 +67,14 @@ class Eye:
     force: (2,) N of its link on it.
     tilt: N m/rad; inf, 0 as of fea.joint's Lug.
     rings: the elements of the pin on each of its rings.
+    couple: (2,) N m of its link on it, which turns it along x and along y towards z.
     """
 
     part: Part
     force: Floats
     tilt: float
     rings: tuple[Ints, ...]
+    couple: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -106,7 +108,7 @@ class JointDeck:
         yield from self._contact()
         yield from self._holding(first)
         for fraction in self.history:
-            yield from self._step(first, fraction)
+            yield from self._step(fraction)
 
     def write(self, path: Path) -> None:
         """Write the deck."""
@@ -173,11 +175,11 @@ class JointDeck:
             for axis in self.axes:
                 yield from _equations(eye.part.mesh, node, axis, shift, tilt)
         yield from self._axial(first)
-        yield from self._springs(first)
+        yield from self._springs()
         yield "*BOUNDARY"
         yield from self._fixed(first)
 
-    def _springs(self, first: list[tuple[int, int]]) -> Iterator[str]:
+    def _springs(self) -> Iterator[str]:
         number = sum(len(part.mesh.elements) for part in self._parts) + 1
         mesh, E = self.pin.mesh, self.pin.material.youngs_modulus
         length = float(np.ptp(mesh.nodes[:, 2]))
@@ -226,16 +228,18 @@ class JointDeck:
             if not self.half:
                 yield from ("*EQUATION", "2", f"{start + one}, 2, 1., {start + other}, 2, -1.")
 
-    def _step(self, first: list[tuple[int, int]], fraction: float) -> Iterator[str]:
+    def _step(self, fraction: float) -> Iterator[str]:
         yield "*STEP"
         yield "*STATIC"
         yield FRICTION_INCREMENTS if self.friction else "1, 1"
         yield "*CLOAD"
         for b, eye in enumerate(self.eyes):
-            if b:
-                for axis in self.axes:
-                    force = fraction * float(eye.force[axis - 1])
-                    yield f"{self._auxiliary(b)[0]}, {axis}, {real(force)}"
+            shift, tilt = self._auxiliary(b)
+            for axis in self.axes:
+                if b:
+                    yield f"{shift}, {axis}, {real(fraction * float(eye.force[axis - 1]))}"
+                if any(eye.couple):
+                    yield f"{tilt}, {axis}, {real(fraction * eye.couple[axis - 1])}"
         for eye in self.eyes if self.dialect == "calculix" else ():
             for k in range(len(eye.rings)):
                 pair = f"SLAVE={slave(eye.part.name, k)}, MASTER=BORE{eye.part.name}"

@@ -23,7 +23,7 @@ from fea.core.linear_solver import Analysis, SolveError
 from pinbase.arrays import Floats
 
 RESIDUAL_TOLERANCE = 1e-6  # residual over the loads
-MAX_NEWTON_ITERATIONS = 40
+MAX_NEWTON_ITERATIONS = 40  # of one step
 # Part of the initial slope that a line search may leave; chosen by judgement.
 MAX_SLOPE_SHARE = 0.8
 MAX_STEP_HALVINGS = 6

@@ -204,9 +204,19 @@ _OUTER_FACE_NODES = np.flatnonzero(np.asarray(ElementHexS2().doflocs)[:, 0] == 1
 def _on(pin: Pin, mesh: HexMesh, name: str) -> Ints:
     """Numbers of the cells with a face on a band."""
     band = pin.band(name)
-    cells = mesh.outside[pin.labels.index(band.name)]
+    cells = mesh.outside[_segment(pin, name)]
     z = mesh.nodes[mesh.elements[cells], 2].mean(axis=1)
     return np.asarray(cells[(z > band.z0) & (z < band.z1)])
+
+
+def _segment(pin: Pin, name: str) -> int:
+    """Number of the segment on whose outer surface a band is; of a shoulder's face the thicker one,
+    all over which its force enters here.
+    """
+    band = pin.band(name)
+    if band.name in pin.labels:
+        return pin.labels.index(band.name)
+    return next(i for i, b in enumerate(pin.bands) if (b.z0, b.z1) == (band.z0, band.z1))
 
 
 def nodal_forces(
@@ -237,6 +247,8 @@ def _face_forces(pin: Pin, mesh: HexMesh, t: Traction, n: int, phase: int) -> Fl
         np.linalg.norm(np.cross(tangents[0], tangents[1]), axis=2)
         * np.outer(weight, weight).ravel()
     )
+    # The force of a shoulder's face is of a cylinder with its area, which is thinner.
+    area *= pin.band(t.surface).radius / pin.bands[_segment(pin, t.surface)].radius
     out = np.zeros_like(mesh.nodes)
     np.add.at(
         out,
@@ -273,7 +285,7 @@ def _balanced(pin: Pin, mesh: HexMesh, ties: Ties, force: Floats) -> tuple[Float
     """
     whole = ties.matrix
     whole_turn = np.concatenate([mesh.nodes, mesh.nodes * [-1.0, -1.0, 1.0]])  # about the axis
-    modes = rigid_modes(whole_turn)[: mesh.nodes.size]
+    modes = rigid_modes(whole_turn - whole_turn.mean(axis=0))[: mesh.nodes.size]
     counts = np.asarray(abs(whole).sum(axis=0)).ravel()
     # Rigid motions that the symmetries of the sector allow.
     free = (whole.T @ modes) / counts[:, None]

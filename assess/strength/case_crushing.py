@@ -6,7 +6,7 @@ has found (fea.support.contact.case_crushing), against first yield of the core.
 
 from __future__ import annotations
 
-from assess.check import CheckText, check
+from assess.check import CheckText, WorstPlace, check
 from assess.margin import Margin
 from assess.situation import Situation
 
@@ -26,11 +26,9 @@ def crushed_case(text: CheckText, s: Situation) -> list[Margin]:
     crushing = places.contact.crushing if places and places.contact else None
     if crushing is None:
         return []
-    return [
-        Margin(
-            text.method, text.clause, text.kind, text.level, s.factors.at(text.level),
-            crushing.max_von_mises, crushing.strength, at=crushing.band, z=crushing.z,
-            material=s.material.name, basis="core beneath the case, by the pressure alone",
-            omits=text.omits,
-        )
-    ]  # fmt: skip
+    place, basis = (
+        WorstPlace(crushing.band, crushing.z),
+        "core beneath the case, by the pressure alone",
+    )
+    demand, allowable = crushing.max_von_mises, crushing.strength
+    return [text.margin(s, demand, allowable, place, s.material.name, basis)]

@@ -8,7 +8,7 @@ Source: 14 CFR 25.305(b) (no failure at ultimate load).
 
 from __future__ import annotations
 
-from assess.check import CheckText, check
+from assess.check import CheckText, WorstPlace, check
 from assess.margin import RATIO_DIMENSION, Margin
 from assess.situation import Situation
 
@@ -25,11 +25,6 @@ def collapse(text: CheckText, s: Situation) -> list[Margin]:
     if limit.lower is None or limit.upper is None:
         needs = "a limit load (--limit-load)" if limit.stopped else f"a limit load: {limit.note}"
         return [text.lacks(s, needs)]
-    return [
-        Margin(
-            text.method, text.clause, text.kind, text.level, s.factors.at(text.level), 1.0,
-            limit.lower, text.dimension, time=s.row.peak.time,
-            basis=f"collapse at {limit.lower:.4g} to {limit.upper:.4g} times the loads, "
-            f"by a {limit.method}",
-        )
-    ]  # fmt: skip
+    bracket = f"{limit.lower:.4g} to {limit.upper:.4g}"
+    basis = f"collapse at {bracket} times the loads, by a {limit.method}"
+    return [text.margin(s, 1.0, limit.lower, WorstPlace(time=s.row.peak.time), basis=basis)]

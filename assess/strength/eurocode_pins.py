@@ -80,15 +80,6 @@ def bending_resistance(
     return np.minimum(1.5 * modulus, plastic) * strength / GAMMA_M0
 
 
-def double_shear_moment(force: float, outer: float, middle: float, gap: float) -> float:
-    """The moment M_Ed of figure 3.11, N m: F (b + 4 c + 2 a) / 8.
-
-    force: F, N.
-    outer, middle, gap: a, b and c, m.
-    """
-    return force * (middle + 4.0 * gap + 2.0 * outer) / 8.0
-
-
 @dataclass(frozen=True)
 class PinInHole:
     """A pin of `diameter` in a hole of a plate of `thickness`, m; modulus: E, Pa."""

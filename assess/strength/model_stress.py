@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from assess.check import CheckText, check
+from assess.check import CheckText, WorstPlace, check
 from assess.margin import Margin, strength_key
 from assess.situation import Situation
 from fea.core.peak import Maximum
@@ -58,11 +58,8 @@ def _margin(
         return text.lacks(s, strength_key(s.material.name, which))
     if peak.max_von_mises is None:
         return text.lacks(s, f"a maximum of the model, which is {peak.verdict}")
-    factor = s.factors.at(text.level)
-    return Margin(
-        text.method, text.clause, text.kind, text.level, factor, peak.upper_end, strength,
-        time=peak.time, material=s.material.name, basis=_basis(peak),
-    )  # fmt: skip
+    place = WorstPlace(time=peak.time)
+    return text.margin(s, peak.upper_end, strength, place, s.material.name, _basis(peak))
 
 
 def _basis(peak: Maximum) -> str:

@@ -23,11 +23,10 @@ PAGE = ROOT / "docs" / "evidence.md"
 WIDTH = 120  # of a line of text
 TEMPLATE = Path(__file__).parent / "template.md"
 REASONS: dict[Fault, str] = {"": "", "print": "error in print: ", "model": "miss: "}
-BARS_NOTE = """The limit load is the lower end of its bracket ("lug, limit load" of the margins),
-the ultimate load the largest up to a plastic strain at the bore of ln(1 + A), in finite strain
-("lug, ultimate load"). The first is below the test in {safe} of {all} bars, because metal hardens;
-by how much depends on the alloy. The second is above it in {unsafe}: it is a prediction with the
-scatter of the table above, which its margin prints, not an allowable."""
+BARS_NOTE = """The limit load is the lower end of its bracket, the ultimate load the largest up to
+a plastic strain at the bore of ln(1 + A), in finite strain. The first is below the test in {safe}
+of {all} bars, because metal hardens. The second is above it in {unsafe}: it is a prediction with
+this scatter, not an allowable."""
 
 
 def page(comparisons: Iterable[Comparison]) -> str:
@@ -67,10 +66,10 @@ def source_table(name: str, comparisons: list[Comparison]) -> str:
         return _bars(comparisons)
     rows = source_rows(comparisons)
     head: tuple[str, ...]
-    head = ("quantity", "study", "check", "printed", "unit", "ours", "ratio", "remark")
+    head = ("quantity", "study", "printed", "ours", "ratio", "remark")
     if not comparisons[0].printed.study:
-        rows = [(row[0], *row[3:]) for row in rows]
-        head = (head[0], *head[3:])
+        rows = [(row[0], *row[2:]) for row in rows]
+        head = (head[0], *head[2:])
     return table(head, rows)
 
 
@@ -78,9 +77,9 @@ def source_rows(comparisons: Iterable[Comparison]) -> list[tuple[object, ...]]:
     """Cells of the comparisons with a source."""
     return [
         (
-            c.printed.quantity, f"`{c.printed.study}`", c.printed.check, c.printed.text,
-            "" if c.printed.unit == "1" else c.printed.unit, _shown(c.predicted),
-            f"{c.ratio:.3f}", REASONS[c.printed.fault] + c.printed.remark,
+            c.printed.quantity, f"`{c.printed.study}`",
+            c.printed.text + ("" if c.printed.unit == "1" else f" {c.printed.unit}"),
+            _shown(c.predicted), f"{c.ratio:.3f}", REASONS[c.printed.fault] + c.printed.remark,
         )
         for c in comparisons
     ]  # fmt: skip
@@ -123,7 +122,7 @@ def _about(source: Source) -> str:
         parts.append(f"Not a study: `{source.function}`.")
     if source.errors:
         parts.append(f"*Errors in print.* {source.errors}")
-    parts.append(f"*What this does not establish.* {source.limits}")
+    parts.append(f"*Not established.* {source.limits}")
     return "\n\n".join(_filled(part) for part in parts)
 
 

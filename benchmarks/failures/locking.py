@@ -40,7 +40,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats, UnitLoad
 from fea.core.tractions import traction
 from fea.core.voigt import von_mises
-from fea.harmonic.assembly import Section
+from fea.harmonic.assembly import Section, elasticity
 from fea.harmonic.boundary import Outline
 from fea.harmonic.superposition import Circumference
 from fea.solid.boundary import surface
@@ -238,7 +238,8 @@ def _mixed(space: Section, forces: Floats, material: Material) -> float:
     f = np.concatenate([forces.ravel(), np.zeros(pressure.N)])
     u = _held(K, f, space.nodes[:, 0], len(space.nodes))[: basis.N].reshape(-1, 2)
     three = np.stack([u[:, 0], 0.0 * u[:, 0], u[:, 1]], axis=1)[..., None]
-    e = space.sampled_strains(0, three)[..., 0]  # rr, tt, zz, tz, rz, rt, shears doubled
+    stress = space.sampled_stress(material, 0, three)[..., 0]
+    e = stress @ np.linalg.inv(elasticity(material))  # rr, tt, zz, tz, rz, rt, shears doubled
     at_nodes = (continuation(space.samples, space.nodes) @ e.reshape(-1, 6)).T
     return float(_size([*at_nodes[:3], 0.5 * at_nodes[4]], mu).max())
 

@@ -141,7 +141,7 @@ def entries() -> tuple[Entry, ...]:
         _entry(
             "tiny_fillet", "Tiny fillets", fillets(),
             "As the fillet gets smaller the peak tends to that of a sharp corner (in the limit "
-            f"like (r/d)$^{-0.456}$); a mesh that does not resolve the arc misses it.",
+            "like $(r/d)^{-0.456}$); a mesh that does not resolve the arc misses it.",
             "one mesh of an eighth of the diameter", "fillet over diameter",
             "The true value is from a mesh with twice the unknowns of pinstress's last.",
         ),

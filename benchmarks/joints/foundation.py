@@ -6,7 +6,6 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 from statistics import median
 
 import numpy as np
@@ -22,7 +21,6 @@ from fea.harmonic.field import HarmonicField
 from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.section.section_stress import SectionField
 from fea.singular.singularities import singularities_of
-from fea.support.contact.bending import shear_force
 from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
 from fea.support.contact.variations import AtPlaces
 from fea.support.foundation.bounds import StressBounds, stress_bounds
@@ -162,9 +160,10 @@ def _compared(trial: JointTrial, contact: JointContact, stiffness: Stiffness) ->
     z = contact.bands.z
     middle = np.array([0.5 * (z[0] + z[-1])])
     apart = found.bending_moment(middle) - contact.bending_moment(middle)
-    by_contact = partial(shear_force, contact.pin, contact.mass, contact.bands, contact.loads)
     off = [
-        _end_loads(found.shear_force, by_contact, trial.pin.band(lug.connection), float(force))
+        _end_loads(
+            found.shear_force, contact.shear_force, trial.pin.band(lug.connection), float(force)
+        )
         for lug, force in zip(trial.lugs, trial.loads.forces[0, :, 0], strict=True)
     ]
     ends = np.stack(off, axis=1)  # (parts, lugs, sides)

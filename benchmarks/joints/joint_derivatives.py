@@ -220,9 +220,12 @@ class WholeJoint:
         """With the cells where they are."""
         (before,) = self.model.pressed(self.links)
         turn = rotation(before.angle)
-        x, y = (model.couples(self.links)[0] @ turn).tolist()
-        forces = model.forces(self.links)[0] @ turn
-        return model.contact.solve(forces, (x, y), before.active).turned(before.angle)
+        forces, couple, moments = (
+            of(self.links)[0] @ turn for of in (model.forces, model.couples, model.moments)
+        )
+        x, y = couple.tolist()
+        contact = model.freed(self.links)
+        return contact.solve(forces, (x, y), before.active, moments).turned(before.angle)
 
     def derivative(self, parameter: JointParameter) -> float:
         """By differences."""

@@ -32,18 +32,15 @@ HEAD = (
 )  # fmt: skip
 NOTES = """Bearing ultimates predicted over measured. *Fty*, *(Fty + Ftu)/2*, *Ftu*: perfectly
 plastic limit load at that flow stress, middle of the strict bracket ({brackets}). *Shape*: finite
-strain, the true curve of Fty and Ftu, no failure strain: the load falls by the change of shape;
-nothing fitted. *ln(1 + A)*: broken when the equivalent plastic strain reaches that of the
-elongation in 2 in; nothing fitted. *Fitted*: broken at {multiple:.2f} ln(1 + A), the one number
-that gives the twelve bars of TN 1503 the least mean square; the eight of TN 1502 are
-predictions."""
-PUBLISHED = """An open lug solver on the same tests of TN 1503 (plane strain, rigid pin): perfectly
-plastic, (Fty + Ftu)/2 9 to 28 % low (mean 18 %), Ftu 1 to 17 % low (mean 10 %); finite strain with
-failure at ln(1 + A) for 75S and twice that for the others -2.9 to +1.8 %, on TN 1502 -8.5 to
-+2.8 % (with these two multiples ours are {theirs}). Its collapse of a
-round head, 0.5 / 1.5 / 0.25 in, 60 ksi: 9842 lbf in finite strain, ours
-{finite:.0f}; 9485 in small strain, where our strict bracket is {lower:.0f} to {upper:.0f} and our
-elements of displacement reach {small:.0f}."""
+strain, the true curve of Fty and Ftu, no failure strain. *ln(1 + A)*: broken when the equivalent
+plastic strain reaches that of the elongation in 2 in. *Fitted*: broken at {multiple:.2f}
+ln(1 + A), which gives the bars of TN 1503 the least mean square; TN 1502 are predictions."""
+PUBLISHED = """An open lug solver (plane strain, rigid pin) on TN 1503: perfectly plastic,
+(Fty + Ftu)/2 9 to 28 % low, Ftu 1 to 17 % low; finite strain with failure at ln(1 + A) for 75S
+and twice that for the others -2.9 to +1.8 %, on TN 1502 -8.5 to +2.8 % (ours {theirs}).
+Its collapse of a round head, 0.5 / 1.5 / 0.25 in, 60 ksi: 9842 lbf in finite strain,
+ours {finite:.0f}; 9485 in small strain, ours {lower:.0f} to {upper:.0f}, by elements
+of displacement {small:.0f}."""
 
 
 @dataclass(frozen=True)

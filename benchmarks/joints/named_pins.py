@@ -13,8 +13,9 @@ from benchmarks.joints.turned_ccx import Groove
 from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.peak import Maximum
-from fea.core.pin_loads import PinLoads
+from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.core.requirement import Requirement
+from fea.cut.supports import LoadsWithReactions
 from fea.solve.solve import solve_in_lugs, solve_pin
 from fea.support.lugs.lug import Lug
 from fea.support.support import PinProblem
@@ -75,6 +76,14 @@ def grooved() -> PinProblem:
     return clevis(gap=GROOVE.segments)
 
 
+def even_pull(band: str, force: float) -> LoadsWithReactions:
+    """A force (N) along the axis as a uniform traction on a band, which others apply; a link's
+    fades towards the edges of its band.
+    """
+    acting = {UnitLoad(band, "force", 0): np.array([[force, 0.0]])}
+    return LoadsWithReactions("tension", (band,), np.array([[[0.0, 0.0, force]]]), acting=acting)
+
+
 def clamp_beside_fillet() -> Maximum:
     """Held on its surface up to 0.15 d before a fillet of 0.1 d, in tension."""
     segments = (
@@ -83,7 +92,7 @@ def clamp_beside_fillet() -> Maximum:
         Segment(0.03, 1.5 * D, connection="L"),
     )
     pin = Pin("C", segments, 0.1 * D)
-    loads = PinLoads("tension", ("L",), np.array([[[0.0, 0.0, CLAMPED]]]))
+    loads = even_pull("L", CLAMPED)
     steel = Material("steel", 205e9, 0.3)
     return solve_pin(pin, steel, ("held",), (loads,), Requirement())[0].peak
 

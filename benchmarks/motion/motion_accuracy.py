@@ -12,7 +12,8 @@ from benchmarks import ROOT
 from benchmarks.timing import seconds, table
 from loads import Course, Lever, Linkage, Slider, motion_reactions, move, peak_forces
 from loads.forces.reactions import Reactions
-from loads.motion.loop_equations import Loops
+from loads.motion.equations import drive_side
+from loads.motion.planar_equations import PlanarEquations
 from pinstress import load_study
 from pinstress.study.model.mechanism.drives import laws, span
 from pinstress.study.model.mechanism.linkage import linkage
@@ -130,23 +131,23 @@ def _error(found: Floats, exact: Floats) -> float:
     return float(np.abs(found - exact).max() / np.abs(exact).max())
 
 
-def _gap(loops: Loops, q: Floats) -> float:
+def _gap(loops: PlanarEquations, q: Floats) -> float:
     """Largest gap of a closed loop, m."""
     return float(np.abs(loops.place(loops.pose(q), loops.closures)).max())
 
 
-def _rate(loops: Loops, law: object, t: float, y: Floats) -> Floats:
+def _rate(loops: PlanarEquations, law: object, t: float, y: Floats) -> Floats:
     """Rates of coordinates and speeds: the index-reduced equations, which let loops drift open."""
     q, v = y[None, : loops.columns], y[None, loops.columns :]
     pose = loops.pose(q)
     second = law(np.array([t]))[2][None]  # type: ignore[operator]
-    side = loops.drive_side(second) + loops.bend_side(pose, v)
+    side = drive_side(loops, second) + loops.bend_side(pose, v)
     a = loops.factors(pose).solve(side) / loops.scale
     return np.concatenate([v[0], a[0]])
 
 
 def _integrate(
-    loops: Loops, law: object, q: Floats, span: float, steps: int
+    loops: PlanarEquations, law: object, q: Floats, span: float, steps: int
 ) -> tuple[Floats, Floats]:
     h = span / steps
     y = np.concatenate([q, np.zeros(loops.columns)])

@@ -195,7 +195,7 @@ def _multigrid(K: sp.csr_matrix, free: Ints, nodes: Floats) -> Callable[[], Solv
 
     from fea.solid.model import rigid_modes
 
-    motions = rigid_modes(nodes)[free]
+    motions = rigid_modes(nodes - nodes.mean(axis=0))[free]
 
     def factor() -> Solve:
         levels = pyamg.smoothed_aggregation_solver(K.tobsr((3, 3)), B=motions)

@@ -1,7 +1,7 @@
 """Unit loads as loads per length of a beam: across it (n = 1), along it and about it (n = 0).
 
-Between stations a load per length is w0 + w1 s, s from the left station. Harmonics n >= 2 and a
-pressure of n = 0 have no resultant in any section, so they are zero here.
+Between stations a load per length is w0 + w1 s + w2 s^2, s from the left station. Harmonics n >= 2
+and a pressure of n = 0 have no resultant in any section, so they are zero here.
 """
 
 from __future__ import annotations
@@ -51,14 +51,14 @@ def line_loads(
     loads: tuple[UnitLoad, ...],
     closed: bool,
 ) -> Floats:
-    """Loads per length (C, 2, K), w0 and w1, of K unit loads between stations (C + 1,), m.
+    """Loads per length (C, 3, K), w0 to w2, of K unit loads between stations (C + 1,), m.
 
-    They are N/m, or N m/m about the axis, and per m. All bands end at stations.
+    They are N/m, or N m/m about the axis, per m and per m^2. All bands end at stations.
     closed: with the closing tractions that balance each load.
 
     Raises: ValueError for the weight of a material without density, or a balance without bands.
     """
-    out = np.zeros((len(sections), 2, len(loads)))
+    out = np.zeros((len(sections), 3, len(loads)))
     for k, load in enumerate(loads):
         if load.kind == "body":
             if material.density is None:
@@ -103,23 +103,25 @@ def per_length(radius: float, amplitudes: Floats, n: int, phase: int) -> Floats:
 def _spread(
     pin: Pin, stations: Floats, tractions: Iterable[Traction], n: int, phase: int
 ) -> Floats:
-    """Load per length (C, 2) of tractions on bands."""
-    out = np.zeros((len(stations) - 1, 2))
+    """Load per length (C, 3) of tractions on bands."""
+    out = np.zeros((len(stations) - 1, 3))
     middles = 0.5 * (stations[1:] + stations[:-1])
     for t in tractions:
         band = pin.band(t.surface)
         on = (middles > band.z0) & (middles < band.z1)
-        out[on, 0] += per_length(band.radius, t.at(stations[:-1][on]), n, phase)
-        out[on, 1] += per_length(band.radius, t.slope, n, phase)
+        left = stations[:-1][on]
+        slopes = t.slope + 2.0 * t.curve * (left - t.middle)[:, None]
+        for k, amplitudes in enumerate((t.at(left), slopes, t.curve)):
+            out[on, k] += per_length(band.radius, amplitudes, n, phase)
     return out
 
 
 def resultants(stations: Floats, w: Floats) -> tuple[Floats, Floats]:
-    """Sum (...), N, and moment (...), N m, about z = 0, of loads per length (C, 2, ...)."""
+    """Sum (...), N, and moment (...), N m, about z = 0, of loads per length (C, 3, ...)."""
     h = np.diff(stations).reshape(-1, *[1] * (w.ndim - 2))
     z = stations[:-1].reshape(h.shape)
-    force = w[:, 0] * h + w[:, 1] * h**2 / 2.0
-    moment = w[:, 0] * h**2 / 2.0 + w[:, 1] * h**3 / 3.0 + z * force
+    force = w[:, 0] * h + w[:, 1] * h**2 / 2.0 + w[:, 2] * h**3 / 3.0
+    moment = w[:, 0] * h**2 / 2.0 + w[:, 1] * h**3 / 3.0 + w[:, 2] * h**4 / 4.0 + z * force
     return force.sum(axis=0), moment.sum(axis=0)
 
 

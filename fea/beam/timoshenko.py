@@ -108,7 +108,7 @@ def stepped_beam(
     stations = _stations(pin, constrained)
     sections = tuple(_section(pin, a, b) for a, b in pairwise(stations.tolist()))
     w = line_loads(pin, material, stations, sections, loads, closed=not clamps)
-    q = np.zeros((len(sections), 2, 4, len(loads)))  # by the force whose slope it makes
+    q = np.zeros((len(sections), 3, 4, len(loads)))  # by the force whose slope it makes
     for k, load in enumerate(loads):
         q[:, :, SHEAR if load.n else (AXIAL, TORQUE)[load.phases[0]], k] = w[:, :, k]
     q[:, 0, MOMENT] = line_couples(pin, stations, loads)
@@ -173,7 +173,7 @@ def _spans(stations: Floats, constrained: list[tuple[float, float]]) -> tuple[Sp
 
 
 def _span(span: Span, lengths: Floats, soft: Floats, q: Floats) -> Floats:
-    """Coefficients (C, 4, 4, K) of the internal forces in one span under loads q (C, 2, 4, K)."""
+    """Coefficients (C, 4, 4, K) of the internal forces in one span under loads q (C, 3, 4, K)."""
     loaded = _march(lengths, q, np.zeros(q.shape[2:]))
     if not span.left:  # a free end, or all is in balance
         return loaded
@@ -208,7 +208,7 @@ def _products(lengths: Floats, soft: Floats, one: Floats, other: Floats) -> Floa
 def _march(lengths: Floats, q: Floats, start: Floats) -> Floats:
     """Coefficients (C, 4, 4, K) of internal forces, cell after cell.
 
-    q: loads per length (C, 2, 4, K).
+    q: loads per length (C, 3, 4, K); those across the pin are linear along it.
     start: V, M, N, T at the first cell's left end, (4, K).
     """
     out = np.zeros((len(lengths), 4, *q.shape[2:]))
@@ -216,6 +216,7 @@ def _march(lengths: Floats, q: Floats, start: Floats) -> Floats:
         out[c, 0] = start
         out[c, 1] = -q[c, 0]
         out[c, 2] = -q[c, 1] / 2.0
+        out[c, 3] = -q[c, 2] / 3.0
         out[c, 1:, MOMENT] = -out[c, :3, SHEAR] / np.array([1.0, 2.0, 3.0])[:, None]
         out[c, 1, MOMENT] -= q[c, 0, MOMENT]  # couples
         start = np.einsum("p,pqk->qk", h ** np.arange(4), out[c])

@@ -8,9 +8,10 @@ pin is not solved; below, its bands share the imbalance (`fea.core.tractions.clo
 
 What supports carry is no imbalance (`Carried`). A clamp carries everything, so clamped pins are not
 checked. Lugs of a structure carry forces across the axis, two of them couples too. A lug whose tilt
-has a stiffness, or that is guided, carries couples, as in single shear. Where all lugs are free to
-tilt, contact has no solution with any couple. Frictionless contact carries neither torques nor
-forces along the axis; on foundations a structure does.
+has a stiffness, or that is guided, carries couples, as in single shear, unless its link states the
+moment that it brings. Where all lugs are free to tilt, contact has no solution with any couple;
+links that state moments share a small one. Lugs of a structure carry forces along the axis and
+torques about it, too (`fea.support.lugs.axial`); without any, links must be in balance.
 """
 
 from __future__ import annotations
@@ -41,12 +42,14 @@ class Carried(NamedTuple):
     force, couple: across the axis.
     along: forces and torques along the axis.
     lugs: whether the pin sits in lugs.
+    moments: whether some of the links state moments across the axis, and share a small couple.
     """
 
     force: bool = False
     couple: bool = False
     along: bool = False
     lugs: bool = False
+    moments: bool = False
 
 
 NO_SUPPORT = Carried()
@@ -159,9 +162,12 @@ def _refusal(pin: PinLike, shares: tuple[float, ...], carried: Carried) -> tuple
     if torque > MAX_IMBALANCE:
         said = f"their torque about the axis is {torque:.2g} of the largest applied (its {react} "
         return f"{loose}{said}at most {MAX_IMBALANCE:g}); {clamp}", "torque-imbalance"
-    if carried.lugs and couple > MAX_FREE_COUPLE + force / 2.0:  # the links share the force
+    most = MAX_IMBALANCE if carried.moments else MAX_FREE_COUPLE + force / 2.0  # links share force
+    if carried.lugs and couple > most:
         said = f"their couple across the axis is {couple:.2g} of the largest force times the "
-        said += "length of the pin, which no lug reacts, since all are free to tilt; "
+        said += "length of the pin, which no lug reacts, since all "
+        said += "links state moments or " if carried.moments else ""
+        said += "are free to tilt; "
         return f"{loose}{said}give a lug the stiffness of its tilt", "couple-imbalance"
     if couple > MAX_IMBALANCE:
         said = f"their couple across the axis is {couple:.2g} of the largest force times the "

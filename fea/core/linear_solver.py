@@ -17,6 +17,7 @@ from geometry import CodedError
 from geometry.mesh.gmsh_session import GMSH_LOCK
 from pinbase.arrays import Floats, Ints
 from pinbase.platform import offered
+from pinbase.processes.interrupts import blocked
 
 if TYPE_CHECKING:
     import scipy.sparse as sp
@@ -248,7 +249,8 @@ def _dissection(K: sp.csr_matrix, node: Ints) -> Ints | None:
     graph.setdiag(0)
     graph.eliminate_zeros()
     adjacency = pymetis.CSRAdjacency(graph.indptr, graph.indices)
-    with GMSH_LOCK:  # METIS draws random numbers
+    # METIS draws random numbers, and takes SIGTERM for an error of its own.
+    with GMSH_LOCK, blocked():
         order = np.asarray(pymetis.nested_dissection(adjacency)[0])
     rank = np.empty(len(order), dtype=np.int64)
     rank[order] = np.arange(len(order))

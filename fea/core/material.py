@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -23,6 +23,7 @@ class Material:
     hardened: stretches of a pin whose surface is hardened, in the order of z. The yield strength is
     then that of the weakest core or of what is not hardened, for all that takes one alone.
     unhardened: the yield strength of what is not hardened, Pa, beside such stretches.
+    strength_range: between which the yield strength may lie, Pa, where that is stated.
     failure_strain: equivalent plastic strain at which a lug breaks.
     hardening: equivalent plastic strains and yield stresses (Pa) there, linear between them from
     the yield strength on and constant after the last.
@@ -45,6 +46,14 @@ class Material:
     unhardened: float | None = None
     failure_strain: float | None = None
     thermal_expansion: float | None = None
+    strength_range: tuple[float, float] | None = None
+
+    @property
+    def weakest(self) -> Material:
+        """The material at the lower end of the range of its yield strength, if it has one."""
+        if self.strength_range is None:
+            return self
+        return replace(self, yield_strength=self.strength_range[0], strength_range=None)
 
     def __post_init__(self) -> None:
         if not 0.0 < self.youngs_modulus < np.inf:

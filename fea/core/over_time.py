@@ -23,7 +23,7 @@ Between = Callable[[Floats], PinLoads]  # a motion's loads at any times (T,) s
 
 # Chosen by judgement; `python -m benchmarks instants` shows the error of evenly spaced instants.
 TIME_ERROR_SHARE = 0.05  # of the tolerance: what the time may add to the error
-MAX_INSTANTS = 4096
+MAX_INSTANTS = 4096  # of a case, after which no more are added
 # Largest deviation from a chord over that at its middle: 1 for a parabola, more for skewed curves.
 CHORD_FACTOR = 1.25
 MIN_INTERVAL = 1e-5  # of the whole time: a shorter interval holds a jump or nothing

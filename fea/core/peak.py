@@ -247,5 +247,10 @@ def accuracy(relative: float, tolerance: float, known: bool) -> Reason:
     """The relative error, and whether it is within the tolerance."""
     if known:
         return Reason(f"estimated error {relative:.1%}", ("within-tolerance",))
-    text = f"estimated error {relative:.1%}, above the tolerance of {tolerance:.1%}"
+    text = f"estimated error {_percent(relative)}, above the tolerance of {_percent(tolerance)}"
     return Reason(text, ("above-tolerance",))
+
+
+def _percent(relative: float) -> str:
+    """A share as a percentage that is 0 only where the share is."""
+    return f"{relative:.1%}" if relative >= 0.001 else f"{100.0 * relative:.1g}%"

@@ -5,13 +5,17 @@ psi = n theta - p pi / 2, the components (R cos psi, T sin psi, Z cos psi) along
 whose amplitudes R, T, Z depend on z alone:
 
     force x, y           n = 1, p = 0, 1    a traction of constant direction: R = -T
-    force z              n = 0, p = 0
-    moment about y, x    n = 1, p = 0, 1    as the forces, but linear in z about the band's middle
-    moment about z       n = 0, p = 1       tangential
+    force z              n = 0, p = 0       a shear that fades towards the band's edges ("pull")
+    moment about y, x    n = 1, p = 0, 1    as the forces, but linear in z about the band's middle;
+                                            among bearing pressures a pressure, too ("tilt")
+    moment about z       n = 0, p = 1       tangential, fading likewise ("twist")
     bearing pressure     n = 0, 1, 2, 4, .. the series of a cosine on the loaded half
     weight and inertia   n = 1 and 0        a force per mass, the same everywhere
 
 So a unit load of harmonic n serves all directions: phases differ by a turn about the axis.
+
+A shear that jumps at the edge of its band makes stress infinite there, as a logarithm. No link or
+press fit does this, so that shears along and about the axis fade (fea.core.tractions).
 """
 
 from __future__ import annotations
@@ -27,10 +31,16 @@ from numpy.typing import NDArray
 
 from fea.core.pressed import PressedArcs
 from geometry import ArgumentError
+from geometry.shape.pin import SHOULDER
 
 Floats = NDArray[np.float64]
-Kind = Literal["force", "moment", "pressure", "axial", "body", "shift", "turn"]
+Kind = Literal[
+    "force", "moment", "pull", "twist", "tilt", "pressure", "axial", "body", "shift", "turn"
+]
 Distribution = Literal["uniform", "cosine"]
+
+# Of the largest force and the pin's length: a moment across the axis below it is none.
+MOMENT_ROUND_OFF = 1e-9
 
 BODY_SURFACE = ""  # the `surface` of a load on the whole pin
 
@@ -42,7 +52,7 @@ class UnitLoad(NamedTuple):
     "moment" but are motions of a clamp, per m and rad about the pin's origin.
     n: the harmonic.
     parts: instead of one surface, those of a pressure, or a traction along the axis ("axial"), on
-    several, each with its amplitude, Pa.
+    several, each with its amplitude, Pa; of a "pull" or "twist" the rings of the band, each with 1.
     """
 
     surface: str
@@ -63,14 +73,19 @@ class UnitLoad(NamedTuple):
 
         For a pressure on several surfaces: one of unit amplitude on each of them. Otherwise itself.
         """
-        if not self.parts:
+        if not self.parts or self.fades:
             return {self: 1.0}
         return {self._replace(parts=((name, 1.0),)): amount for name, amount in self.parts}
 
     @property
+    def fades(self) -> bool:
+        """Whether it is a shear along the axis or about it that fades towards its band's edges."""
+        return self.kind in ("pull", "twist")
+
+    @property
     def shears(self) -> bool:
         """Whether its traction has a shear that jumps at the band's edge."""
-        return self.kind in ("force", "moment")
+        return self.kind in ("force", "moment") and not self.surface.startswith(SHOULDER)
 
     @property
     def phases(self) -> tuple[int, ...]:
@@ -80,7 +95,7 @@ class UnitLoad(NamedTuple):
         """
         if self.n:
             return (0, 1)
-        return (1,) if self.kind in ("moment", "turn") else (0,)
+        return (1,) if self.kind in ("moment", "twist", "turn") else (0,)
 
 
 @dataclass(frozen=True)
@@ -95,6 +110,16 @@ class PinLoads:
     body: (T, 3) m/s^2, or what broadcasts to it: gravity less the pin's own acceleration.
     times: (T,) s, rising, of a motion.
     pressed: where lugs press on the pin.
+    seats: where links' forces along the axis enter, by surface: the surfaces that take them towards
+    the start of the pin and towards its end; links without an entry bear on their own bands.
+    tilting: surfaces whose links state moments across the axis, in the whole case; None: those
+    with any at these instants (`tilting_links`).
+    pulls: links that exert forces along the axis, or torques, in any load of the problem: the
+    surface, and 0 for towards the start of the pin, 1 for towards its end, 2 for a torque.
+    always: unit loads that count even where they are zero at all these instants, since they act
+    under other loads of the problem, which are superposed from the same fields.
+    bands: surfaces that together are the rings of one band, over which its force along the axis and
+    its torque fade; other surfaces are bands of their own.
     """
 
     case: str
@@ -106,6 +131,11 @@ class PinLoads:
     terms: int = 6
     times: Floats | None = None
     pressed: PressedArcs | None = None
+    tilting: tuple[str, ...] | None = None
+    seats: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    pulls: tuple[tuple[str, int], ...] = ()
+    always: tuple[UnitLoad, ...] = ()
+    bands: tuple[tuple[str, ...], ...] = ()
 
     def __post_init__(self) -> None:
         moments = np.broadcast_to(self.moments, self.forces.shape)
@@ -125,6 +155,18 @@ class PinLoads:
     def on_rings(self) -> PinLoads:
         """The loads that sections carry: these, or the resultants of contact pressures on rings."""
         return self
+
+    def tilting_links(self, length: float) -> tuple[str, ...]:
+        """The surfaces whose links state moments across the axis.
+
+        length: of the pin, m, by which round-off of forces makes moments.
+        """
+        if self.tilting is not None:
+            return self.tilting
+        moments = np.linalg.norm(self.moments[..., :2], axis=2).max(axis=0, initial=0.0)
+        forces = np.linalg.norm(self.forces, axis=2).max(initial=0.0)
+        least = MOMENT_ROUND_OFF * max(length * forces, moments.max(initial=0.0))
+        return tuple(s for s, m in zip(self.surfaces, moments, strict=True) if m > least)
 
     @property
     def pressures(self) -> tuple[int, ...]:
@@ -149,6 +191,8 @@ class PinLoads:
                 out[load] = both
 
         zero = np.zeros(len(self))
+        rings = {name for band in self.bands for name in band}
+        tilt: Kind = "moment" if self.distribution == "uniform" else "tilt"
         for c, name in enumerate(self.surfaces):
             (x, y, z), (mx, my, mz) = self.forces[:, c].T, self.moments[:, c].T
             # Transverse force: a traction of constant direction, or the series of a bearing
@@ -160,13 +204,24 @@ class PinLoads:
                 for n in self.pressures:
                     turned = (size * np.cos(n * angle), size * np.sin(n * angle))
                     add(UnitLoad(name, "pressure", n), *turned)
-            add(UnitLoad(name, "force", 0), z, zero)
             # A moment about y is of phase 0, as a force along x; one about x of phase 1, with its
             # sign changed.
-            add(UnitLoad(name, "moment", 1), my, -mx)
-            add(UnitLoad(name, "moment", 0), zero, mz)
+            add(UnitLoad(name, tilt, 1), my, -mx)
+            if name not in rings:
+                face = name.startswith(SHOULDER)
+                add(UnitLoad(name, "force" if face else "pull", 0), z, zero)
+                add(UnitLoad(name, "twist", 0), zero, mz)
+        for band in self.bands:
+            on = [self.surfaces.index(name) for name in band]
+            parts = tuple((name, 1.0) for name in band)
+            add(UnitLoad("", "pull", 0, parts), self.forces[:, on, 2].sum(axis=1), zero)
+            add(UnitLoad("", "twist", 0, parts), zero, self.moments[:, on, 2].sum(axis=1))
         add(UnitLoad(BODY_SURFACE, "body", 1), *self.body[:, :2].T)
         add(UnitLoad(BODY_SURFACE, "body", 0), self.body[:, 2], zero)
+        for load in self.always:
+            if load not in out:
+                out[load] = np.zeros((len(self), 2))
+                out[load].flags.writeable = False
         return out
 
     @property

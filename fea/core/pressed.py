@@ -76,11 +76,11 @@ class Rings:
         part = np.where(ring >= 0, (z - self.start[ring]) / self.length[ring], 0.0)
         return np.where((part >= READ_RING_RANGE[0]) & (part <= READ_RING_RANGE[1]), ring, -1)
 
-    def near(self, r: Floats, z: Floats, middle: Floats) -> Mask:
+    def near(self, r: Floats, middle: Floats) -> Mask:
         """Mask (P, 3 R) of the points that each ring shuts when pressed: under, before, after it.
 
         Before and after, up to the ring's own length or that of the next one, if that is shorter.
-        r, z: (P,) m.
+        r: (P,) m.
         middle: (P,) m, z of the middle of the element on which each point is.
         """
         middle, (before, after) = middle[:, None], self._beside

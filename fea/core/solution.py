@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -27,6 +27,7 @@ class Picture:
     envelope: (N,), the largest von Mises stress over all instants, Pa, NaN inside the body.
     pressed: (N,), true where lugs press on the surface shown; there the envelope is that of the
     instants at which they do not, NaN if they always do. None without lugs.
+    more: cells of other types, by type.
     """
 
     points: Floats
@@ -36,6 +37,7 @@ class Picture:
     stress: Floats
     envelope: Floats
     pressed: Mask | None = None
+    more: Mapping[str, Ints] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -109,7 +111,7 @@ class StressField(StressMaxima, Protocol):
         ...
 
     def volume(self, loads: PinLoads, instant: int) -> Picture | None:
-        """A body of revolution at one instant with its inside, without an envelope; None for other
-        bodies, whose picture has all there is.
+        """A body at one instant with its inside, without an envelope; None for solid models, whose
+        picture has all there is.
         """
         ...

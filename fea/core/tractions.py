@@ -6,12 +6,15 @@ along phi, has the resultant pi r L p0 / 2 = F, so p0 = 2 F / (pi r L), and the 
     p0 / pi + p0 / 2 cos a + sum over even n of (2 p0 / pi) (-1)^(n/2 + 1) / (n^2 - 1) cos n a
 
 which ends in a remainder of at most (2 p0 / pi) / (2 N + 2) after harmonic N.
+
+A shear along the axis or about it is a parabola over its band, zero at both edges: a jump there
+would make stress infinite.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -22,9 +25,10 @@ from pinbase.arrays import Floats
 
 @dataclass(frozen=True)
 class Traction:
-    """Amplitudes along r, theta and z on a surface that vary linearly along z.
+    """Amplitudes along r, theta and z on a surface that vary along z.
 
-    They are `mean` + `slope` (z - middle), (3,) each, Pa and Pa/m per unit of load.
+    They are `mean` + `slope` (z - middle) + `curve` (z - middle)^2, (3,) each, Pa, Pa/m and Pa/m^2
+    per unit of load.
     middle: m.
     """
 
@@ -32,10 +36,12 @@ class Traction:
     middle: float
     mean: Floats
     slope: Floats
+    curve: Floats = field(default_factory=lambda: np.zeros(3))
 
     def at(self, z: Floats) -> Floats:
         """Amplitudes (..., 3), Pa, at z (...) in m."""
-        return np.asarray(self.mean + self.slope * (z[..., None] - self.middle))
+        s = z[..., None] - self.middle
+        return np.asarray(self.mean + self.slope * s + self.curve * s**2)
 
 
 ALONG_X = np.array([1.0, -1.0, 0.0])  # amplitudes of a traction of constant direction, n = 1
@@ -48,6 +54,8 @@ _NO_TRACTION = np.zeros(3)
 
 def tractions_of(pin: PinLike, load: UnitLoad) -> tuple[Traction, ...]:
     """The tractions of a unit load on bands; none for a body load or a motion of a clamp."""
+    if load.fades:
+        return _fading(pin, load)
     if load.parts:
         bands = [(pin.band(name), amplitude) for name, amplitude in load.parts]
         way = ALONG_Z if load.kind == "axial" else INWARDS
@@ -57,17 +65,32 @@ def tractions_of(pin: PinLike, load: UnitLoad) -> tuple[Traction, ...]:
 
 def traction(pin: PinLike, load: UnitLoad) -> Traction:
     """The traction of a unit load on one band."""
+    if load.fades:
+        return _fading(pin, load)[0]
     band = pin.band(load.surface)
     mean, slope = _NO_TRACTION, _NO_TRACTION
     if load.kind == "force":
         mean = (ALONG_X if load.n else ALONG_Z) / band.area
-    elif load.kind == "moment" and load.n:
-        slope = 12.0 * ALONG_X / (band.area * band.length**2)
+    elif load.kind in ("moment", "tilt") and load.n:
+        across = ALONG_X if load.kind == "moment" else PRESSURE_ALONG_X
+        slope = 12.0 * across / (band.area * band.length**2)
     elif load.kind == "moment":
         mean = ABOUT_Z / (band.area * band.radius)
     else:
         mean = pressure_amplitude(load.n, band) * INWARDS
     return Traction(load.surface, band.middle, mean, slope)
+
+
+def _fading(pin: PinLike, load: UnitLoad) -> tuple[Traction, ...]:
+    """A parabola over all rings of a band, zero at its edges."""
+    rings = [pin.band(name) for name in load.surfaces]
+    start, end = min(b.z0 for b in rings), max(b.z1 for b in rings)
+    area = sum(b.area for b in rings)
+    radius = sum(b.area * b.radius for b in rings) / area
+    top = 1.5 / area * (ALONG_Z if load.kind == "pull" else ABOUT_Z / radius)
+    curve = -top / (0.5 * (end - start)) ** 2
+    middle = 0.5 * (start + end)
+    return tuple(Traction(b.name, middle, top, _NO_TRACTION, curve) for b in rings)
 
 
 def pressure_amplitude(n: int, band: Band) -> float:

@@ -25,7 +25,7 @@ from fea.cut.evaluate import fine_about
 from fea.cut.frames import cartesian, turn_of
 from fea.cut.local_model import LocalModel
 from fea.cut.local_solution import LocalFineness, mesh_of, section_points
-from fea.cut.movement import vectors
+from fea.cut.movement import of_units
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.model import HarmonicModel
 from fea.harmonic.section_solution import FIRST_MESH_SIZE, finer_at_rings
@@ -161,6 +161,6 @@ def _displaced(
             fit = continuation(fields.points[:known], at.reshape(-1, 2))
         columns = [fields.loads.index(load) for load, _ in units]
         amplitude = fit @ fields.displacement[..., columns].reshape(known, -1)
-        moved = vectors(np.asarray(amplitude).reshape(len(angle), 3, -1), angle, units)
+        moved = of_units(np.asarray(amplitude).reshape(len(angle), 3, -1), angle, units)
         along = np.einsum("ba,pbl->pal", back, moved)
         yield along.reshape(*x.shape[:2], 3, -1)

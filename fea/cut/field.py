@@ -13,6 +13,7 @@ from fea.core.pin_loads import Loads, PinLoads
 from fea.core.solution import Picture, StressPoints
 from fea.core.unit_surface import SpaceSurface, UnitSurface
 from fea.core.zone import Zone
+from fea.cut.body import body
 from fea.cut.local_fields import MAX_REFINED_RISE, LocalFields
 from fea.cut.shown import ShownCut, shown
 from fea.cut.shown_free import free_picture, stress_points
@@ -165,5 +166,8 @@ class CutField:
         unit = self.solution.unit_surface
         return SpaceSurface(unit, ~self.read, self.coefficients, self.singularities)
 
-    def volume(self, loads: PinLoads, instant: int) -> None:
-        """Return None: only its surface is known as a whole."""
+    def volume(self, loads: PinLoads, instant: int) -> Picture:
+        """The whole body at one instant."""
+        solution, held = self.solution, self.solution.reactions.held(loads)
+        assert isinstance(held, PinLoads)
+        return body(solution.uncut, solution.pieces, solution.held, held, instant)

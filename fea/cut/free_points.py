@@ -47,7 +47,7 @@ class FreePoints:
         near = np.zeros((len(r), 3 * len(rings)), dtype=bool)
         little = RING_SIDE_OFFSET * float(rings.length.min())
         for middle in (z - little, z + little):
-            near[outline] |= rings.near(r[outline], z[outline], middle[outline])
+            near[outline] |= rings.near(r[outline], middle[outline])
         amid = np.where(on, rings.amid(r, z, z), -1)
         return cls(arc_of(points), near, amid)
 

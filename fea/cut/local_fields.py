@@ -13,6 +13,7 @@ from fea.core.pressed import PressedArcs, Rings
 from fea.cut.frames import turn_of
 from fea.cut.free_points import AwayFromPressed, CutReading, FreePoints, distance, relieved
 from fea.cut.inner_corners import InnerCorner
+from fea.cut.interior import InnerFields
 from fea.cut.region import zone
 from fea.harmonic.beneath import Steps, stairs
 from fea.solid.nodal_loads import Unit
@@ -51,6 +52,7 @@ class LocalFields:
     scatter: (P,) of the stress with the positions of nodes, relative.
     finer: fineness of the spots relative to the first mesh.
     nu: Poisson's ratio.
+    inner: what the cuts add inside.
     """
 
     piece: Piece
@@ -70,6 +72,7 @@ class LocalFields:
     scatter: Floats
     finer: float
     nu: float
+    inner: InnerFields
 
     def coefficients(self, loads: Loads) -> Floats:
         """The amount of each unit load at each instant, (T, L).
@@ -77,6 +80,12 @@ class LocalFields:
         Raises: ArgumentError when there is no field for a part of the loads.
         """
         return coefficients_of(loads, self.units)
+
+    def at(self, amounts: Floats) -> LocalFields:
+        """The fields of all unit loads in amounts (L,), as those of one."""
+        names = "stress", "uncut", "displaced", "changed", "moved"
+        summed = {name: getattr(self, name) @ amounts[:, None] for name in names}
+        return replace(self, units=self.units[:1], **summed)
 
     def outside(self, times: float = 1.0) -> Mask:
         """Mask (P,) of the points at which the maximum is looked for.

@@ -26,16 +26,19 @@ from functools import cached_property
 import numpy as np
 import scipy.linalg
 import scipy.sparse as sp
+from numpy.typing import NDArray
 
 from fea.core.linear_solver import ConstrainedSystem, SolveError
 from fea.core.material import Material
 from fea.core.voigt import TENSOR_TO_VOIGT
+from fea.cut.interior import InnerFields
 from fea.cut.lost_loads import Bearing, trial_forces, trials
-from fea.cut.parity import AXIS_NAMES, Parities
+from fea.cut.parity import Parities
 from fea.cut.surface_reading import Face, FaceReading, read_face
 from fea.cut.two_level import MAX_FACTORED_UNKNOWNS, TwoLevel
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import QUARTER_TRIANGLES, area_vectors, quadrature, slopes_at, surface
+from fea.solid.model import rigid_modes
 from geometry.mesh.cut_piece import Piece
 from geometry.mesh.solid_mesh import SolidMesh
 from pinbase.arrays import Floats, Ints, Mask
@@ -61,6 +64,7 @@ class Read:
     displaced: (P, 3, L) m, displacements by the cuts, up to a rigid motion of the whole.
     moved: (2, 6, L) motions of the piece's lower and upper ends by the cuts, up to the same motion,
     as a shift (m) and a turn (rad) about the origin of its frame.
+    inner: the displacements by the cuts at all nodes of its mesh.
     """
 
     points: Floats
@@ -69,6 +73,7 @@ class Read:
     cut: Mask
     displaced: Floats
     moved: Floats
+    inner: InnerFields
 
 
 class LocalModel:
@@ -173,6 +178,7 @@ class LocalModel:
         difference = np.zeros_like(by_class)
         moved = np.zeros((2, 6, uncut.shape[3]))
         displaced = np.zeros((*by_class.shape[:2], 3, uncut.shape[3]))
+        inside: dict[int, NDArray[np.float32]] = {}
         # Step 2: nodal forces of the tractions that relieve the cuts, and their size in all
         # classes.
         forces, acting, whole = self._relieving(by_class / scale)
@@ -182,6 +188,7 @@ class LocalModel:
                 more, spread = self._spread(by_class[c] / scale, parity, by_kind)
                 u = self._displace(forces[c] + more, parity, whole)
                 moved += self._moved(u, parity) * scale
+                inside[c] = (u.reshape(-1, 3, u.shape[1]) * scale).astype(np.float32)
                 displaced[c] = u.reshape(-1, 3, u.shape[1])[self.nodes] * scale
                 difference[c] = self._stress(u, by_class[c] / scale, spread, c) * scale
         # Step 4: add the uncut stress. Cuts are free of traction: along their faces' directions the
@@ -191,7 +198,8 @@ class LocalModel:
         whole, changed = (self._everywhere(x) for x in (total, difference))
         cut = np.tile(self.cut, len(by_class))
         displaced = self.parities.everywhere(displaced)
-        return Read(self.images.reshape(-1, 3), whole, changed, cut, displaced, moved)
+        inner = InnerFields(self.space.mesh, self.parities, self.material, inside)
+        return Read(self.images.reshape(-1, 3), whole, changed, cut, displaced, moved, inner)
 
     @cached_property
     def nodes_once(self) -> Ints:
@@ -214,7 +222,7 @@ class LocalModel:
             if not acting[c]:
                 out.append(np.zeros_like(f))
                 continue
-            modes = _rigid(self.space.nodes)[:, self.parities.rigid(parity)]
+            modes = rigid_modes(self.space.nodes)[:, self.parities.rigid(parity)]
             every = f + self._spread(part, parity, shears)[0]
             out.append(self._balanced(every, modes, whole))
         return out
@@ -248,7 +256,7 @@ class LocalModel:
                 continue
             nodes = self.space.basis.get_dofs(boundaries[name]).flatten()
             rows = (3 * nodes[:, None] + np.arange(3)).ravel()
-            modes = _rigid(self.space.nodes)[rows][:, allowed]
+            modes = rigid_modes(self.space.nodes)[rows][:, allowed]
             out[e, allowed] = np.linalg.lstsq(modes, u[rows])[0]
         out[:, 3:] /= np.abs(self.space.nodes).max()
         if "z" in across:  # u(M x) = parity M u(x): shifts but that along z, and the spin, as u
@@ -291,7 +299,7 @@ class LocalModel:
         forces = np.zeros((self.unknowns, stress.shape[2]))
         at_points = np.zeros((len(self.points), 3, stress.shape[2]))
         allowed = self.parities.rigid(parity)
-        modes = _rigid(self.space.nodes)[:, allowed]
+        modes = rigid_modes(self.space.nodes)[:, allowed]
         for bearing in self.bearings if allowed.any() else ():
             # The resultants that the cuts' tractions take from the band, in the motions of the
             # class.
@@ -350,7 +358,7 @@ class LocalModel:
         # Without clamps rigid motions are left: forces are balanced, and one corner's unknown is
         # held for each motion, chosen by pivoted QR so that they are independent.
         if not self.clamps:
-            modes = _rigid(self.space.nodes)[:, self.parities.rigid(parity)]
+            modes = rigid_modes(self.space.nodes)[:, self.parities.rigid(parity)]
             forces = self._balanced(forces, modes, whole)
             if count := modes.shape[1]:
                 at = np.flatnonzero(free * self._at_corners)
@@ -477,14 +485,3 @@ def _size(forces: Floats) -> Floats:
     """The size of nodal forces (3 N, L), repeated for their three components."""
     size = np.linalg.norm(forces.reshape(-1, 3, forces.shape[1]), axis=1)
     return np.asarray(size.repeat(3, axis=0))
-
-
-def _rigid(nodes: Floats) -> Floats:
-    """Shifts along the axes and turns about them as displacements (3 N, 6), lengths scaled."""
-    x = nodes / np.abs(nodes).max()
-    modes = np.zeros((len(x), 3, 6))
-    for a in range(len(AXIS_NAMES)):
-        b, c = (a + 1) % 3, (a + 2) % 3
-        modes[:, a, a] = 1.0
-        modes[:, b, 3 + a], modes[:, c, 3 + a] = -x[:, c], x[:, b]
-    return modes.reshape(-1, 6)

@@ -140,6 +140,7 @@ def local_fields(
         np.tile(model.scatter, len(x)),
         model.finer,
         model.material.poisson_ratio,
+        read.inner,
     )
 
 

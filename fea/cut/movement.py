@@ -11,7 +11,7 @@ import numpy as np
 
 from fea.core.local_fit import continuation
 from fea.harmonic.fields import MeridianFields
-from fea.solid.nodal_loads import Unit
+from fea.solid.nodal_loads import Unit, vectors
 from pinbase.arrays import Floats
 
 
@@ -47,17 +47,14 @@ def displacement(
     amplitude = np.asarray(
         continuation(known, at) @ fields.displacement[..., columns].reshape(len(known), -1)
     ).reshape(len(at), 3, -1)
-    return vectors(amplitude, angle, units)
+    return of_units(amplitude, angle, units)
 
 
-def vectors(amplitude: Floats, angle: Floats, units: tuple[Unit, ...]) -> Floats:
+def of_units(amplitude: Floats, angle: Floats, units: tuple[Unit, ...]) -> Floats:
     """Displacements (P, 3, L) along x, y, z from amplitudes (P, 3, L) along r, theta and z.
 
     angle: (P,) rad of the points.
     """
     n, phase = (np.array(x) for x in ([load.n for load, _ in units], [p for _, p in units]))
-    psi = n * angle[:, None] - phase * np.pi / 2.0
-    radial, round_, along = np.moveaxis(amplitude, 1, 0)
-    radial, round_, along = radial * np.cos(psi), round_ * np.sin(psi), along * np.cos(psi)
-    c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
-    return np.stack([radial * c - round_ * s, radial * s + round_ * c, along], axis=1)
+    turn = angle[:, None]
+    return vectors(amplitude, n * turn - phase * np.pi / 2.0, turn, 1)

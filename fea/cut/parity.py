@@ -51,11 +51,6 @@ class Parities:
         return np.where((odd.astype(int) @ crossed.T.astype(int)) % 2, -1.0, 1.0)
 
     @cached_property
-    def reflected(self) -> Floats:
-        """-1 for images that are left-handed, else 1, (G,)."""
-        return np.asarray(self.images.prod(axis=1))
-
-    @cached_property
     def stress_signs(self) -> Floats:
         """The signs (G, 6) by which the mirrors of an image change the components of a stress."""
         return np.stack([self.images[:, a] * self.images[:, b] for a, b in VOIGT_TO_TENSOR], axis=1)

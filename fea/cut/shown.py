@@ -70,11 +70,12 @@ def shown(
     displacement = np.concatenate([p.displacement for p in parts])
     # Displacements add up: what lies above a piece moves with its upper end.
     for piece, start in zip(pieces, starts[1:], strict=False):
-        displacement += _moved_by(piece, points, int(start))
+        here = np.arange(len(points)) - start
+        other = (here < 0) | (here >= len(piece.points))
+        displacement[other] += moved_by(piece, points[other])
+        displacement[~other] += piece.displaced
     length = float(fields.points[:, 1].max())
-    whole = np.sum([p.moved[1] - p.moved[0] for p in pieces], axis=0)
-    # Take off the rigid motion of the support.
-    motion = reached(held, pieces) if held else axis_kept(whole, length)
+    motion = support_motion(pieces, held, length)
     return ShownCut(
         points,
         np.concatenate([p.triangles + i for p, i in zip(parts, starts, strict=False)]),
@@ -92,11 +93,18 @@ def _piece(piece: LocalFields) -> ShownCut:
     return ShownCut(piece.points, piece.triangles, piece.stress, piece.uncut, piece.read, outline)
 
 
-def _moved_by(piece: LocalFields, points: Floats, first: int) -> Floats:
+def support_motion(
+    pieces: Sequence[LocalFields], held: ClampReaction | None, length: float
+) -> Floats:
+    """The rigid motion (6, L) of the support by all cuts, which is taken off; length: m."""
+    whole = np.sum([p.moved[1] - p.moved[0] for p in pieces], axis=0)
+    return reached(held, pieces) if held else axis_kept(whole, length)
+
+
+def moved_by(piece: LocalFields, points: Floats) -> Floats:
     """The displacement (P, 3, L), m, of points (P, 3) of the pin by the cuts of a piece.
 
-    It is relative to what lies below the piece. own: number of the first of the piece's points.
-    Other points beside the piece move with its outline.
+    It is relative to what lies below the piece. Points beside the piece move with its outline.
     """
     z0, z1 = piece.piece.z0, piece.piece.z1
     near = PIECE_END_TOLERANCE * (z1 - z0)
@@ -104,10 +112,8 @@ def _moved_by(piece: LocalFields, points: Floats, first: int) -> Floats:
     above = np.flatnonzero(points[:, 2] >= z1 - near)
     out[above] = rigid(piece.moved[1] - piece.moved[0], points[above])
     amid = np.flatnonzero((points[:, 2] > z0 + near) & (points[:, 2] < z1 - near))
-    amid = amid[(amid < first) | (amid >= first + len(piece.points))]
     if len(amid):
         out[amid] = _beside(piece, points[amid])
-    out[first : first + len(piece.points)] = piece.displaced
     return out
 
 

@@ -10,7 +10,7 @@ the other loads.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 
@@ -81,10 +81,8 @@ class ClampMotions:
             both[:, phase] += amount
         if isinstance(loads, LoadAmounts):
             return LoadAmounts(loads.case, acting, len(loads), loads.pressed)
-        return LoadsWithReactions(
-            loads.case, loads.surfaces, loads.forces, loads.moments, loads.distribution,
-            loads.body, loads.terms, loads.times, loads.pressed, acting,
-        )  # fmt: skip
+        values = {field.name: getattr(loads, field.name) for field in fields(PinLoads)}
+        return LoadsWithReactions(**values, acting=acting)
 
 
 def reactions(supports: Sequence[ClampReaction], pieces: Sequence[LocalFields]) -> ClampMotions:

@@ -146,28 +146,19 @@ class Section:
             np.float64
         )
 
-    def sampled_strains(self, n: Ints | int, u: Floats) -> Floats:
-        """Strains (M, 3, 6, K), shears doubled, at three points of each element.
+    def sampled_stress(self, material: Material, n: Ints | int, u: Floats) -> Floats:
+        """The stress (M, 3, 6, K), Pa, at three points of each element, where it is most exact.
 
-        There they are most exact.
         n: harmonics, one or (K,).
         u: displacements (N, 3, K), m.
         """
-        return self._sampled(np.eye(6), n, u)
-
-    def sampled_stress(self, material: Material, n: Ints | int, u: Floats) -> Floats:
-        """The stress (M, 3, 6, K), Pa, of the sampled strains."""
-        return self._sampled(elasticity(material), n, u)
-
-    def _sampled(self, linear: Floats, n: Ints | int, u: Floats) -> Floats:
-        """A linear function (6, 6) of the sampled strains."""
         m, k = len(self.elements), u.shape[2]
         out = np.empty((m, 18, k))
         harmonics = np.broadcast_to(n, k)
         to_polar = np.array([[0.5, 0.5, 0.0], [0.5, -0.5, 0.0], [0.0, 0.0, 1.0]])
         for one in np.unique(harmonics):
             here = np.flatnonzero(harmonics == one)
-            by = np.einsum("ts,spa,pc->tca", linear, strain_map(int(one)), to_polar)
+            by = np.einsum("ts,spa,pc->tca", elasticity(material), strain_map(int(one)), to_polar)
             of_nodes = by.reshape(18, 3) @ self._gradients[:, self._sampled_points]
             rows = of_nodes.reshape(m, 3, 6, 3, 6).swapaxes(3, 4).reshape(m, 18, 18)
             out[:, :, here] = rows @ u[:, :, here][self.elements].reshape(m, 18, -1)

@@ -36,14 +36,11 @@ class EachCrest:
     angle: Floats
 
 
-def crest_of_each(around: Circumference, among: Mask, least: Floats | float = 0.0) -> EachCrest:
-    """The largest stress at each instant over the points of a mask (S,).
-
-    least: (T,) Pa, the value where no point exceeds it.
-    """
-    reached, point = around.each(among, least)
+def crest_of_each(around: Circumference, among: Mask) -> EachCrest:
+    """The largest stress at each instant over the points of a mask (S,)."""
+    reached, point = around.each(among)
     value, angle = around.crests(point, np.arange(around.count))
-    return EachCrest(np.where(reached > least, value, least), point, angle)
+    return EachCrest(np.where(reached > 0.0, value, 0.0), point, angle)
 
 
 class EachOnMesh:

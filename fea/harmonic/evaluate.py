@@ -10,12 +10,12 @@ import numpy as np
 
 from fea.core.mesh_result import MeshMaximum, Point
 from fea.core.model import MeshBefore, MeshProblem, MeshSequence
-from fea.core.pin_loads import Loads, PinLoads
+from fea.core.pin_loads import PinLoads
 from fea.core.zone import Zone
 from fea.harmonic.field import HarmonicField
 from fea.harmonic.first_mesh import FirstMesh
 from fea.harmonic.free_surface import reader
-from fea.harmonic.near_singularities import felt_beyond, inside, interval
+from fea.harmonic.near_singularities import inside, interval
 from fea.harmonic.section_solution import HarmonicSolution, SectionProblem, harmonic_solution
 from fea.harmonic.superposition import Circumference, Crest
 from geometry import ArgumentError, body_of_revolution
@@ -133,19 +133,6 @@ def harmonic_result(
     return (
         replace(result, interval=interval(fields, around, excluded)) if result.governed else result
     )
-
-
-def around_governing(
-    solution: HarmonicSolution,
-    singularities: tuple[Zone, ...],
-    loads: Loads,
-    maximum: float,
-) -> tuple[float, float] | None:
-    """The interval of a mesh result alone, given its maximum, Pa."""
-    around = reader(solution.fields, loads, solution.nu)
-    if not felt_beyond(around.fields, around, singularities, maximum):
-        return None
-    return interval(around.fields, around, singularities)
 
 
 def high_places(

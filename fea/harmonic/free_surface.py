@@ -93,7 +93,7 @@ def _surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfaceP
         relieving,
         np.concatenate([np.arange(len(x)), rows, none]),
         {first + k: cusp for k, cusp in enumerate(cusps)},
-        ShutBy.of(rings, rings.near(x[:, 0], x[:, 1], middle), relieving, cusps),
+        ShutBy.of(rings, rings.near(x[:, 0], middle), relieving, cusps),
     )
 
 

@@ -7,7 +7,7 @@ distance.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable
+from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
@@ -57,16 +57,6 @@ def places_of(fields: MeridianFields, singularity: Zone) -> tuple[Floats, Mask, 
         within,
         within & (distance >= FEATURE_READING_DISTANCE * singularity.feature * (1.0 - 1e-9)),
     )
-
-
-def felt_beyond(
-    fields: MeridianFields,
-    around: Circumference,
-    singularities: Iterable[Zone],
-    maximum: float,
-) -> bool:
-    """Whether stress where a singularity is felt exceeds a maximum, Pa, in any of them."""
-    return any(around.exceeds(places_of(fields, p)[2], maximum) for p in singularities)
 
 
 def growth(

@@ -117,29 +117,10 @@ def harmonic_solution(
     finer += finer_at_rings(pin, rings)
     ends = _ends(pin, problem.clamps, loads)
 
-    def solved(size: SectionSize, grades: list[Grade], quiet: tuple[int, ...]) -> MeridianFields:
-        places = spots(factor)
-        inside = _rims(pin, singularities), just_beneath(pin, rings)
-        read = np.concatenate([elsewhere, *inside, core_boundary(pin, material.hardened)])
-
-        def model() -> HarmonicModel:
-            section = meridian_mesh(pin, size, places, grades, quiet)
-            return HarmonicModel(pin, section, material, problem.clamps)
-
-        elastic = material.youngs_modulus, material.poisson_ratio, material.density
-        mesh = size, tuple(places), tuple(grades), quiet, read.tobytes(), ends
-        key = pin, elastic, problem.clamps, *mesh
-        if not level and problem.first is not None:
-            return problem.first.fields(model, key, (loads, read, ends))
-        memo = problem.memo or Memo()
-
-        def fields() -> MeridianFields:
-            # Patterns of pressure change with any load, the mesh on which they act does not.
-            solved_before = memo.get(("model", *key), model) if rings else model()
-            return solved_before.solve(loads, read, ends)
-
-        return memo.get(("fields", loads, *key), fields)
-
+    places, inside = tuple(spots(factor)), (_rims(pin, singularities), just_beneath(pin, rings))
+    read = np.concatenate([elsewhere, *inside, core_boundary(pin, material.hardened)])
+    first = None if level else problem.first
+    solved = partial(_unit_fields, problem, first, (loads, read, ends), places)
     quiet = numerous_fillets(pin)
     if quiet and before:
         quiet = next(iter(before)).quiet
@@ -148,6 +129,42 @@ def harmonic_solution(
         quiet = low_stress_fillets(pin, coarse, cases, singularities, nu)
     fields, more = _apart(solved(FIRST_MESH_SIZE.finer(factor), finer, quiet), len(elsewhere))
     return HarmonicSolution(fields, close, material.poisson_ratio, ends, quiet, more)
+
+
+def _unit_fields(
+    problem: SectionProblem,
+    first: FirstMesh | None,
+    asked: tuple[tuple[UnitLoad, ...], Floats, tuple[tuple[float, float], ...]],
+    places: tuple[Spot, ...],
+    size: SectionSize,
+    grades: list[Grade],
+    quiet: tuple[int, ...],
+) -> MeridianFields:
+    """The unit fields on a mesh, solved once for each mesh and loads.
+
+    first: solves them if this is its mesh. asked: unit loads, points, ends of pressures.
+    places, size, grades, quiet: of the mesh.
+    """
+    pin, material, (loads, read, ends) = problem.pin, problem.material, asked
+
+    def model() -> HarmonicModel:
+        section = meridian_mesh(pin, size, places, grades, quiet)
+        return HarmonicModel(pin, section, material, problem.clamps)
+
+    elastic = material.youngs_modulus, material.poisson_ratio, material.density
+    mesh = size, places, tuple(grades), quiet, read.tobytes(), ends
+    key = pin, elastic, problem.clamps, *mesh
+    if first is not None:
+        return first.fields(model, key, asked)
+    memo = problem.memo or Memo()
+
+    def fields() -> MeridianFields:
+        # Patterns of pressure change with any load, the mesh on which they act does not.
+        pressed = any(load.parts for load in loads)
+        solved_before = memo.get(("model", *key), model) if pressed else model()
+        return solved_before.solve(*asked)
+
+    return memo.get(("fields", loads, *key), fields)
 
 
 def _apart(fields: MeridianFields, count: int) -> tuple[MeridianFields, Floats]:
@@ -218,7 +235,7 @@ def _ends(
     Contact pressure does not end where a cell does: its steps belong to the cells, and are not
     read.
     """
-    pushed = {name for load in loads if load.kind == "pressure" for name in load.surfaces}
+    pushed = {name for load in loads if load.kind in ("pressure", "tilt") for name in load.surfaces}
     if not clamps and any(load.n <= 1 and not load.shears for load in loads):
         pushed |= set(pin.connections)  # which react the imbalance
     cells = {name for load in loads if load.parts for name in load.surfaces}

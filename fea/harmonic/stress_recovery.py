@@ -15,6 +15,7 @@ from fea.harmonic.assembly import Section
 from fea.harmonic.boundary import Outline, shapes
 from fea.harmonic.pressure_edge import EDGE_DIRECTIONS, Jump, jumps
 from fea.harmonic.surface_stress import EDGE_STATIONS, skin
+from fea.solid.boundary import QUARTER_TRIANGLES
 from pinbase.arrays import Floats, Ints, Mask
 
 NO_POINTS = np.zeros((0, 2))
@@ -87,8 +88,8 @@ class Reading:
 
     @property
     def triangles(self) -> Ints:
-        """Triangles (M, 3) of the points, which fill the section."""
-        return np.asarray(self.rows[self.space.elements[:, :3]])
+        """Triangles (M, 3) of the points, which fill the section: four to an element."""
+        return np.asarray(self.rows[self.space.elements][:, QUARTER_TRIANGLES].reshape(-1, 3))
 
 
 def points_of_nodes(outline: Outline, count: int) -> Ints:

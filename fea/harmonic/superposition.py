@@ -16,7 +16,10 @@ bounds, from the cheapest and loosest to the dearest and tightest, are
 2. `bound`: the sum over harmonics of the maxima above. It is a bound since von Mises is a seminorm:
    the stress of a sum is at most the sum of the stresses;
 3. `_tightened`: the LOW_HARMONICS lowest harmonics are sampled together, only the maxima of the
-   others are added.
+   others are added;
+4. `_near_anchors`: loads that change little over many instants would all be evaluated. A few of
+   the instants are sampled with all harmonics; the stress of another one exceeds that of the
+   nearest of them by no more than what the difference of their loads does, by `reach`.
 
 Pairs of a point and an instant that no bound rules out are evaluated (`round`): von Mises squared
 is a trigonometric polynomial, so samples determine its highest crest
@@ -55,6 +58,8 @@ POINT_BATCH = 64  # points bounded together
 # Points and angles of an envelope at once: their samples stay in the cache. Tuned on 240 instants
 # of 13 harmonics, where 16 points at all 120 angles took three times as long.
 CACHED_POINT_BATCH, CACHED_ANGLE_BATCH = 4, 24
+ANCHORS = 24  # instants from which the stress of others is bounded, if there are many more
+MIN_INSTANTS_PER_ANCHOR = 4  # fewer are evaluated one by one
 LOW_HARMONICS = 4  # lowest harmonics, which are sampled together for a tighter bound
 # Unit loads of one harmonic up to which quadratic forms take fewer operations than summed stresses.
 MAX_QUADRATIC_FORM_LOADS = 4
@@ -232,13 +237,6 @@ class Circumference:
             known[key] = there[differ.all(axis=1)].tolist()
         return known[key]
 
-    def exceeds(self, among: Mask, value: float) -> bool:
-        """Whether any point of a mask (S,) exceeds a value, Pa, by more than round-off at any
-        instant.
-        """
-        value *= 1.0 + ROUND_OFF
-        return bool(self._search(among, together=True, least=value, soon=True)[0].max() > value)
-
     def top(self, among: Mask, least: float = 0.0) -> Crest:
         """The largest von Mises stress over the points of a mask (S,) and over all instants.
 
@@ -251,16 +249,13 @@ class Circumference:
         most = float(value[0]) if reached[instant] > least else least
         return Crest(most, int(point[instant]), instant, float(angle[0]))
 
-    def _search(
-        self, among: Mask, together: bool, least: Floats | float = 0.0, soon: bool = False
-    ) -> tuple[Floats, Ints]:
+    def _search(self, among: Mask, together: bool, least: Floats | float) -> tuple[Floats, Ints]:
         """The maximum (T,), Pa, at every instant and its point (T,), by branch and bound.
 
         among: (S,) the points that are searched.
         together: only the largest of all instants is needed; those of other instants may be too
         low.
         least: Pa, the value to exceed, or one (T,) for each instant.
-        soon: stop at the first value beyond `least`.
         """
         rows, reach = self._by_reach(np.flatnonzero(among))
         best = np.full(self.count, least)
@@ -275,8 +270,6 @@ class Circumference:
             # No later point reaches more than this one, so the search is complete.
             if reach[k] <= (best.max() if together else best.min()):
                 break
-            if soon and best.max() > least:  # one value for all instants
-                break
             here = rows[k : k + POINT_BATCH]
             # Step 3: drop the instants at which no point of the batch can exceed the incumbent.
             hopeful = self.reach(here).max(axis=0) > (best.max() if together else best)
@@ -285,6 +278,8 @@ class Circumference:
             # Step 4: bound the remaining pairs more tightly; -1 marks pairs that are ruled out.
             bound = np.full((len(here), self.count), -1.0)
             bound[:, hopeful] = self._tightened(here, hopeful, best.max() if together else best)
+            if self.count >= MIN_INSTANTS_PER_ANCHOR * ANCHORS and len(self._waves) > 1:
+                self._near_anchors(bound, here, best.max() if together else best)
             if len(self._waves) < 2 and self.region is None:  # the bound is the maximum
                 highest = bound.argmax(axis=0)
                 value = bound[highest, np.arange(self.count)]
@@ -334,6 +329,45 @@ class Circumference:
             tight = np.sqrt(upper_bound(samples, degree)) + higher[here, now]
             bound[here, now] = np.minimum(bound[here, now], tight)
         return bound
+
+    def _near_anchors(self, bound: Floats, points: Ints, beat: Floats | float) -> None:
+        """Lower bounds (J, T), Pa, in place, by what changes since the nearest anchor.
+
+        beat: Pa, one for all instants or (T,); lower bounds are left.
+        """
+        nearest, change = self._anchors
+        i, t = np.nonzero(bound > beat)
+        pairs, pair = np.unique(i * self.count + nearest[t], return_inverse=True)
+        if len(pairs) * MIN_INSTANTS_PER_ANCHOR > len(i):
+            return
+        at, anchor = np.divmod(pairs, self.count)
+        there, degree = np.empty(len(pairs)), 2 * self.highest
+        for k in range(0, len(pairs), PAIR_BATCH):
+            here = slice(k, k + PAIR_BATCH)
+            samples = self._samples(points[at[here]], anchor[here], self._waves, degree)
+            there[here] = np.sqrt(upper_bound(samples, degree))
+        more = (self._unit_reach[points] @ change)[i, t] * (1.0 + ROUND_OFF)
+        bound[i, t] = np.minimum(bound[i, t], there[pair] + more)
+
+    @cached_property
+    def _anchors(self) -> tuple[Ints, Floats]:
+        """The nearest anchor (T,) of every instant, and the change of amounts (K, T) since it.
+
+        Each anchor is the instant whose loads differ most from those of all before it.
+        """
+        weights = self._unit_reach.max(axis=0)
+        nearest = np.zeros(self.count, dtype=np.int64)
+        change, far, anchor = np.empty((len(weights), self.count)), np.full(self.count, np.inf), 0
+        for _ in range(ANCHORS):
+            since = np.hypot(
+                self._first - self._first[anchor], self._second - self._second[anchor]
+            ).T
+            distance = weights @ since
+            nearer = distance < far
+            nearest[nearer], far[nearer] = anchor, distance[nearer]
+            change[:, nearer] = since[:, nearer]
+            anchor = int(far.argmax())
+        return nearest, change
 
     def _by_reach(self, rows: Ints) -> tuple[Ints, Floats]:
         """Points (J,) in falling order of their reach at any instant, and that reach (J,), Pa."""

@@ -62,26 +62,13 @@ class PlaneContact:
         one = np.ones(1)
         gap = np.array([0.5 * self.clearance])
         bands = Bands(np.zeros(1), one, np.array([r]), np.zeros(1, dtype=np.int64), gap)
-        return ContactProblem(bands, flexible, tail, (math.inf,), self.sectors, self._of_lug)
+        of_lug = sector_flexibility(self.fields, r, self.modulus, self.sectors)
+        return ContactProblem(bands, flexible, tail, (math.inf,), self.sectors, of_lug)
 
     @cached_property
     def waves(self) -> Floats:
         """The amounts of the unit pressures under unit pressures on the sectors, (M, 2 H + 1)."""
-        both = waves_of_sectors(self.sectors, HARMONICS)  # (H + 1, M, 2)
-        return np.concatenate([both[:, :, 0], both[1:, :, 1]]).T
-
-    @property
-    def _of_lug(self) -> Floats:
-        """The mean displacement outwards of sectors under forces on sectors, (M, M) m/N."""
-        M = self.sectors
-        n = np.arange(HARMONICS + 1)
-        turns = np.outer(2.0 * np.pi * np.arange(M) / M, n)
-        mean = np.sinc(n / M)
-        at = np.hstack([np.cos(turns) * mean, (np.sin(turns) * mean)[:, 1:]])
-        unit = self.radius / self.modulus
-        area = 2.0 * np.pi * self.radius / M
-        both = unit / area * at @ self.fields.flexibility @ self.waves.T
-        return np.asarray(0.5 * (both + both.T))
+        return unit_waves(self.sectors, HARMONICS).T
 
     def pressures(self, forces: Floats) -> Floats:
         """The pressures (T, M), Pa, on the sectors under forces (T, 2) of the pin on the lug, N/m,
@@ -95,3 +82,24 @@ class PlaneContact:
             start = state.active if state.pressure.any() else None
             out.append(state.pressure[0])
         return np.array(out)
+
+
+def unit_waves(sectors: int, highest: int) -> Floats:
+    """The harmonics (2 highest + 1, M), cosines then sines, of unit pressures on M sectors."""
+    both = waves_of_sectors(sectors, highest)  # (highest + 1, M, 2)
+    return np.concatenate([both[:, :, 0], both[1:, :, 1]])
+
+
+def sector_flexibility(fields: PlaneFields, radius: float, modulus: float, sectors: int) -> Floats:
+    """The mean displacement outwards of a lug's sectors under forces on them, (M, M) m/N.
+
+    fields: of the lug, its modulus in Pa. radius: of the wall on which the forces act, m.
+    """
+    n = np.arange(HARMONICS + 1)
+    turns = np.outer(2.0 * np.pi * np.arange(sectors) / sectors, n)
+    mean = np.sinc(n / sectors)
+    at = np.hstack([np.cos(turns) * mean, (np.sin(turns) * mean)[:, 1:]])
+    unit = radius / modulus
+    area = 2.0 * np.pi * radius / sectors
+    both = unit / area * at @ fields.flexibility @ unit_waves(sectors, HARMONICS)
+    return np.asarray(0.5 * (both + both.T))  # symmetric but for round-off

@@ -18,17 +18,16 @@ from functools import cached_property
 import numpy as np
 
 from fea.core.material import Material
-from fea.lug.plane_contact import in_plane_stress
+from fea.lug.plane_contact import in_plane_stress, sector_flexibility, unit_waves
 from fea.lug.plane_fields import HARMONICS, Elasticity, PlaneFields, Wall, plane_fields
 from fea.lug.plane_ring import RingFields, ring_fields
 from fea.support.bands import Bands
-from fea.support.contact.contact import ContactProblem, Mask
+from fea.support.contact.contact import ContactProblem
 from fea.support.contact.flexibility import half_plane
-from fea.support.contact.pressure_loads import waves_of_sectors
 from fea.support.foundation.plane_contact import pin_harmonics
 from fea.support.lugs.lug import Lug
 from geometry.shape.lug_outline import LugOutline
-from pinbase.arrays import Floats, Ints
+from pinbase.arrays import Floats, Ints, Mask
 from pinbase.memo import Memo
 
 HIGHEST = (
@@ -45,9 +44,7 @@ class TwoWalls:
 
     def amounts(self, highest: int) -> tuple[Floats, Floats]:
         """The harmonics of both, cosines then sines."""
-        sectors = self.bore.shape[1]
-        both = waves_of_sectors(sectors, highest)
-        waves = np.concatenate([both[:, :, 0], both[1:, :, 1]]).T
+        waves = unit_waves(self.bore.shape[1], highest).T
         return self.bore @ waves, self.hole @ waves
 
 
@@ -135,26 +132,14 @@ class SlippingBushing:
         at, M = list(walls), self.sectors
         besides = np.zeros((len(at) * M, len(at) * M))
         if 1 in at:
-            besides[-M:, -M:] = self._of_lug
+            besides[-M:, -M:] = sector_flexibility(
+                self.fields, self.hole, self.lug.material.youngs_modulus, M
+            )
         count = np.arange(len(at))
         zeros, ones = np.zeros(len(at)), np.ones(len(at))
         bands = Bands(zeros, ones, r[at], count, np.array(gaps), count)
         flexible = flexible[:, at][:, :, at]
         return ContactProblem(bands, flexible, tail[at], (math.inf,) * len(at), M, besides)
-
-    @cached_property
-    def _of_lug(self) -> Floats:
-        """The mean displacement outwards of the hole's sectors under forces on them, (M, M) m/N."""
-        M, n = self.sectors, np.arange(HARMONICS + 1)
-        turns = np.outer(2.0 * np.pi * np.arange(M) / M, n)
-        mean = np.sinc(n / M)
-        at = np.hstack([np.cos(turns) * mean, (np.sin(turns) * mean)[:, 1:]])
-        waves = waves_of_sectors(M, HARMONICS)
-        waves = np.concatenate([waves[:, :, 0], waves[1:, :, 1]])
-        unit = self.hole / self.lug.material.youngs_modulus
-        area = 2.0 * np.pi * self.hole / M
-        both = unit / area * at @ self.fields.flexibility @ waves
-        return np.asarray(0.5 * (both + both.T))
 
     def stress_and_pressure(self, pressures: TwoWalls) -> tuple[Floats, Floats]:
         """The hoop stress plus the pressure, (T, P) Pa, of the bushing's bore and of the lug's

@@ -15,7 +15,7 @@ from pinbase.arrays import Floats
 MIN_FIT_POINTS = 8  # points in the range
 MIN_DISTANCE_RATIO = 5.0  # largest over least distance in the range
 MAX_FIT_ERROR = 0.05  # rms of relative differences: more is no power
-EXPONENT_LIMITS = (0.01, 0.95)
+EXPONENT_LIMITS = (0.01, 0.95)  # between which the exponent is fitted
 
 
 def growth_exponent(distance: Floats, stress: Floats, following: float = 0.0) -> float | None:

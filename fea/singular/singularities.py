@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 
 from fea.core.material import Material
-from fea.core.pin_loads import PinLoads, UnitLoad
+from fea.core.pin_loads import MOMENT_ROUND_OFF, PinLoads, UnitLoad
 from fea.core.zone import MESH_SCALE_RATIO, Kind, Zone
 from fea.singular.williams import Side, antiplane_exponent, plane_exponent
 from geometry import Arc, Pin, PinLike, Vertex, body_of_revolution, meridian, vertices
@@ -184,13 +184,9 @@ CLAMP_ADVICE = "model the hub that supports the pin, or replace the clamp by loa
 _TRACTION_ADVICE = (
     'use distribution = "cosine": a bearing pressure has no jump of shear at its edge'
 )
-_AXIAL_ADVICE = (
-    "a force or torque along the axis acts as shear on its band, whatever the distribution: apply "
-    "it to a band that reaches to an end of the pin, or read stress away from this edge"
-)
 _MOMENT_ADVICE = (
-    "a moment across the axis acts as shear on its band, whatever the distribution: give two "
-    'transverse forces instead, with distribution = "cosine"'
+    'use distribution = "cosine": a moment across the axis is then a pressure, which has no jump '
+    "of shear at its edge"
 )
 _IMBALANCE_ADVICE = (
     "the bands react what is left of the balance of the loads as shear: give loads in equilibrium"
@@ -231,7 +227,7 @@ def singularities_of(
     profile = body_of_revolution(pin)
     if profile is None:
         return ()
-    acting = {load for case in cases for load in case.coefficients() if load.shears}
+    acting = {load for case in cases for load in _shearing(profile, case)}
     loaded = {load.surface for load in acting}
     if acting and not clamps:  # all bands react the imbalance
         loaded |= set(pin.connections)
@@ -245,12 +241,23 @@ def singularities_of(
     )
 
 
+def _shearing(pin: Pin, case: PinLoads) -> Iterator[UnitLoad]:
+    """The unit loads with a shear at their edges that act at some instant, by more than
+    round-off.
+    """
+    force, moment = (np.abs(x).max(initial=0.0) for x in (case.forces, case.moments))
+    largest = max(float(force), float(moment) / pin.length)
+    for load, amount in case.coefficients().items():
+        length = pin.length if load.kind == "moment" else 1.0
+        if load.shears and np.abs(amount).max() > MOMENT_ROUND_OFF * largest * length:
+            yield load
+
+
 def _load_advice(pin: Pin, zone: Zone, acting: Collection[UnitLoad]) -> str:
     """What would make stress finite at the edge of a load, by the loads on its band, for people."""
     here = {load for load in acting if pin.surface(load.surface) in zone.between}
     causes = {
         _TRACTION_ADVICE: any(x.kind == "force" and x.n == 1 for x in here),
         _MOMENT_ADVICE: any(x.kind == "moment" and x.n == 1 for x in here),
-        _AXIAL_ADVICE: any(x.n == 0 for x in here),
     }
     return "; ".join(text for text, acts in causes.items() if acts) or _IMBALANCE_ADVICE

@@ -180,9 +180,8 @@ class SolidModel:
         return u.reshape(shape), support
 
 
-def rigid_modes(nodes: Floats) -> Floats:
-    """Three translations and three rotations (3 N, 6) about the nodes' centre, lengths scaled."""
-    x = nodes - nodes.mean(axis=0)
+def rigid_modes(x: Floats) -> Floats:
+    """Three translations and three rotations (3 N, 6) about the origin of x (N, 3) m, scaled."""
     x = x / np.abs(x).max()
     modes = np.zeros((len(x), 3, 6))
     for a in range(3):
@@ -194,5 +193,7 @@ def rigid_modes(nodes: Floats) -> Floats:
 
 def _isostatic(nodes: Floats) -> Ints:
     """Six unknowns whose constraint prevents rigid motions, chosen well apart by a pivoted QR."""
-    _, _, pivot = scipy.linalg.qr(rigid_modes(nodes).T, mode="economic", pivoting=True)
+    _, _, pivot = scipy.linalg.qr(
+        rigid_modes(nodes - nodes.mean(axis=0)).T, mode="economic", pivoting=True
+    )
     return np.sort(pivot[:6]).astype(np.int64)

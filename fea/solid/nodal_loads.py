@@ -141,11 +141,18 @@ def _closing(
 def components(t: Traction, x: Floats, n: int, phase: int) -> Floats:
     """A traction of harmonic n and a phase at points x (..., 3): along x, y and z, Pa."""
     angle = np.arctan2(x[..., 1], x[..., 0])
-    psi = n * angle - phase * np.pi / 2.0
-    c, s = np.cos(angle), np.sin(angle)
-    radial, round_, along = np.moveaxis(t.at(x[..., 2]), -1, 0)
+    return vectors(t.at(x[..., 2]), n * angle - phase * np.pi / 2.0, angle, -1)
+
+
+def vectors(amplitude: Floats, psi: Floats, angle: Floats, axis: int) -> Floats:
+    """Vectors along x, y and z of a harmonic, from amplitudes along r, theta and z, on an `axis`.
+
+    psi: of the harmonic, n theta - p pi / 2. angle: theta, both rad.
+    """
+    radial, round_, along = np.moveaxis(amplitude, axis, 0)
     radial, round_, along = radial * np.cos(psi), round_ * np.sin(psi), along * np.cos(psi)
-    return np.stack([radial * c - round_ * s, radial * s + round_ * c, along], axis=-1)
+    c, s = np.cos(angle), np.sin(angle)
+    return np.stack([radial * c - round_ * s, radial * s + round_ * c, along], axis=axis)
 
 
 def _band(pin: PinLike, name: str) -> Band | None:
@@ -158,13 +165,13 @@ def _band(pin: PinLike, name: str) -> Band | None:
 def _resultant(load: UnitLoad, phase: int) -> Floats:
     """Force and moment (6,) of a unit load about the band's middle."""
     out = np.zeros(6)
-    if load.kind == "force":
+    if load.kind in ("force", "pull"):
         out[phase if load.n else 2] = 1.0
     elif load.kind == "pressure" and load.n == 1:
         out[phase] = 1.0
-    elif load.kind == "moment" and load.n:
+    elif load.kind in ("moment", "tilt") and load.n:
         out[4 - phase] = 1.0 - 2.0 * phase  # about y, and about -x
-    elif load.kind == "moment":
+    elif load.kind in ("moment", "twist"):
         out[5] = 1.0
     return out
 

@@ -22,7 +22,7 @@ from fea.core.requirement import (
     below_sections,
     decided,
 )
-from fea.core.verdict import Evidence, evidence_of
+from fea.core.verdict import evidence_of
 from fea.core.zone import Zone
 from fea.harmonic.evaluate import SECTION_MESHES
 from fea.singular.singularities import begins, singularities_of
@@ -134,9 +134,8 @@ def refine(
     for case in posed.cases:
         between = _between(held, problem, case.case)
         loads, history = _at_crest(mesh, case, seen[case.case], between)
-        evidence = evidence_of(history, mesh.zones, notes.get(case.case, NO_REASON))
-        evidence = replace(evidence, why=why + met(requirement, material, history))
-        reading = _reading(evidence, mesh, loads, history)
+        reasons = notes.get(case.case, NO_REASON), why + met(requirement, material, history)
+        reading = _reading(reasons, mesh, loads, history)
         if material.hardened and below is not None and below.solution is not None:
             coarser = below.solution.field(case.case)
             reading = replace(reading, coarser=coarser, mesh_ratio=meshes.ratio)
@@ -224,11 +223,16 @@ def _at_crest(
 
 
 def _reading(
-    evidence: Evidence, mesh: MeshSolution, loads: PinLoads, seen: MeshHistory
+    reasons: tuple[Reason, Reason], mesh: MeshSolution, loads: PinLoads, seen: MeshHistory
 ) -> StressReading:
-    """The evidence of the last mesh for a case, with its field of stress."""
-    instant, field = seen.results[-1].instant, mesh.field(loads.case)
+    """The evidence of the last mesh for a case, with its field of stress.
+
+    reasons: the remarks, and why this model and mesh.
+    """
+    instant, (remarks, why) = seen.results[-1].instant, reasons
     governing = loads.at(np.array([instant]))
-    history = seen.under(governing)
-    evidence = replace(evidence, governing=governing, history=history, solids=mesh.solids)
-    return StressReading(evidence, field, loads, instant)
+    evidence = replace(
+        evidence_of(seen, mesh.zones, remarks),
+        why=why, governing=governing, history=seen.under(governing), solids=mesh.solids,
+    )  # fmt: skip
+    return StressReading(evidence, mesh.field(loads.case), loads, instant)

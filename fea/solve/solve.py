@@ -74,16 +74,13 @@ def solve_pin(
     clamps: tuple[str, ...],
     cases: tuple[PinLoads, ...],
     requirement: Requirement = DEFAULT_REQUIREMENT,
-    progress: Progress = silent,
     between: Mapping[str, Between] | None = None,
 ) -> tuple[Solution, ...]:
     """Solutions of a pin under prescribed loads; clamps: names of the clamped surfaces."""
     problem = PinProblem(pin, material, (), cases, between or {}, clamps=clamps)
-    return solve(problem, requirement, progress)
+    return solve(problem, requirement)
 
 
-def solve_in_lugs(
-    problem: PinProblem, requirement: Requirement, progress: Progress = silent
-) -> tuple[Solution, ...]:
+def solve_in_lugs(problem: PinProblem, requirement: Requirement) -> tuple[Solution, ...]:
     """Solutions of a pin in contact with its lugs, also where foundations would do."""
-    return solve(problem, replace(requirement, joints="contact"), progress)
+    return solve(problem, replace(requirement, joints="contact"))

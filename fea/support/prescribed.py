@@ -17,7 +17,15 @@ from fea.section.place import found_section
 from fea.section.row import row_of
 from fea.section.section_stress import SectionField
 from fea.support.hardened_row import PartSearch, hardened_row
-from fea.support.support import HeldPin, PinProblem, Progress, Solution, StressReading, silent
+from fea.support.support import (
+    HeldPin,
+    PinProblem,
+    Progress,
+    Solution,
+    StressReading,
+    UnderLinkLoads,
+    silent,
+)
 from geometry import PinLike, body_of_revolution
 
 MIN_REPORTED_IMBALANCE = 1e-6  # of the largest load: smaller imbalances are not reported
@@ -44,41 +52,18 @@ class PrescribedSupport:
 
 
 @dataclass(frozen=True)
-class HeldPrescribed:
+class HeldPrescribed(UnderLinkLoads):
     """A pin under prescribed loads (fea.support.support.HeldPin)."""
 
     problem: PinProblem
     failures: Mapping[str, Maximum]
     imbalance: Mapping[str, tuple[float, float] | None]
     notes: Mapping[str, Reason]
-    finest = True
-
-    @property
-    def pin(self) -> PinLike:
-        """The pin itself."""
-        return self.problem.pin
 
     @property
     def clamps(self) -> tuple[str, ...]:
         """The clamps of the problem, by the names of surfaces."""
         return tuple(self.pin.surface(name) for name in self.problem.clamps)
-
-    def start(self, case: str) -> PinLoads:
-        """The prescribed loads."""
-        (loads,) = (loads for loads in self.problem.cases if loads.case == case)
-        return loads
-
-    def press(self, links: PinLoads) -> PinLoads:
-        """The loads of the links themselves."""
-        return links
-
-    def resolved(self, case: str, requirement: Requirement) -> bool:
-        """Return True, since nothing is discretised."""
-        return True
-
-    def of_meshes(self, requirement: Requirement) -> Requirement:
-        """The whole requirement, since the loads have no error."""
-        return requirement
 
     def finished(self, reading: StressReading, requirement: Requirement) -> Solution:
         """The solution with the largest stress of sections, where the pin is a body of

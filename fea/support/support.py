@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Protocol
+
+import numpy as np
 
 from fea.core.material import Material
 from fea.core.over_time import Between
 from fea.core.peak import Maximum, Reason
-from fea.core.pin_loads import PinLoads
+from fea.core.pin_loads import Floats, PinLoads
 from fea.core.requirement import Requirement
 from fea.core.solution import StressField
 from fea.core.verdict import Evidence
 from fea.support.cell_pressure import CellPressure
+from fea.support.lugs.axial import axial_seats, pulled, structure_reacts
 from fea.support.lugs.lug import Lug
 from fea.support.records import JointResult
 from geometry import Pin, PinLike, body_of_revolution
@@ -48,9 +52,91 @@ class PinProblem:
     clamps: tuple[str, ...] = ()
     memo: Memo | None = None
 
+    def __post_init__(self) -> None:
+        # Where a structure reacts along the axis in any case, it is among the surfaces in all.
+        mass = (self.material.density or 0.0) * self.pin.volume
+        every = (*self.cases, *self.also.values())
+        if any(pulled(self.pin, self.lugs, x, mass) for x in every):
+            whole = partial(structure_reacts, self.pin, self.lugs, mass)
+            object.__setattr__(self, "cases", tuple(map(whole, self.cases)))
+            object.__setattr__(self, "also", {k: whole(x) for k, x in self.also.items()})
+            of_times = {k: partial(_at_times, whole, x) for k, x in self.between.items()}
+            object.__setattr__(self, "between", of_times)
+        # A link states moments in a whole case, also where these pass through zero. Loads of all
+        # cases have the same seats, so that they can be solved together; and what acts under any of
+        # them is solved for all.
+        length, seats, pulls = self.pin.length, self._seats(), self._pulls()
+        tilting = {case.case: case.tilting_links(length) for case in self.cases}
+        prescribed = () if self.lugs else tuple(self.also.values())
+        units = {x.case: tuple(x.coefficients()) for x in prescribed}
+        known = {
+            case: partial(
+                replace, tilting=of_case, seats=seats, pulls=pulls, always=units.get(case, ())
+            )
+            for case, of_case in tilting.items()
+        }
+        cases = tuple(known[x.case](x) for x in self.cases)
+        also = {
+            case: known[case](x) if case in known else replace(x, seats=seats, pulls=pulls)
+            for case, x in self.also.items()
+        }
+        between = {
+            case: partial(_at_times, known[case], loads)
+            for case, loads in self.between.items()
+            if case in tilting
+        }
+        object.__setattr__(self, "cases", cases)
+        object.__setattr__(self, "also", also)
+        object.__setattr__(self, "between", between)
+
+    def completed(self, links: PinLoads) -> PinLoads:
+        """Other loads of a case, with what is known of them in the whole case."""
+        like = next((x for x in self.cases if x.case == links.case), None)
+        if like is None:
+            return links
+        if not set(like.surfaces) <= set(links.surfaces):
+            mass = (self.material.density or 0.0) * self.pin.volume
+            links = structure_reacts(self.pin, self.lugs, mass, links)
+        return replace(
+            links, tilting=like.tilting, seats=like.seats, pulls=like.pulls, always=like.always
+        )
+
+    def _pulls(self) -> tuple[tuple[str, int], ...]:
+        """The forces along the axis, by sense, and torques of links in lugs, in any loads."""
+        out = dict[tuple[str, int], None]()
+        for x in (*self.cases, *self.also.values()) if self.lugs else ():
+            torques = np.broadcast_to(x.moments, x.forces.shape)[..., 2]
+            senses = x.forces[..., 2] < 0.0, x.forces[..., 2] > 0.0, torques != 0.0
+            for side, acts in enumerate(senses):
+                out |= {(x.surfaces[c], side): None for c in np.flatnonzero(acts.any(axis=0))}
+        return tuple(out)
+
+    def _seats(self) -> dict[str, tuple[str, str]]:
+        """Where the axial forces of links in lugs enter, of all that exert some; a pin with cuts
+        takes them on the bands alone.
+        """
+        pin = body_of_revolution(self.pin)
+        if pin is None or not self.lugs:
+            return {}
+        every = (*self.cases, *self.also.values())
+        pulling = {
+            s for x in every for s in x.surfaces if x.forces[:, x.surfaces.index(s), 2].any()
+        }
+        return {s: x for s, x in axial_seats(pin, self.lugs).items() if s in pulling}
+
+
+def _at_times(whole: Callable[[PinLoads], PinLoads], between: Between, times: Floats) -> PinLoads:
+    """The loads at some times (T,) s, with what is known of them in the whole case."""
+    return whole(between(times))
+
 
 class HeldPin(Protocol):
     """A pin held in one way, ready for any loads of its links. It lives in one process."""
+
+    @property
+    def problem(self) -> PinProblem:
+        """The pin, its lugs and its cases."""
+        ...
 
     @property
     def pin(self) -> PinLike:
@@ -106,6 +192,35 @@ class HeldPin(Protocol):
         once.
         """
         ...
+
+
+class UnderLinkLoads:
+    """The part of a held pin on which the loads of the links act as they are."""
+
+    problem: PinProblem
+    finest = True
+
+    @property
+    def pin(self) -> PinLike:
+        """The pin itself."""
+        return self.problem.pin
+
+    def start(self, case: str) -> PinLoads:
+        """The loads of the links."""
+        (loads,) = (loads for loads in self.problem.cases if loads.case == case)
+        return loads
+
+    def press(self, links: PinLoads) -> PinLoads:
+        """The loads of the links themselves."""
+        return links
+
+    def resolved(self, case: str, requirement: Requirement) -> bool:
+        """Return True, since nothing is discretised."""
+        return True
+
+    def of_meshes(self, requirement: Requirement) -> Requirement:
+        """The whole requirement, since the loads have no error."""
+        return requirement
 
 
 class Support(Protocol):
@@ -168,7 +283,9 @@ class Solution:
 
     def pressed(self, links: PinLoads) -> PinLoads:
         """The loads on the pin under other loads of its links."""
-        return links if self.held is None else self.held.press(links)
+        if self.held is None:
+            return links
+        return self.held.press(self.held.problem.completed(links))
 
     @property
     def rings(self) -> Pin | None:

@@ -148,7 +148,7 @@ def outlines(sides: Sequence[MeridianSide], near: float) -> tuple[list[Bend], li
     Raises: ValueError where the sides do not form one outline.
     """
     # The outer surface runs between the outermost points of both end faces.
-    chain = _chain(_connected(sides, near), near)
+    chain = _chain(_connected(sides, near))
     places = [chain[0].start, *(side.end for side in chain)]
     low, high = min(z for _, z in places), max(z for _, z in places)
     first = max((p for p in places if p[1] - low <= near), key=lambda p: p[0])
@@ -219,7 +219,7 @@ def _same(a: MeridianSide, b: MeridianSide, near: float) -> bool:
     )
 
 
-def _chain(sides: list[MeridianSide], near: float) -> list[MeridianSide]:
+def _chain(sides: list[MeridianSide]) -> list[MeridianSide]:
     """The sides in order, from axis to axis or around a closed outline.
 
     Raises: ValueError where they do not form one chain.

@@ -18,7 +18,7 @@ from geometry.imported.body_file import BodyFile
 from geometry.imported.cad_mesh import face_names, solids_of
 from geometry.imported.outline_chain import MeridianSide, outlines
 from geometry.imported.recognised_cuts import CutFaces
-from geometry.imported.sampled_face import FACE_TOLERANCE, Axis, SampledFace, sampled_faces
+from geometry.imported.sampled_face import FACE_TOLERANCE, Axis, SampledFace, sampled_face
 from geometry.imported.solid_volume import solid_volume
 from geometry.mesh.cut_pin import CutPin
 from geometry.mesh.gmsh_session import MeshError, gmsh_model
@@ -28,7 +28,7 @@ from geometry.shape.polyline import Bend, pin_of_polyline
 from pinbase.arrays import Floats
 
 VOLUME_TOLERANCE = 1e-5  # relative difference of the volumes
-MAX_FACES = 400
+MAX_FACES = 400  # of a body: one with more is not recognised
 DIMENSION_DIGITS = 7  # decimals, relative to the body's size, to which dimensions are rounded
 
 
@@ -80,7 +80,7 @@ def recognised_profile(file: BodyFile, upright: bool = True) -> RecognisedProfil
         tags = [tag for _, tag in gmsh.model.getEntities(2)]
         if len(tags) > MAX_FACES:
             raise _not_turned(file, f"it has {len(tags)} faces")
-        faces = sampled_faces(gmsh, face_names(file, tags))
+        faces = [sampled_face(gmsh, *named) for named in face_names(file, tags).items()]
         x0, y0, z0, x1, y1, z1 = gmsh.model.getBoundingBox(-1, -1)
         centre = np.array([x0 + x1, y0 + y1, z0 + z1]) / 2.0
         size = float(math.dist((x0, y0, z0), (x1, y1, z1)))

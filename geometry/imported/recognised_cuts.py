@@ -171,7 +171,7 @@ class CutFaces:
                     continue
                 if abs(float(other.points[0] @ m) + h) > self.near:
                     continue
-                slot = self._slot(pin, (one, other), abs(h), planes, across, along)
+                slot = self._slot(pin, (one, other), abs(h), planes, across)
                 if slot is not None:
                     out.append(slot[0])
                     used |= slot[1]
@@ -184,7 +184,6 @@ class CutFaces:
         h: float,
         planes: Sequence[SampledFace],
         across: Sequence[_Drilled],
-        along: Sequence[_Drilled],
     ) -> tuple[Slot, set[int]] | None:
         """The slot between two walls, with the tags of its faces; None without ends or a floor.
 

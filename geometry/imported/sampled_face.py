@@ -98,12 +98,7 @@ class SampledFace:
         return bool((tangential <= FACE_TOLERANCE * np.maximum(r, size)).all())
 
 
-def sampled_faces(gmsh: Any, names: dict[int, str]) -> list[SampledFace]:
-    """The faces of the body in gmsh's model. names: by tag."""
-    return [_sampled(gmsh, tag, name) for tag, name in names.items()]
-
-
-def _sampled(gmsh: Any, tag: int, name: str) -> SampledFace:
+def sampled_face(gmsh: Any, tag: int, name: str) -> SampledFace:
     """A face of the body in gmsh's model, by points on a grid of parameters and on its edges."""
     model = gmsh.model
     low, high = model.getParametrizationBounds(2, tag)

@@ -21,6 +21,7 @@ from pinbase.arrays import Floats
 from pinbase.errors import CodedError
 
 END_FACES = ("start", "end")
+SHOULDER = "shoulder "  # before the number of the segment that ends there: the face of a shoulder
 
 
 class GeometryError(CodedError, ValueError):
@@ -193,24 +194,43 @@ class Pin:
         """The surface called `name`.
 
         An outer surface has its segment's connection, name or number; the inner one this name after
-        "bore ".
+        "bore ". For the face of a shoulder it is a cylinder of the same area, within the thicker
+        segment, through whose surface a force along the axis enters there.
 
         Raises: GeometryError that lists the names there are.
         """
+        if (face := self.shoulder(name)) is not None:
+            return face
         if name.startswith("bore ") and name[5:] in self.labels:
             i = self.labels.index(name[5:])
             radius = 0.25 * sum(self.segments[i].bores)
             return Band(name, self.stations[i], self.stations[i + 1], radius)
         return self.bands[self._position(name)]
 
+    def shoulder(self, name: str) -> Band | None:
+        """The face of this name as `band` has it; None where there is no such face."""
+        if not name.startswith(SHOULDER):
+            return None
+        face = next((leg for leg in self.legs if leg.name == name), None)
+        if face is None or face.start == face.end:
+            return None
+        k = int(name[len(SHOULDER) :])
+        thick = max(k - 1, k, key=lambda i: self.segments[i].diameters[i == k - 1])
+        band = self.bands[thick]
+        radius = abs(face.end[0] ** 2 - face.start[0] ** 2) / (2.0 * band.length)
+        return Band(name, band.z0, band.z1, radius)
+
     def surface(self, name: str) -> str:
-        """The mesh boundary for a name in a study: "start", "end" or a segment's.
+        """The mesh boundary for a name in a study: "start", "end" or a segment's; or the face of a
+        shoulder.
 
         Raises: GeometryError that lists the names there are.
         """
         if name in END_FACES and any(
             leg.name == name and leg.start != leg.end for leg in self.legs
         ):
+            return name
+        if self.shoulder(name) is not None:
             return name
         return self.labels[self._position(name)]
 

@@ -100,13 +100,13 @@ class Applied:
 
     def along(self, motion: Motion) -> Complex:
         """The force in world axes at every instant, (T,) N."""
-        force = self._size(motion) * number(self.force)
+        force = self.size(motion) * number(self.force)
         rotation = np.exp(1j * motion.angle(self.body)) if self.follows else 1.0
         return np.asarray(force * rotation)
 
     def pushes(self, motion: Motion) -> Iterator[Push]:
         """The force and couple at every instant; at a switch, those just before it."""
-        yield Push(self.body, self.at, self.along(motion), self.couple * self._size(motion))
+        yield Push(self.body, self.at, self.along(motion), self.couple * self.size(motion))
 
     @property
     def kinks(self) -> tuple[Kinks, ...]:
@@ -118,7 +118,7 @@ class Applied:
         """Times at which the load begins and ends, s."""
         return tuple(t for t in (self.begin, self.end) if math.isfinite(t))
 
-    def _size(self, motion: Motion) -> Floats:
+    def size(self, motion: Motion) -> Floats:
         """Factor of force and couple at every instant, (T,)."""
         t = motion.times
         on = np.ones(len(motion), dtype=bool)

@@ -14,8 +14,9 @@ import numpy as np
 
 from loads.linkage.linkage import Linkage, LinkageError, Parallel, Slider, Turn
 from loads.motion.as_drawn import RANK_TOLERANCE
+from loads.motion.equations import drive_side
 from loads.motion.least_squares import Factors, elimination
-from loads.motion.mobility import mobility, moving_bodies
+from loads.motion.mobility import mobility
 from loads.motion.motion import Motion
 from pinbase.arrays import Floats
 
@@ -133,7 +134,7 @@ def _weights(motion: Motion, actuators: Sequence[Slider | Turn], rule: Parallel 
     # By stiffness: a spring's force is in proportion to its displacement per unit of the drive's.
     unit = np.zeros_like(motion.speeds)
     unit[:, next(k for k, d in enumerate(loops.linkage.drives) if d.name in rule.members)] = 1.0
-    rates = motion.factors.solve(loops.drive_side(unit))
+    rates = motion.factors.solve(drive_side(loops, unit))
     displacements = np.stack([rates @ loops.along(a) / loops.unit(a) for a in actuators], axis=1)
     return shares * displacements
 
@@ -160,7 +161,7 @@ def _loose(motion: Motion, J: Floats, names: Sequence[str]) -> LinkageError:
     loops = motion.loops
     _, singular, right = np.linalg.svd(J)
     free = right[singular < RANK_TOLERANCE * singular[0]] / loops.scale
-    return _cannot_hold(names, moving_bodies(loops, motion.pose[:1], free))
+    return _cannot_hold(names, loops.moving(motion.pose[:1], free))
 
 
 def _cannot_hold(names: Sequence[str], bodies: Sequence[str]) -> LinkageError:

@@ -310,9 +310,9 @@ class _Balance:
         for c, (joint, connection) in enumerate(linkage.connections):
             if connection.friction:
                 couples = self.no_couples.copy()
-                couples[:, linkage.index[connection.body]] = -1.0
-                if (carrier := linkage.index[linkage.carrier(joint)]) < couples.shape[1]:
-                    couples[:, carrier] = 1.0
+                for name, sign in ((connection.body, -1.0), (linkage.carrier(joint), 1.0)):
+                    if (i := linkage.index[name]) < couples.shape[1]:  # not the ground
+                        couples[:, i] = sign
                 f = self._multipliers(self._generalised(self.no_forces, couples), self.no_forces)
                 speed = motion.turning(joint, connection) * linkage.length_scale
                 share = connection.friction * self._opposing(speed)

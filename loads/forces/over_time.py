@@ -16,8 +16,9 @@ from loads.motion.refine import Resolved, resolved
 from loads.motion.transmission_angles import transmission_angles
 from pinbase.arrays import Floats
 
-# Of the largest force, times length scale or speed: a drive's smaller force or power is zero.
-MIN_DRIVE_SHARE = 1e-9
+# Of the largest force, times length scale or speed: the unit of a drive of smaller force or power.
+# Resolved to 1e-12 of its unit (motion.refine), the round-off of a balanced drive counts as zero.
+MIN_DRIVE_SHARE = 1e-2
 MEAN_ROUND_OFF = 1e-8  # of the largest: a mean below it is zero
 # Of a maximum: where the value solved at its instant is this close to the interpolated one, the
 # solved one is reported. It differs where the quantity jumps, and the maximum is a one-sided limit.
@@ -101,12 +102,10 @@ def peak_forces(samples: Floats, at: Callable[[Floats], Reactions]) -> PeakForce
 
     count = len(first.connections)
     groups = np.repeat(np.arange(2 * count), 3)
-    return _peaks(resolved(samples, columns, groups=groups.tolist()), at, forces)
+    return peaks(resolved(samples, columns, groups=groups.tolist()), at, forces)
 
 
-def _peaks(
-    components: Resolved, at: Callable[[Floats], Reactions], unit: list[float]
-) -> PeakForces:
+def peaks(components: Resolved, at: Callable[[Floats], Reactions], unit: list[float]) -> PeakForces:
     """Largest forces and moments from their components over time.
 
     components: columns fx, fy, fz of every connection, then mx, my, mz, over their units.
@@ -179,14 +178,15 @@ def over_time(course: Course, solve: Callable[[Floats], Dynamics], samples: Dyna
     Raises: as `solve`, also where it fails between the samples.
     """
     d = _dense(course, solve, samples)
-    peaks = _peaks(d.quantities, lambda times: solve(times).reactions, [d.forces])
+    largest = peaks(d.quantities, lambda times: solve(times).reactions, [d.forces])
     between = solve(d.quantities.nodes)
     angles, condition = _postures(course, between.motion.times)
     positions = np.concatenate([samples.course[0], between.course[0]])
     strokes = np.ptp(positions, axis=0)
+    drives = DriveHistory(d.quantities, d.effort, d.power)
     return OverTime(
-        peaks,
-        _efforts(d, solve, samples.motion.times, strokes),
+        largest,
+        efforts(drives, lambda times: solve(times).drive, samples.motion.times, strokes),
         angles,
         condition,
         max(ledger(samples).violation, ledger(between).violation),
@@ -229,29 +229,43 @@ def _dense(course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamic
     return _Dense(quantities, forces, effort, power, corners)
 
 
-def _efforts(
-    dense: _Dense, solve: Callable[[Floats], Dynamics], samples: Floats, strokes: Floats
-) -> tuple[Effort, ...]:
-    """Force, power and work of every drive, from the last columns of `dense`.
+@dataclass(frozen=True)
+class DriveHistory:
+    """Forces and powers of D drives, resolved in time.
 
+    quantities: its last 2 D columns are the forces, then the powers, divided by the next two.
+    effort, power: (D,) units of forces (N) or torques (N m) and of powers (W).
+    """
+
+    quantities: Resolved
+    effort: Floats
+    power: Floats
+
+
+def efforts(
+    history: DriveHistory, solve: Callable[[Floats], Floats], samples: Floats, strokes: Floats
+) -> tuple[Effort, ...]:
+    """Force, power and work of every drive.
+
+    solve: gives the forces (T, D) of the drives at times (T,) s.
     samples: (T,) s, times up to which work is integrated.
     strokes: (D,) m or rad.
     """
-    effort, power = dense.effort, dense.power
+    effort, power = history.effort, history.power
     D = len(effort)
     if not D:  # of a structure
         return ()
-    drives = dense.quantities.quantities(slice(-2 * D, None))
+    drives = history.quantities.quantities(slice(-2 * D, None))
 
-    def efforts(values: Floats) -> Floats:
+    def forces(values: Floats) -> Floats:
         return values[:, :D] * effort
 
-    best, when = drives.largest(lambda values: np.abs(efforts(values)))
-    exact = np.abs(np.diagonal(solve(when).drive))
+    best, when = drives.largest(lambda values: np.abs(forces(values)))
+    exact = np.abs(np.diagonal(solve(when)))
     best = np.where(np.abs(exact - best) <= AGREEMENT_TOLERANCE * best, exact, best)
-    mean = drives.mean(efforts)
+    mean = drives.mean(forces)
     mean = np.where(np.abs(mean) > MEAN_ROUND_OFF * best, mean, 0.0)
-    rms = np.sqrt(drives.mean(lambda values: efforts(values) ** 2))
+    rms = np.sqrt(drives.mean(lambda values: forces(values) ** 2))
     work = drives.integral(samples, lambda values: values[:, -D:] * power)
     max_power, power_time = drives.largest(lambda values: np.abs(values[:, -D:] * power))
     return tuple(

@@ -12,6 +12,8 @@ from loads.motion.loop_equations import number
 from loads.motion.motion import Motion
 from pinbase.arrays import Floats
 
+MIN_POWER_SHARE = 1e-6  # of the largest force times the largest speed: less power is round-off
+
 
 @dataclass(frozen=True)
 class Energy:
@@ -36,6 +38,7 @@ class Ledger:
     """Powers supplied to a linkage and the rate of its kinetic energy, (T,) W each.
 
     applied: loads, springs and dampers.
+    min_power: W, below which powers are round-off.
     """
 
     drives: Floats
@@ -43,12 +46,13 @@ class Ledger:
     applied: Floats
     friction: Floats
     kinetic_rate: Floats
+    min_power: float
 
     @property
     def violation(self) -> float:
         """Largest difference of power supplied and kinetic rate, over the largest power."""
         terms = (self.drives, self.gravity, self.applied, self.friction, self.kinetic_rate)
-        largest = max(float(np.abs(t).max(initial=0.0)) for t in terms)
+        largest = max(self.min_power, *(float(np.abs(t).max(initial=0.0)) for t in terms))
         gap = self.drives + self.gravity + self.applied + self.friction - self.kinetic_rate
         return float(np.abs(gap).max(initial=0.0)) / largest if largest else 0.0
 
@@ -68,4 +72,5 @@ def ledger(dynamics: Dynamics) -> Ledger:
         + np.sum(dynamics.pin_friction * turns, axis=1),
         kinetic_rate=np.real(np.conj(velocity) * acceleration) @ motion.masses
         + (motion.spin * motion.spin_rate) @ motion.inertias,
+        min_power=MIN_POWER_SHARE * motion.pace * float(np.abs(dynamics.reactions.forces).max()),
     )

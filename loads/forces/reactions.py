@@ -25,7 +25,8 @@ class Reactions:
     times: (T,) s, or None for a case without time (T = 1).
     connections, bodies: C names; of the body at each connection.
     forces, moments: (T, C, 3) N and N m, world axes.
-    turn: (T, C) rad, rotation of the pin's axes about z against the world's.
+    turn: rotation of the pin's axes against the world's: (T, C) rad about z, of a linkage in the
+    plane; (T, C, 3, 3), the pin's axes in world axes as columns, of one in space.
 
     Raises: ArithmeticError where something is not finite.
     """
@@ -66,6 +67,8 @@ class Reactions:
     def to_pin_axes(self, vectors: Floats, connection: str) -> Floats:
         """Components in the axes of a connection's pin, (T, 3), of vectors (T, 3) in world axes."""
         turn = self.turn[:, self.connections.index(connection)]
+        if turn.ndim > 1:
+            return np.asarray((vectors[:, None, :] @ turn)[:, 0])
         cos, sin = np.cos(turn), np.sin(turn)
         x, y, z = vectors.T
         return np.stack([cos * x + sin * y, cos * y - sin * x, z], axis=1)

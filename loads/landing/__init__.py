@@ -1,6 +1,7 @@
 """The landing of one leg as a drop of two masses with strut, tyre and wheel; cases of 14 CFR."""
 
 from loads.landing.drop import Drop, LandingError
+from loads.landing.ground import GroundedWheel, WheelForce
 from loads.landing.landing import Landing, LandingHistory, land
 from loads.landing.requirements import (
     DROP_RULES,
@@ -31,6 +32,7 @@ __all__ = [
     "AppliedOverTime",
     "Drop",
     "GasSpring",
+    "GroundedWheel",
     "Landing",
     "LandingError",
     "LandingHistory",
@@ -44,6 +46,7 @@ __all__ = [
     "Telescopic",
     "Touchdown",
     "Wheel",
+    "WheelForce",
     "at_deflection",
     "axes",
     "descent_velocity",

@@ -12,7 +12,7 @@ from pinbase.errors import ArgumentError
 
 M_PER_FOOT = 0.3048
 PA_PER_PSF = 4.4482216152605 / M_PER_FOOT**2  # lbf/ft^2 in Pa
-# The largest sliding coefficient of a tyre that need be assumed: 25.473(d), appendix D to part 23.
+# The largest sliding coefficient of a tyre that need be assumed: 25.473(e), appendix D to part 23.
 MAX_TYRE_FRICTION = 0.8
 
 
@@ -62,6 +62,7 @@ class GroundRule:
     vertical, drag, side: over the reference load; drag is aft, negative forward.
     base: the reference load.
     deflection: of strut and tyre, over that at the reference load.
+    spins: whether the drag is that of spin-up or spring-back, of which `drag` is the most.
     """
 
     clause: str
@@ -70,10 +71,21 @@ class GroundRule:
     side: float
     base: str
     deflection: float = 1.0
+    spins: bool = False
 
 
 LARGEST_REACTION, STATIC_REACTION = "largest vertical reaction", "static load on the wheel"
 GROUND_RULES = {
+    "25.473-spin-up": GroundRule(
+        "14 CFR 25.473, spin-up: the largest vertical reaction with the drag aft of appendix D to "
+        "part 23, at most 0.8 of it",
+        1.0, MAX_TYRE_FRICTION, 0.0, LARGEST_REACTION, spins=True,
+    ),
+    "25.473-spring-back": GroundRule(
+        "14 CFR 25.473, spring-back: the largest vertical reaction with the spin-up drag of "
+        "appendix D to part 23 forward, at most 0.8 of it",
+        1.0, -MAX_TYRE_FRICTION, 0.0, LARGEST_REACTION, spins=True,
+    ),
     "25.479-drag": GroundRule(
         "14 CFR 25.479(d)(1): the largest vertical reaction with a quarter of it aft",
         1.0, 0.25, 0.0, LARGEST_REACTION,
@@ -82,6 +94,16 @@ GROUND_RULES = {
         "14 CFR 25.479(d)(2): 75 % of the largest vertical reaction, with 40 % of that aft and "
         "25 % to the side, at 75 % of the deflection of strut and tyres at that reaction",
         0.75, 0.75 * 0.40, 0.75 * 0.25, LARGEST_REACTION, 0.75,
+    ),
+    "23.D-spin-up": GroundRule(
+        "14 CFR part 23, appendix D, spin-up: the largest vertical reaction with its drag aft, at "
+        "most 0.8 of it",
+        1.0, MAX_TYRE_FRICTION, 0.0, LARGEST_REACTION, spins=True,
+    ),
+    "23.D-spring-back": GroundRule(
+        "14 CFR part 23, appendix D, spring-back: the largest vertical reaction with the spin-up "
+        "drag forward, at most 0.8 of it",
+        1.0, -MAX_TYRE_FRICTION, 0.0, LARGEST_REACTION, spins=True,
     ),
     "23.479-drag": GroundRule(
         "14 CFR 23.479(b): the largest vertical reaction with a quarter of it aft, the least drag",
@@ -100,6 +122,13 @@ GROUND_RULES = {
         2.25, 0.0, 2.25 * 0.7, STATIC_REACTION,
     ),
 }  # fmt: skip
+# The rules of a part of 14 CFR for a main wheel and for a nose wheel.
+RULES_OF_PART = {
+    ("25", "main"): ("25.473-spin-up", "25.473-spring-back", "25.479-drag", "25.479-drift"),
+    ("25", "nose"): (),
+    ("23", "main"): ("23.D-spin-up", "23.D-spring-back", "23.479-drag"),
+    ("23", "nose"): ("23.499-aft", "23.499-forward", "23.499-side"),
+}
 
 
 def descent_velocity(wing_loading: float) -> float:

@@ -7,7 +7,6 @@ compression.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -15,18 +14,6 @@ from pinbase.arrays import Floats
 from pinbase.errors import ArgumentError
 
 MAX_DISPLACED_GAS_SHARE = 0.98  # of the gas volume that a full stroke may displace
-
-
-class StrutSpring(Protocol):
-    """The spring of a strut."""
-
-    def force(self, stroke: Floats) -> Floats:
-        """Force at strokes (T,) m, (T,) N."""
-        ...
-
-    def energy(self, stroke: Floats) -> Floats:
-        """Stored energy at strokes (T,) m, (T,) J."""
-        ...
 
 
 @dataclass(frozen=True)

@@ -83,20 +83,32 @@ def row(linkage: Linkage, frame: Ints, teeth: Teeth) -> Floats:
     first body's teeth have moved ahead of the second's, m.
     frame: number of each item's angle, 0 for the ground's.
     """
-    normal, point = complex(*teeth.normal), complex(*teeth.at)
     angles = int(frame.max())
     out = np.zeros(angles + 1 + len(linkage.sliders))  # the first is the ground's, dropped below
     for side, sign in zip(teeth.sides, (1.0, -1.0), strict=True):
+        _, weight = side_weight(linkage, teeth, side)
         if isinstance(side, Rack):
-            k, slider = _slider(linkage, side.slider)
-            along = (normal.conjugate() * complex(*slider.axis)).imag
-            out[angles + 1 + k] += sign * along * (1.0 if slider.moving == side.body else -1.0)
+            out[angles + 1 + _slider(linkage, side.slider)[0]] += sign * weight
             continue
-        centre = complex(*linkage.joint(side.joint).at)
-        arm = (normal.conjugate() * (point - centre)).real / linkage.length_scale
+        arm = weight / linkage.length_scale
         out[frame[linkage.index[side.body]]] += sign * arm
         out[frame[linkage.index[teeth.carrier]]] -= sign * arm
     return out[1:]
+
+
+def side_weight(linkage: Linkage, teeth: Teeth, side: Gear | Rack) -> tuple[str | None, float]:
+    """The distance by which teeth move along the pitch circle per unit of their own coordinate.
+
+    Returns the slider of a rack, or None for a gear, whose coordinate is its angle against the
+    carrier; and the weight, m per m or m per rad.
+    """
+    normal = complex(*teeth.normal)
+    if isinstance(side, Rack):
+        _, slider = _slider(linkage, side.slider)
+        along = (normal.conjugate() * complex(*slider.axis)).imag
+        return slider.name, along * (1.0 if slider.moving == side.body else -1.0)
+    arm = complex(*teeth.at) - complex(*linkage.joint(side.joint).at)
+    return None, (normal.conjugate() * arm).real
 
 
 def _slider(linkage: Linkage, name: str) -> tuple[int, Slider]:

@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from loads.motion.loop_equations import Loops
+from loads.motion.equations import Equations
 from pinbase.arrays import Floats
 
 Singular = Literal["change point", "dead point"]
@@ -23,38 +23,38 @@ def rank(singular: Floats) -> int:
     return int(np.sum(singular > RANK_TOLERANCE * singular[0])) if singular.any() else 0
 
 
-def singular_as_drawn(loops: Loops) -> Singular | None:
+def singular_as_drawn(equations: Equations) -> Singular | None:
     """The kind of singular position in which the linkage is drawn, or None.
 
     A drawing is singular if the equations have a higher rank at positions near it: at a change
     point those of the loops have, at a dead point only those of loops and drives together.
     """
-    loop_rank, total_rank = _ranks(loops, np.zeros(loops.columns))
-    nearby = [_ranks(loops, q) for q in _nearby(loops)]
+    loop_rank, total_rank = _ranks(equations, np.zeros(equations.columns))
+    nearby = [_ranks(equations, q) for q in _nearby(equations)]
     if any(ranks[0] > loop_rank for ranks in nearby):
         return "change point"
     return "dead point" if any(ranks[1] > total_rank for ranks in nearby) else None
 
 
-def moves_nearby(loops: Loops) -> bool:
+def moves_nearby(equations: Equations) -> bool:
     """Whether the linkage, with free drives, has positions near the drawing, other than it."""
-    return bool(_nearby(loops))
+    return bool(_nearby(equations))
 
 
-def _ranks(loops: Loops, q: Floats) -> tuple[int, int]:
+def _ranks(equations: Equations, q: Floats) -> tuple[int, int]:
     """Rank of the loop equations at coordinates q (n,), without the drives' and with them."""
-    J = loops.jacobian(loops.pose(q[None]))[0]
-    closing, whole = (np.linalg.svd(A, compute_uv=False) for A in (J[: loops.guides], J))
+    J = equations.jacobian(equations.pose(q[None]))[0]
+    closing, whole = (np.linalg.svd(A, compute_uv=False) for A in (J[: equations.guides], J))
     return rank(closing), rank(whole)
 
 
-def _nearby(loops: Loops) -> list[Floats]:
+def _nearby(equations: Equations) -> list[Floats]:
     """Coordinates (n,) of positions near the drawing with closed loops and free drives.
 
     They lie in random directions of the null space of the loop equations.
     """
-    first = loops.jacobian(loops.pose(np.zeros((1, loops.columns))))[0]
-    closing = first[: loops.guides]
+    first = equations.jacobian(equations.pose(np.zeros((1, equations.columns))))[0]
+    closing = first[: equations.guides]
     _, singular, right = np.linalg.svd(closing)
     null = right[rank(singular) :]
     random = np.random.default_rng(0)
@@ -64,25 +64,25 @@ def _nearby(loops: Loops) -> list[Floats]:
     return [
         q
         for direction in trials
-        if (q := _closed(loops, direction / np.linalg.norm(direction))) is not None
+        if (q := _closed(equations, direction / np.linalg.norm(direction))) is not None
     ]
 
 
-def _closed(loops: Loops, direction: Floats) -> Floats | None:
+def _closed(equations: Equations, direction: Floats) -> Floats | None:
     """Coordinates (n,) with closed loops at TRIAL_DISPLACEMENT along a direction, or None.
 
     They follow by Newton's method from the point on the straight line; None where it fails.
     direction: (n,) unit vector of scaled coordinates.
     """
-    scale = loops.linkage.length_scale
+    scale = equations.linkage.length_scale
     x = TRIAL_DISPLACEMENT * scale * direction
     for _ in range(40):
-        pose = loops.pose((x / loops.scale)[None])
-        gap = loops.residual((x / loops.scale)[None], pose, loops.drawn_drives[None])[0]
-        error = np.append(gap[: loops.guides], direction @ x - TRIAL_DISPLACEMENT * scale)
+        pose = equations.pose((x / equations.scale)[None])
+        gap = equations.residual((x / equations.scale)[None], pose, equations.drawn_drives[None])[0]
+        error = np.append(gap[: equations.guides], direction @ x - TRIAL_DISPLACEMENT * scale)
         if np.abs(error).max() <= CLOSED_LOOP_TOLERANCE * scale:
-            return np.asarray(x / loops.scale)
-        J = np.vstack([loops.jacobian(pose)[0][: len(error) - 1], direction])
+            return np.asarray(x / equations.scale)
+        J = np.vstack([equations.jacobian(pose)[0][: len(error) - 1], direction])
         x = x - np.linalg.lstsq(J, error, rcond=1e-12)[0]
         if not np.abs(x).max() <= MAX_TRIAL_DISPLACEMENT * scale:
             return None

@@ -163,9 +163,10 @@ class Loops:
         """Length per unit of a drive: 1 for a slider, m per rad for a turn."""
         return 1.0 if isinstance(drive, Slider) else self.linkage.length_scale
 
-    def drive_scale(self, k: int) -> float:
-        """Length per unit of drive k."""
-        return self.unit(self.linkage.drives[k])
+    @cached_property
+    def drive_scale(self) -> Floats:
+        """Length per unit of each drive, (D,)."""
+        return np.array([self.unit(drive) for drive in self.linkage.drives])
 
     def points(self, items: Ints, drawn: Complex) -> Points:
         """Points of items. items: (N,) numbers. drawn: (N,) positions as drawn, complex, m."""
@@ -261,10 +262,7 @@ class Loops:
         """
         gap = self.place(pose, self.closures)
         lag = (q * self.scale) @ self._fixed_rows.T
-        for k in range(drives.shape[1]):
-            lag[:, len(self.linkage.teeth) + k] -= self.drive_scale(k) * (
-                drives[:, k] - self.drawn_drives[k]
-            )
+        lag[:, len(self.linkage.teeth) :] -= self.drive_scale * (drives - self.drawn_drives)
         return np.concatenate([gap.real, gap.imag, lag], axis=1)
 
     def jacobian(self, pose: Pose) -> Floats:
@@ -312,13 +310,6 @@ class Loops:
         closing = np.concatenate([turns, slides]).T
         pattern = np.concatenate([closing, closing, self._fixed_rows != 0.0])
         return elimination(pattern)
-
-    def drive_side(self, values: Floats) -> Floats:
-        """Right-hand side (T, rows) for drives with these rates (T, D)."""
-        out = np.zeros((len(values), self.rows))
-        for k in range(values.shape[1]):
-            out[:, self.guides + k] = self.drive_scale(k) * values[:, k]
-        return out
 
     def bend_side(self, pose: Pose, rates: Floats) -> Floats:
         """Right-hand side (T, rows) from the accelerations that are quadratic in rates (T, n).

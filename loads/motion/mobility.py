@@ -7,13 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loads.linkage.linkage import GROUND, Linkage, LinkageError
+from loads.linkage.linkage import Linkage, LinkageError
 from loads.motion.as_drawn import moves_nearby, rank, singular_as_drawn
-from loads.motion.joint_forces import connection_members
-from loads.motion.loop_equations import Loops, Pose
-from pinbase.arrays import Floats
-
-MIN_PARTICIPATION = 1e-6  # of the largest component of a null vector
+from loads.motion.equations import Equations
+from loads.motion.planar_equations import PlanarEquations
 
 
 @dataclass(frozen=True)
@@ -24,6 +21,7 @@ class Mobility:
     degrees: degrees of freedom by rank, without drives.
     free: degrees of freedom that remain with the drives locked; 0: the position is determined.
     loose: bodies that can move then.
+    advice: what would stop them, if that can be told.
     redundant: number of redundant equations.
     shared: connections whose force rigid-body statics does not determine.
     """
@@ -32,6 +30,7 @@ class Mobility:
     degrees: int
     free: int
     loose: tuple[str, ...]
+    advice: str
     redundant: int
     shared: tuple[str, ...]
 
@@ -41,84 +40,26 @@ def mobility(linkage: Linkage) -> Mobility:
 
     Raises: LinkageError for bodies that are not joined to the ground.
     """
-    loops = Loops(linkage)
-    pose = loops.pose(np.zeros((1, loops.columns)))
-    J = loops.jacobian(pose)[0]
+    return freedom_of(PlanarEquations(linkage))
+
+
+def freedom_of(equations: Equations) -> Mobility:
+    """The same of a linkage in the plane or in space, from its equations."""
+    pose = equations.pose(np.zeros((1, equations.columns)))
+    J = equations.jacobian(pose)[0]
     left, singular, right = np.linalg.svd(J)
-    equations = rank(singular)
-    guided = J[: loops.guides]
-    free = right[equations:]
+    independent = rank(singular)
+    guided = J[: equations.guides]
+    free = right[independent:]
     return Mobility(
-        kutzbach=kutzbach(linkage),
-        degrees=loops.columns - rank(np.linalg.svd(guided, compute_uv=False)),
+        kutzbach=equations.kutzbach,
+        degrees=equations.columns - rank(np.linalg.svd(guided, compute_uv=False)),
         free=len(free),
-        loose=moving_bodies(loops, pose, free / loops.scale),
-        redundant=len(J) - equations,
-        shared=stressed_connections(loops, pose, left[:, equations:]),
+        loose=equations.moving(pose, free / equations.scale),
+        advice=equations.advice(pose, free / equations.scale),
+        redundant=len(J) - independent,
+        shared=equations.stressed(pose, left[:, independent:]),
     )
-
-
-def kutzbach(linkage: Linkage) -> int:
-    """Degrees of freedom by Kutzbach: 3 (links - 1) - 2 (pins and sliders) - pairs of teeth.
-
-    A pin at which k links meet counts k - 1 times; particles do not count. Welded bodies are one
-    link.
-    """
-    names = [b.name for b in linkage.bodies if not is_particle(linkage, b.name)] + [GROUND]
-    link = {name: linkage.rigid[name][0] for name in names}
-    pins = 0
-    for joint in linkage.joints:
-        meeting = (*(c.body for c in joint.connections), joint.fixed_in or "")
-        pins += max(len({link[name] for name in meeting if name in link}) - 1, 0)
-    links = len({*link.values()})
-    return 3 * (links - 1) - 2 * (pins + len(linkage.sliders)) - len(linkage.teeth)
-
-
-def is_particle(linkage: Linkage, name: str) -> bool:
-    """Whether a body is a particle at its connection."""
-    body = next(b for b in linkage.bodies if b.name == name)
-    slides = any(name in (s.base, s.moving) for s in linkage.sliders)
-    return body.inertia is None and not slides
-
-
-def moving_bodies(
-    loops: Loops, pose: Pose, rates: Floats, least: float = MIN_PARTICIPATION
-) -> tuple[str, ...]:
-    """Names of the bodies that move in any of k motions.
-
-    pose: at a single instant.
-    rates: (k, n) of the coordinates.
-    least: speed of a body that moves, relative to the fastest.
-    """
-    if not len(rates):
-        return ()
-    linkage, angles = loops.linkage, loops.frames - 1
-    slopes = loops.partials(pose, loops.centres)[0]
-    speed = np.abs(rates @ slopes)[:, : len(linkage.bodies)]
-    for i, body in enumerate(linkage.bodies):
-        f = loops.frame[i]
-        if f and body.inertia is not None and f <= angles:
-            speed[:, i] += linkage.length_scale * np.abs(rates[:, f - 1])
-    largest = speed.max(axis=0)
-    return tuple(
-        b.name for b, v in zip(linkage.bodies, largest, strict=True) if v > least * largest.max()
-    )
-
-
-def stressed_connections(loops: Loops, pose: Pose, multipliers: Floats) -> tuple[str, ...]:
-    """Names of the connections and teeth that carry any of k sets of self-equilibrated forces.
-
-    pose: at a single instant.
-    multipliers: (rows, k).
-    """
-    closing = loops.closing_forces(pose, multipliers.T)
-    if not closing.size:
-        return ()
-    no_forces = np.zeros((len(closing), len(loops.linkage.items)), dtype=complex)
-    forces = connection_members(loops).forces(no_forces, closing)
-    size = np.abs(np.hstack([forces, closing[:, len(loops.closing) :]])).max(axis=0)
-    names = [name for name, _ in loops.linkage.forces]
-    return tuple(n for n, f in zip(names, size, strict=True) if f > MIN_PARTICIPATION * size.max())
 
 
 def require_determined(linkage: Linkage) -> Mobility:
@@ -127,27 +68,36 @@ def require_determined(linkage: Linkage) -> Mobility:
     Raises: LinkageError where they do not, with the bodies that can still move; for too many
     drives; and for sharing rules without effect.
     """
-    freedom = mobility(linkage)
-    if 0 < freedom.degrees < len(linkage.driven):
-        raise LinkageError(
-            f"{len(linkage.driven)} drives ({', '.join(linkage.driven)}) for {freedom.degrees} "
-            "degree(s) of freedom: remove one",
-            "too-many-drives",
-            ("drive",),
-        )
-    if freedom.free:
-        raise _unconstrained(linkage, freedom)
+    freedom = require_driven(PlanarEquations(linkage))
     if errors := list(_idle_sharing(linkage, freedom)):
         raise LinkageError.all(errors)
     return freedom
 
 
-def _unconstrained(linkage: Linkage, freedom: Mobility) -> LinkageError:
+def require_driven(equations: Equations) -> Mobility:
+    """The mobility of a linkage, in the plane or in space, whose drives determine every position.
+
+    Raises: LinkageError where they do not, or are too many.
+    """
+    freedom, driven = freedom_of(equations), equations.linkage.driven
+    if 0 < freedom.degrees < len(driven):
+        raise LinkageError(
+            f"{len(driven)} drives ({', '.join(driven)}) for {freedom.degrees} "
+            "degree(s) of freedom: remove one",
+            "too-many-drives",
+            ("drive",),
+        )
+    if freedom.free:
+        raise _unconstrained(equations, freedom)
+    return freedom
+
+
+def _unconstrained(equations: Equations, freedom: Mobility) -> LinkageError:
     """The error of bodies that can move with the drives locked: singular as drawn, or unguided."""
-    loose = ", ".join(freedom.loose)
-    if not linkage.driven:
-        return _undriven_error(linkage, freedom, loose)
-    match singular_as_drawn(Loops(linkage)):
+    loose, driven = ", ".join(freedom.loose), equations.linkage.driven
+    if not driven:
+        return _undriven_error(equations, freedom, loose)
+    match singular_as_drawn(equations):
         case "change point":
             return LinkageError(
                 f"as drawn the linkage is at a change point, where {loose} can move in either of "
@@ -156,21 +106,21 @@ def _unconstrained(linkage: Linkage, freedom: Mobility) -> LinkageError:
             )
         case "dead point":
             return LinkageError(
-                f"as drawn the linkage is at a dead point, where {', '.join(linkage.driven)} "
+                f"as drawn the linkage is at a dead point, where {', '.join(driven)} "
                 f"cannot move it and {loose} can move with the drive locked; draw it in another "
                 "position, on the intended side of the dead point, or drive another body",
                 "dead-point",
             )
     return LinkageError(
         f"with the drives locked the linkage still has {freedom.free} degree(s) of freedom: "
-        f"{loose} can move; add the missing connection or drive",
+        f"{freedom.advice or f'{loose} can move; add the missing connection or drive'}",
         "underconstrained",
     )
 
 
-def _undriven_error(linkage: Linkage, freedom: Mobility, loose: str) -> LinkageError:
+def _undriven_error(equations: Equations, freedom: Mobility, loose: str) -> LinkageError:
     """The error of a linkage without drives that can move, or is at the limit of its form."""
-    if not moves_nearby(Loops(linkage)):
+    if not moves_nearby(equations):
         return LinkageError(
             f"as drawn {loose} can give way a little although nothing is missing (joints in line, "
             "or links that meet in one point), so that no finite force holds a load; draw it in "

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Generic, Self, TypeVar
 
 import numpy as np
 
 from loads.linkage.drives import Law, StateDrive, Values
 from loads.linkage.linkage import Connection, Joint, Linkage, LinkageError, Point, Slider, Turn
 from loads.motion.as_drawn import RANK_TOLERANCE
+from loads.motion.equations import Equations, drive_side
 from loads.motion.least_squares import Factors
-from loads.motion.loop_equations import Loops, Points, Pose, number, pairs
+from loads.motion.loop_equations import Points, Pose, number, pairs
 from loads.motion.mobility import Mobility, require_determined
+from loads.motion.planar_equations import PlanarEquations
 from loads.motion.positions import Path
 from loads.motion.singular_positions import motion_blocked
 from pinbase.arrays import Complex, Floats
@@ -27,20 +31,22 @@ CORNER_TIME_TOLERANCE = 1e-12  # of the whole time: an instant this close to a c
 
 # Positions (m), velocities and accelerations, (T, N) complex each
 PointMotion = tuple[Complex, Complex, Complex]
+M = TypeVar("M")
+E = TypeVar("E", bound=Equations)
 
 
 @dataclass(frozen=True)
-class Motion:
-    """The motion of a linkage at T instants.
+class Instants(Generic[E]):
+    """The motion of a linkage, in the plane or in space, at T instants.
 
     mobility: of the linkage as drawn.
     times: (T,) s.
     drives, speeds, rates: (T, D) values of the drives (m or rad) and their first two derivatives.
-    q, v, a: (T, n) coordinates (rad, then m) and their first two derivatives.
+    q, v, a: (T, n) coordinates and their first two derivatives.
     pace: largest rate of any coordinate along the whole course, m/s (angles times length scale).
     """
 
-    loops: Loops
+    equations: E
     mobility: Mobility
     times: Floats
     drives: Floats
@@ -54,16 +60,26 @@ class Motion:
     def __len__(self) -> int:
         return len(self.times)
 
-    def __getitem__(self, part: slice) -> Motion:
+    def __getitem__(self, part: slice) -> Self:
         """The same motion at some of its instants."""
         arrays = ("times", "drives", "speeds", "rates", "q", "v", "a")
         return replace(self, **{key: getattr(self, key)[part] for key in arrays})
 
     @property
-    def parts(self) -> Iterator[Motion]:
+    def parts(self) -> Iterator[Self]:
         """The same motion in batches of instants whose matrices take little memory."""
-        slices = self.loops.parts(len(self))
+        slices = self.equations.parts(len(self))
         return (self[part] if len(slices) > 1 else self for part in slices)
+
+
+@dataclass(frozen=True)
+class Motion(Instants[PlanarEquations]):
+    """The motion of a planar linkage at T instants; coordinates in rad, then in m."""
+
+    @property
+    def loops(self) -> PlanarEquations:
+        """The loop and drive equations."""
+        return self.equations
 
     @cached_property
     def factors(self) -> Factors:
@@ -220,33 +236,40 @@ def _condition(part: Motion) -> Floats:
     return condition
 
 
-class Course:
-    """The motion of a linkage under one law per drive, from a first to a last time (s).
+class Followed(ABC, Generic[M]):
+    """A motion under one law per drive, from a first to a last time (s), in the plane or in space.
 
     Its path is followed once; the motion at an instant does not depend on which others are
-    requested. Velocities and accelerations follow from the differentiated loop equations, not from
+    requested. Velocities and accelerations follow from the differentiated equations, not from
     differences.
-
-    Raises: LinkageError when the drives do not determine the position; MotionBlocked when the
-    linkage cannot follow them.
     """
 
-    def __init__(self, linkage: Linkage, laws: Sequence[Law], first: float, last: float) -> None:
-        if len(laws) != len(linkage.driven):
+    def __init__(
+        self, equations: Equations, laws: Sequence[Law], first: float, last: float
+    ) -> None:
+        """Raises: LinkageError for too many or too few laws; MotionBlocked when the linkage cannot
+        follow them.
+        """
+        driven = equations.linkage.driven
+        if len(laws) != len(driven):
             raise LinkageError(
-                f"{len(linkage.driven)} drives need as many laws, not {len(laws)}", "laws-mismatch"
+                f"{len(driven)} drives need as many laws, not {len(laws)}", "laws-mismatch"
             )
-        self.mobility = require_determined(linkage)
-        self.loops, self.laws = Loops(linkage), tuple(laws)
+        self.equations, self.laws = equations, tuple(laws)
         self.first, self.last = first, last
         self.corners = self._inside(t for law in laws for t in law.corners)
         grid = [
             *np.linspace(first, last, DRIVE_GRID_POINTS),
             *self._inside(t for x in laws for t in x.pieces),
         ]
-        self.path = Path(self.loops, self._drives, np.unique(grid))
+        self.path = Path(equations, self._drives, np.unique(grid))
         self.pace = 0.0
-        self.pace = float(np.abs(self.at(self.path.nodes).v * self.loops.scale).max(initial=0.0))
+        rates = self._coordinates(self.path.nodes)[4]
+        self.pace = float(np.abs(rates * equations.scale).max(initial=0.0))
+
+    @abstractmethod
+    def at(self, times: Floats) -> M:
+        """The motion at times (T,) s, in any order. Raises: MotionBlocked."""
 
     def _inside(self, times: Iterable[float]) -> Floats:
         """Those of the times (s) that are inside the course, increasing."""
@@ -267,26 +290,45 @@ class Course:
             times = np.where(np.abs(times - self.corners[k]) <= close, times - 3.0 * close, times)
         return side_by_side([law(times) for law in self.laws], len(times))
 
-    def at(self, times: Floats) -> Motion:
-        """The motion at times (T,) s, in any order. Raises: MotionBlocked."""
-        loops = self.loops
+    def _coordinates(self, times: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
+        """Drives (T, D) and coordinates (T, n) at times (T,) s, each with its two derivatives.
+
+        Raises: MotionBlocked.
+        """
+        equations = self.equations
         drives, speeds, rates = self._values(times)
         q = self.path.at(times)
         v, a, weakest = np.empty_like(q), np.empty_like(q), np.empty(len(q))
         # J v = rates of the drives; J a = second rates, less the part quadratic in v.
-        for part in loops.parts(len(q)):
-            pose = loops.pose(q[part])
-            factors = loops.factors(pose)
+        for part in equations.parts(len(q)):
+            pose = equations.pose(q[part])
+            factors = equations.factors(pose)
             weakest[part] = factors.weakest
             if weakest[part].min(initial=1.0) < RANK_TOLERANCE:
                 continue
-            v[part] = factors.solve(loops.drive_side(speeds[part])) / loops.scale
-            side = loops.drive_side(rates[part]) + loops.bend_side(pose, v[part])
-            a[part] = factors.solve(side) / loops.scale
+            v[part] = factors.solve(drive_side(equations, speeds[part])) / equations.scale
+            side = drive_side(equations, rates[part]) + equations.bend_side(pose, v[part])
+            a[part] = factors.solve(side) / equations.scale
         weak = int(weakest.argmin())
         if weakest[weak] < RANK_TOLERANCE:
-            raise motion_blocked(loops, q[weak], drives[weak], drives[int(times.argmax())])
-        return Motion(loops, self.mobility, times, drives, speeds, rates, q, v, a, self.pace)
+            raise motion_blocked(equations, q[weak], drives[weak], drives[int(times.argmax())])
+        return drives, speeds, rates, q, v, a
+
+
+class Course(Followed[Motion]):
+    """The motion of a planar linkage under one law per drive, from a first to a last time (s).
+
+    Raises: LinkageError when the drives do not determine the position; MotionBlocked when the
+    linkage cannot follow them.
+    """
+
+    def __init__(self, linkage: Linkage, laws: Sequence[Law], first: float, last: float) -> None:
+        self.mobility, self.loops = require_determined(linkage), PlanarEquations(linkage)
+        super().__init__(self.loops, laws, first, last)
+
+    def at(self, times: Floats) -> Motion:
+        """The motion at times (T,) s, in any order. Raises: MotionBlocked."""
+        return Motion(self.loops, self.mobility, times, *self._coordinates(times), self.pace)
 
 
 def move(linkage: Linkage, laws: Sequence[Law], times: Floats) -> Motion:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loads.motion.equations import Equations, drive_side
 from loads.motion.least_squares import Factors
-from loads.motion.loop_equations import Loops
 from loads.motion.singular_positions import MotionBlocked, motion_blocked
 from pinbase.arrays import Floats
 
@@ -64,7 +64,7 @@ class Path:
     instant does not depend on which others are requested.
     """
 
-    def __init__(self, loops: Loops, drives: Drives, grid: Floats) -> None:
+    def __init__(self, loops: Equations, drives: Drives, grid: Floats) -> None:
         """Follow the drives from the drawing to their first values, then through time.
 
         drives: gives their values (T, D) at times (T,) s.
@@ -88,18 +88,22 @@ class Path:
     def at(self, times: Floats) -> Floats:
         """Coordinates (T, n) at times (T,) s.
 
-        They are estimated by the quintic along the path and corrected by Newton's method, at all
-        times at once.
+        They are estimated by the quintic along the path and corrected by Newton's method, batch by
+        batch.
 
         Raises: MotionBlocked where the linkage cannot follow.
         """
         values = self.drives(times)
-        guess = self._guess(times, values)
+        near = 0.1 * MAX_STEP_TURN * self._length
         try:
-            near = 0.1 * MAX_STEP_TURN * self._length
-            parts = self.loops.parts(len(times))
-            return np.concatenate([_newton(self.loops, guess[k], values[k], near) for k in parts])
+            return np.concatenate(
+                [
+                    _newton(self.loops, self._guess(times[k], values[k]), values[k], near)
+                    for k in self.loops.parts(len(times))
+                ]
+            )
         except (_Lost, _Open):
+            guess = self._guess(times, values)
             order = np.argsort(times, kind="stable")
             last = order[_last_good(self.loops, guess[order], values[order])]
             raise motion_blocked(self.loops, guess[last], values[last], values[order[-1]]) from None
@@ -107,7 +111,7 @@ class Path:
     @property
     def _length(self) -> float:
         """Length scale of the linkage, m."""
-        return self.loops.linkage.length_scale
+        return float(self.loops.linkage.length_scale)
 
     def _follow(self, q: Floats, drives: Drives, grid: Floats) -> list[_Step]:
         """The steps from coordinates q (n,) at the grid's first time to its last.
@@ -162,7 +166,7 @@ class Path:
         loops, run = self.loops, target - start
         if not run.any() and not (between - start).any():
             return q
-        rate = factors.solve(loops.drive_side(run[None])) / loops.scale
+        rate = factors.solve(drive_side(loops, run[None])) / loops.scale
         moved = float(np.abs(rate * loops.scale).max()) / self._length
         if not moved <= MAX_STEP_TURN or not self._straight(factors, between - start, run):
             raise _Lost
@@ -180,7 +184,7 @@ class Path:
         passed: (M, D) values that they pass, relative to those at its start. run: (D,) its change.
         """
         deviation = passed - _fraction(self.loops, passed, run)[:, None] * run
-        size = np.abs(factors.solve(self.loops.drive_side(deviation))).max(initial=0.0)
+        size = np.abs(factors.solve(drive_side(self.loops, deviation))).max(initial=0.0)
         return bool(size <= MAX_LINE_DEVIATION * self._length)
 
     def _step(
@@ -194,7 +198,7 @@ class Path:
     ) -> _Step:
         """The step with the derivatives of the coordinates. q, factors: at both its ends."""
         loops = self.loops
-        side = loops.drive_side(run[None])
+        side = drive_side(loops, run[None])
         rate = np.concatenate([f.solve(side) for f in factors]) / loops.scale
         both = np.stack(q)
         bends = loops.bend_side(loops.pose(both), rate)
@@ -251,19 +255,19 @@ class Path:
         if not deviation.any():
             return along
         across = [
-            loops.factors(loops.pose(q[k, 0])).solve(loops.drive_side(deviation[k]))
+            loops.factors(loops.pose(q[k, 0])).solve(drive_side(loops, deviation[k]))
             for k in loops.parts(len(q))
         ]
         return np.asarray(along + np.concatenate(across) / loops.scale)
 
 
-def _fraction(loops: Loops, passed: Floats, run: Floats) -> Floats:
+def _fraction(loops: Equations, passed: Floats, run: Floats) -> Floats:
     """Fraction of a step, (T,) between 0 and 1, by projection of the drives on its line.
 
     passed: (T, D) values of the drives relative to the step's start.
     run: (D,) or (T, D) their change in the step.
     """
-    weight = np.array([loops.drive_scale(k) ** 2 for k in range(passed.shape[1])])
+    weight = loops.drive_scale**2
     length = np.sum(weight * run**2, axis=-1)
     projection = np.sum(weight * run * passed, axis=-1)
     return np.asarray(np.clip(projection / np.where(length > 0.0, length, 1.0), 0.0, 1.0))
@@ -285,7 +289,7 @@ def _quintic(s: Floats, q: Floats, rate: Floats, bend: Floats) -> Floats:
     )
 
 
-def _widest(loops: Loops, q: Floats, reached: Floats, wanted: Floats) -> Floats:
+def _widest(loops: Equations, q: Floats, reached: Floats, wanted: Floats) -> Floats:
     """Coordinates (n,) at which loops that stay open are furthest apart, on a straight way of the
     drives and as far as they can be followed on it; at best, by least squares.
 
@@ -305,7 +309,7 @@ def _widest(loops: Loops, q: Floats, reached: Floats, wanted: Floats) -> Floats:
 
 
 def _newton(
-    loops: Loops,
+    loops: Equations,
     q: Floats,
     drives: Floats,
     first: float = np.inf,
@@ -348,7 +352,7 @@ def _newton(
     raise _Lost
 
 
-def _last_good(loops: Loops, guess: Floats, drives: Floats) -> int:
+def _last_good(loops: Equations, guess: Floats, drives: Floats) -> int:
     """Index of the last instant before the first at which Newton's method fails on its own."""
     for t in range(len(drives)):
         try:

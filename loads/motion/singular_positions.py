@@ -13,9 +13,8 @@ from typing import Literal
 
 import numpy as np
 
-from loads.linkage.linkage import Linkage, LinkageError, Slider
-from loads.motion.loop_equations import Loops
-from loads.motion.mobility import moving_bodies, stressed_connections
+from loads.linkage.linkage import LinkageError
+from loads.motion.equations import Equations
 from pinbase.arrays import Floats
 
 Kind = Literal["dead point", "change point", "open"]
@@ -55,7 +54,7 @@ class MotionBlocked(LinkageError):
 
     def __init__(
         self,
-        linkage: Linkage,
+        equations: Equations,
         kind: Kind,
         reached: Floats,
         wanted: Floats,
@@ -63,28 +62,30 @@ class MotionBlocked(LinkageError):
         connections: tuple[str, ...],
         gap: float = 0.0,
     ) -> None:
-        self.linkage, self.kind, self.gap = linkage, kind, gap
+        self.kind, self.gap = kind, gap
+        self.driven, self.besides_lengths = equations.linkage.driven, equations.besides_lengths
+        self.along_lengths, self.drawn = equations.along_lengths, equations.drawn_drives
         self.reached, self.wanted = reached, wanted
         self.bodies, self.connections = bodies, connections
         super().__init__(self.message(), KIND_CODES[kind])
 
     def message(self, show: Show = in_si) -> str:
         """The message: what is wrong and what to do. show: formats a drive's value."""
-        slides = [isinstance(d, Slider) for d in self.linkage.drives]
 
         def at(values: Floats) -> str:
-            named = zip(self.linkage.driven, values, slides, strict=True)
+            named = zip(self.driven, values, self.along_lengths, strict=True)
             return ", ".join(f"{name} = {show(float(v), s)}" for name, v, s in named)
 
         bodies, connections = _listed(self.bodies), _listed(self.connections)
         if self.kind == "open":
-            toothed = bool(self.linkage.teeth)
             apart = f" (at best {show(self.gap, True)} apart)" if self.gap else ""
+            what = "".join(f" or {decides}" for decides, _ in self.besides_lengths)
+            where = "".join(f" and {described}" for _, described in self.besides_lengths)
             return (
                 f"the linkage does not close beyond {at(self.reached)} (requested: "
                 f"{at(self.wanted)}): {connections} do not meet{apart}, because the lengths of its "
-                f"redundant links{' or the ratios of its gears' * toothed} are inconsistent; check "
-                f"the coordinates of the joints{' and the gears' * toothed}"
+                f"redundant links{what} are inconsistent; check the coordinates of the joints"
+                f"{where}"
             )
         unbounded = f"the forces at {connections} are unbounded"
         if self.kind == "change point":
@@ -95,14 +96,14 @@ class MotionBlocked(LinkageError):
             )
         return (
             f"dead point at {at(self.reached)} (requested: {at(self.wanted)}; as drawn: "
-            f"{at(np.array([d.drawn for d in self.linkage.drives]))}): the linkage cannot be "
+            f"{at(self.drawn)}): the linkage cannot be "
             f"driven further, {bodies} would snap through, and {unbounded}; stop the drive before "
             "it, drive another body, or check the coordinates of the joints"
         )
 
 
 def motion_blocked(
-    loops: Loops, q: Floats, reached: Floats, wanted: Floats, opened: Floats | None = None
+    equations: Equations, q: Floats, reached: Floats, wanted: Floats, opened: Floats | None = None
 ) -> MotionBlocked:
     """The error of a motion that is blocked near coordinates q (n,).
 
@@ -110,32 +111,21 @@ def motion_blocked(
     opened: (n,) coordinates at which loops stay open, if that is what blocks it.
     """
     if opened is not None:
-        pose = loops.pose(opened[None])
-        lag = loops.residual(opened[None], pose, reached[None])[0, 2 * len(loops.closing) :]
-        teeth = loops.linkage.teeth
-        apart = np.abs(loops.place(pose, loops.gaps)[0])
-        gap = np.abs([*apart, *lag[: len(teeth)]])
-        members = [
-            loops.linkage.sliders[k].name if slides else loops.linkage.connections[k][1].name
-            for slides, k in loops.closing
-        ]
-        members += [t.name for t in teeth]
-        names = tuple(n for n, g in zip(members, gap, strict=True) if g > 0.1 * gap.max())
-        largest = float(apart.max(initial=0.0))
-        return MotionBlocked(loops.linkage, "open", reached, wanted, (), names, largest)
-    pose = loops.pose(q[None])
-    left, _, right = np.linalg.svd(loops.jacobian(pose)[0])
-    last = loops.columns - 1
+        names, gap = equations.apart(opened, reached)
+        return MotionBlocked(equations, "open", reached, wanted, (), names, gap)
+    pose = equations.pose(q[None])
+    left, _, right = np.linalg.svd(equations.jacobian(pose)[0])
+    last = equations.columns - 1
     force, motion = left[:, last], right[last]
-    drives = len(loops.linkage.driven)
+    drives = len(reached)
     # At a dead point the drive force is unbounded too; at a change point it is not.
     unbounded = float(np.abs(force[len(force) - drives :]).max(initial=0.0)) > 1e-3
     kind: Kind = "dead point" if unbounded else "change point"
     return MotionBlocked(
-        loops.linkage,
+        equations,
         kind,
         reached,
         wanted,
-        moving_bodies(loops, pose, motion[None] / loops.scale, SNAP_SPEED_RATIO),
-        stressed_connections(loops, pose, force[:, None]),
+        equations.moving(pose, motion[None] / equations.scale, SNAP_SPEED_RATIO),
+        equations.stressed(pose, force[:, None]),
     )

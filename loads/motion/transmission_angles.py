@@ -11,8 +11,9 @@ from __future__ import annotations
 import numpy as np
 
 from loads.linkage.linkage import GROUND, Body, Joint, Linkage, Slider
-from loads.motion.mobility import is_particle
+from loads.motion.equations import drive_side
 from loads.motion.motion import Motion
+from loads.motion.planar_equations import is_particle
 from pinbase.arrays import Floats
 
 MIN_BODY_SPEED = 1e-9  # of the fastest body: a slower one is at rest
@@ -31,7 +32,7 @@ def transmission_angles(motion: Motion) -> dict[tuple[str, str], Floats]:
     for k, drive in enumerate(linkage.drives):
         unit = np.zeros_like(motion.speeds)
         unit[:, k] = 1.0
-        rates = motion.solve(loops.drive_side(unit))
+        rates = motion.solve(drive_side(loops, unit))
         still = _at_rest(motion, rates)
         drivers = (drive.base, drive.moving if isinstance(drive, Slider) else drive.body)
         for body, ends in _links(motion, rates, still).items():

@@ -26,6 +26,7 @@ from loads.tables.grid import TableGrid, text_of
 from loads.tables.numbers import TableNumbers
 from loads.tables.open_table import open_table, rows_by_case
 from pinbase.arrays import Floats
+from pinbase.grouped import grouped
 
 OWN_TABLE_COLUMNS = {"case", "body"}  # a table with these columns is one of our own outputs
 
@@ -117,10 +118,9 @@ def _by_connection(
     else:
         of_labels = {str(label): name for name, label in layout.labels.items()}
         components = [c for c in columns if c.meaning in FORCE_COMPONENTS]
-        groups: dict[str, list[int]] = {}
         cells = grid.columns[at]
-        for k in range(len(cells)) if rows is None else rows:
-            groups.setdefault(text_of(cells[k]), []).append(k)
+        chosen = range(len(cells)) if rows is None else rows
+        groups = grouped((text_of(cells[k]), k) for k in chosen)
         every = {of_labels.get(label, label): (some, components) for label, some in groups.items()}
     others_skipped = bool(layout.labels) or set(grid.names) >= OWN_TABLE_COLUMNS
     for name, (some, _) in every.items():

@@ -3,13 +3,27 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from io import BytesIO
 from pathlib import Path
+from typing import Any
 
-from loads.tables.csv_table import TableError, read_content
-from loads.tables.grid import FileReading, Source, TableGrid, grid_of, text_of
+import numpy as np
+
+from loads.tables.csv_table import MAX_COLUMNS, TableError, read_content
+from loads.tables.grid import (
+    MAX_TABLE_ROWS,
+    Cell,
+    FileReading,
+    Source,
+    TableGrid,
+    Unreadable,
+    grid_of,
+    text_of,
+)
 from loads.tables.sent_files import stamp
 from loads.tables.text_grid import text_grid
 from loads.tables.text_rows import text_lines
+from pinbase.grouped import grouped
 
 # The beginning of files that are no texts.
 ZIP_MARK, PARQUET_MARK = b"PK\x03\x04", b"PAR1"
@@ -18,6 +32,7 @@ OTHER_MARKS = {
     b"\x1f\x8b": "is compressed; unpack it",
     b"\x89HDF": "is an HDF5 file; export the table as text, .xlsx or .parquet",
 }
+NO_NUMBER = Unreadable("is neither a number nor a text")
 
 
 def open_table(path: Path, reading: FileReading) -> TableGrid:
@@ -44,8 +59,6 @@ def _open(path: Path, _: str, reading: FileReading) -> TableGrid:
         if content.startswith(mark):
             raise TableError(f"{path}: {what}", "not-text")
     if content.startswith(PARQUET_MARK):
-        from loads.tables.parquet import parquet_grid
-
         return parquet_grid(source, content)
     if content.startswith(ZIP_MARK):
         from loads.tables.workbook import workbook_rows
@@ -60,7 +73,53 @@ def _open(path: Path, _: str, reading: FileReading) -> TableGrid:
 
 @lru_cache(maxsize=1)
 def _by_case(path: Path, _: str, reading: FileReading, column: int) -> dict[str, list[int]]:
-    cases: dict[str, list[int]] = {}
-    for k, cell in enumerate(open_table(path, reading).columns[column]):
-        cases.setdefault(text_of(cell), []).append(k)
-    return cases
+    cells = open_table(path, reading).columns[column]
+    return grouped((text_of(cell), k) for k, cell in enumerate(cells))
+
+
+def parquet_grid(source: Source, content: bytes) -> TableGrid:
+    """The table in a Parquet file. Raises: TableError for a file that is none."""
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    try:
+        file = parquet.ParquetFile(BytesIO(content))
+        size = file.metadata.num_rows, file.metadata.num_columns
+        if size[0] > MAX_TABLE_ROWS or size[1] > MAX_COLUMNS:
+            raise TableError(
+                f"{source.file}: has {size[0]:,} rows and {size[1]:,} columns; the limits are "
+                f"{MAX_TABLE_ROWS:,} and {MAX_COLUMNS:,}",
+                "too-many-rows",
+            )
+        table = file.read()
+    except (pa.ArrowException, OSError, ValueError) as error:
+        if isinstance(error, TableError):
+            raise
+        text = str(error).splitlines()[0][:100] if str(error) else "damaged"
+        raise TableError(f"{source.file}: is not a Parquet file ({text})", "not-parquet") from None
+    if not size[0]:
+        raise TableError(f"{source.file}: the table has no rows", "no-rows")
+    names = tuple(" ".join(name.split()) for name in table.column_names)
+    columns = tuple(_cells(column) for column in table.columns)
+    rows = Source(source.file, rows=True)
+    return TableGrid(rows, names, ("",) * len(names), 0, columns, range(1, size[0] + 1))
+
+
+def _cells(column: Any) -> Any:
+    """The cells of a column; its numbers as an array if none is missing."""
+    import pyarrow.types as kinds
+
+    kind = column.type
+    plain = kinds.is_integer(kind) or kinds.is_floating(kind)
+    if plain and not column.null_count:
+        return np.asarray(column.to_numpy(), dtype=float)
+    texts = kinds.is_string(kind) or kinds.is_large_string(kind) or kinds.is_dictionary(kind)
+    if plain or texts or kinds.is_null(kind):
+        return [_cell(value) for value in column.to_pylist()]
+    return [NO_NUMBER] * len(column)
+
+
+def _cell(value: object) -> Cell:
+    if value is None:
+        return ""
+    return str(value).strip() if isinstance(value, str) else float(value)  # type: ignore[arg-type]

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 import zipfile
 import zlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from io import BytesIO
 from posixpath import join, normpath
@@ -18,6 +18,7 @@ from xml.parsers import expat
 
 from loads.tables.csv_table import MAX_COLUMNS, TableError
 from loads.tables.grid import Cell, FileReading, Rows, Source, Unreadable, letters
+from loads.tables.plain_rows import PlainRows, split
 from loads.tables.regular_file import MB
 from loads.tables.text_rows import COMMENT_MARKS
 
@@ -211,6 +212,7 @@ class _Sheet:
     def __init__(self, texts: list[str], dates: frozenset[int], first: int) -> None:
         self.texts, self.dates, self.first = texts, dates, first
         self.cells: dict[int, dict[int, Cell]] = {}
+        self.plain: PlainRows | None = None
         self.merged = ""
         self.row: dict[int, Cell] = {}
         self.place, self.column = 0, -1
@@ -220,15 +222,28 @@ class _Sheet:
 
     def read(self, content: bytes) -> None:
         """Read the sheet's XML."""
+        others, plain = split(content)
+        if plain is not None and self._takes(plain):
+            content, self.plain = others, plain
         _parse(content, self._start, self._end, self._text)
+
+    def _takes(self, plain: PlainRows) -> bool:
+        """Whether rows of numbers need none of the rules for other cells."""
+        dates = any(styles & self.dates for styles in plain.styles)
+        columns = list(map(_index, plain.columns))
+        inside = max(columns) < MAX_COLUMNS and plain.places[-1] <= MAX_SHEET_ROWS
+        return inside and not dates and int(plain.places[0]) >= self.first
 
     def rows(self, source: Source, comma: bool) -> Rows:
         """The rows with cells that are no comments."""
-        places, rows = list[int](), list[list[Cell]]()
-        width = max((max(row) + 1 for row in self.cells.values() if row), default=0)
-        if width * len(self.cells) > MAX_SHEET_CELLS:
+        places, rows = list[int](), list[Sequence[Cell]]()
+        plain = self.plain
+        columns = [] if plain is None else list(map(_index, plain.columns))
+        width = max((max(row) + 1 for row in (*self.cells.values(), columns) if row), default=0)
+        count = len(self.cells) + (0 if plain is None else len(plain.places))
+        if width * count > MAX_SHEET_CELLS:
             raise TableError(
-                f"{source.file}: {len(self.cells):,} rows of {width} columns are more than "
+                f"{source.file}: {count:,} rows of {width} columns are more than "
                 f"{MAX_SHEET_CELLS:,} cells, the limit; save fewer, or as text",
                 "too-many-rows",
             )
@@ -240,6 +255,11 @@ class _Sheet:
                 continue
             places.append(place)
             rows.append(cells)
+        if plain is not None:
+            places += plain.places.tolist()
+            numbers = dict(zip(columns, plain.values.T.tolist(), strict=True))
+            blank = [""] * len(plain.places)
+            rows += zip(*(numbers.get(k, blank) for k in range(width)), strict=True)
         return Rows(source, places, list(rows), comma)
 
     def _start(self, name: str, values: Attributes) -> None:

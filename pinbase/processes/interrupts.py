@@ -66,9 +66,14 @@ def deferred() -> Iterator[None]:
 
 @contextmanager
 def blocked() -> Iterator[None]:
-    """Block interrupts around a fork: those of this process inside the block, those of the child
-    until it has handlers of its own and calls `unblock`.
+    """Block interrupts of this thread inside the block, on systems that can; they come at its end.
+
+    Around a fork, the child's are blocked until it has handlers of its own and calls `unblock`.
+    Around C code that sets handlers, its handlers never see ours.
     """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
     before = signal.pthread_sigmask(signal.SIG_BLOCK, INTERRUPT_SIGNALS)
     try:
         yield

@@ -1,7 +1,8 @@
 """A study that can be asked again, with changes; what a change does not touch is not solved again.
 
 Every full answer is that of `pinstress.run` on the changed study, to the last bit. A quick one of a
-pin in contact is scaled from the study as it is (pinstress.analysis.scaled). Both are the same
+pin in contact is scaled from the study as it is (pinstress.analysis.scaled), or in full where its
+lugs press on it elsewhere, or on arcs too narrow for rough cells. Both are the same
 whatever was asked before: what is remembered has the content of everything it depends on as its
 key, and nothing is updated in place.
 """
@@ -13,7 +14,7 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any, Literal, TypeVar
+from typing import Any, Literal, TypeVar, get_args
 
 from fea.core.requirement import Requirement
 from pinbase.memo import Memo
@@ -26,7 +27,9 @@ from pinstress.analysis.results import RunResults, run_results, solve
 from pinstress.analysis.reused_loads import reused_loads
 from pinstress.analysis.scaled import (
     coarse,
+    contact_changed,
     elastic_task,
+    narrow_arcs,
     same_shape,
     scalable,
     scaled_row,
@@ -34,10 +37,12 @@ from pinstress.analysis.scaled import (
 from pinstress.analysis.solve import for_task, solve_tasks, unjudged
 from pinstress.analysis.stored import PinOutcome, cache_key
 from pinstress.study.model.tasks import Task
+from pinstress.study.reading.choices import ChoiceError
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.extras import require_fatigue
 from pinstress.study.reading.file import Study, raw_study, with_raw
 from pinstress.study.reading.in_python import changed_raw, changed_study
+from pinstress.study.schema.shown import as_text, near
 from reports.data.results import PinResult
 
 T = TypeVar("T")
@@ -126,9 +131,11 @@ class Engine:
         self, changes: Changes, pin: str, case: str, *, accuracy: Accuracy = "full"
     ) -> PinResult:
         """One row of the answer, for which no other pin is solved, and nothing that only explains
-        it. Raises: InputError.
+        it. Raises: InputError, also for a pin or case without a row.
         """
-        return self.rows(changes, [pin], accuracy=accuracy)[pin, case]
+        rows = self.rows(changes, [pin], accuracy=accuracy)
+        _require_row(pin, case, [name for _, name in rows])
+        return rows[pin, case]
 
     def rows(
         self, changes: Changes, pins: Iterable[str] | None = None, *, accuracy: Accuracy = "full"
@@ -137,6 +144,7 @@ class Engine:
 
         Raises: InputError.
         """
+        _require_accuracy(accuracy)
         raw = changed_raw(self.study, self._raw, changes)
         study = with_raw(self.study, raw)
         require_fatigue(study)
@@ -153,6 +161,7 @@ class Engine:
         text, why there are none. Raises: InputError.
         """
         results = self._solved(changes, [pin], "full", sensitive=True)
+        _require_row(pin, case, [s.case for s in results.sensitivities])
         effects = next(s for s in results.sensitivities if (s.pin, s.case) == (pin, case))
         if effects.note:
             return effects.note
@@ -169,6 +178,7 @@ class Engine:
         accuracy: Accuracy,
         sensitive: bool = False,
     ) -> RunResults:
+        _require_accuracy(accuracy)
         plan = self._plan(self.changed(changes), changed_raw(self.study, self._raw, changes), pins)
         plan = replace(plan, sensitive=sensitive)
         if accuracy == "full":
@@ -184,19 +194,25 @@ class Engine:
     def _outcomes(self, plan: Plan, accuracy: Accuracy) -> list[PinOutcome]:
         if accuracy == "full":
             return self._solve(plan, plan.tasks)
-        rough = replace(plan, requirement=_quick(plan.requirement))
         return [
-            (self._scaled(plan, task) if scalable(task) else None) or self._solve(rough, [task])[0]
+            (self._scaled(plan, task) if scalable(task) else None) or self._rough(plan, task)
             for task in plan.tasks
         ]
+
+    def _rough(self, plan: Plan, task: Task) -> PinOutcome:
+        """The outcome of a task on rough cells; in full where these are too large for its arcs."""
+        rough = replace(plan, requirement=_quick(plan.requirement))
+        outcome = self._solve(rough, [task])[0]
+        narrow = any(map(narrow_arcs, outcome.rows))
+        return self._solve(plan, [task])[0] if narrow else outcome
 
     def _solve(self, plan: Plan, tasks: list[Task]) -> list[PinOutcome]:
         plan = replace(plan, tasks=tasks)
         return solve_tasks(plan, cache=SolvedPins(self._answers), memo=self._memo)
 
     def _scaled(self, plan: Plan, task: Task) -> PinOutcome | None:
-        """The outcome of a task, scaled from that of the study as it is; None where that cannot
-        be.
+        """The outcome of a task, scaled from that of the study as it is, or in full where contact
+        has changed; None where it cannot be scaled.
         """
         name = task.pin.name
         if name not in self._as_is:
@@ -205,6 +221,8 @@ class Engine:
         now = self._coarse(plan, task, any(same_shape(x, task) for x in tasks))
         if not now or not {row.case for row in now} <= before.keys():
             return None
+        if any(contact_changed(before[x.case][1], x) for x in now):
+            return self._solve(plan, [task])[0]
         of = for_task(plan.study, task, plan.requirement)
         rows = [
             scaled_row(*before[x.case], x, task, of.of_case(x.case), plan.loads[x.case].range)
@@ -248,3 +266,17 @@ def _quick(requirement: Requirement) -> Requirement:
     """A requirement that few meshes meet, on rough cells of contact."""
     tolerance = max(requirement.tolerance, QUICK_TOLERANCE)
     return replace(requirement, tolerance=tolerance, cells="rough")
+
+
+def _require_accuracy(accuracy: object) -> None:
+    """Raises: ChoiceError for what is not an accuracy, which would be taken for the quick one."""
+    if accuracy not in get_args(Accuracy):
+        text = f"accuracy: must be 'full' or 'quick', not {as_text(accuracy)}"
+        raise ChoiceError(text, code="unknown-accuracy")
+
+
+def _require_row(pin: str, case: str, cases: Collection[str]) -> None:
+    """Raises: ChoiceError for a case in which a pin has no row. cases: in which it has one."""
+    if case not in cases:
+        text = f"case: pin {pin} has no row in case {as_text(case)}; {near(case, cases)}"
+        raise ChoiceError(text, code="unknown-case")

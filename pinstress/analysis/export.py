@@ -49,7 +49,7 @@ DIALECT_NOTES = {
 
 @dataclass(frozen=True)
 class ExpectedNumbers:
-    """What a reviewer compares, as lines "key = value" in the deck's units.
+    """The numbers that a reviewer compares, as lines "key = value" in the deck's units.
 
     row, results: in these units. task: of the pin.
     """

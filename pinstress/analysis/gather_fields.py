@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -18,6 +19,7 @@ from pinstress.study.model.tasks import Task
 from reports.data import results as plain
 
 MAX_STILLS = 50  # of a motion, besides the governing instant
+MIN_DEPTH = 1e-3  # of the radius: what is less deep counts as the surface
 
 
 def field(
@@ -29,7 +31,7 @@ def field(
 ) -> plain.Field | None:
     """Return a pin's field at its governing instant; None if not solved, or if the model has none.
 
-    also: adds the other instants, at most MAX_STILLS of them, or the whole of a revolved pin.
+    also: adds the other instants, at most MAX_STILLS of them, or the whole of the pin.
     pressure: contact pressure of its lugs.
     """
     peak = solution.peak
@@ -54,6 +56,7 @@ def field(
         cell_type=shown.cell_type,
         yield_strength=None if task.material.hardened else task.material.yield_strength,
         outside=_outside(peak),
+        beneath=_beneath(task, peak, shown),
         verdict=peak.verdict,
         time=None if times is None else float(times[governing]),
         loads=_bands(task, loads, governing),
@@ -63,17 +66,22 @@ def field(
             _still(task, solution.answer, loads, i, float(times[i]))
             for i in instants(len(loads), governing)
         ),
-        volume=_volume(solution.answer.volume(loads, governing)) if also == "solid" else None,
+        volume=_volume(solution.answer.volume(loads, governing), pressure)
+        if also == "solid"
+        else None,
         contact_pressure=contact,
         pressed=pressed,
         solids=peak.solids,
     )
 
 
-def _volume(shown: Picture | None) -> plain.Volume | None:
-    """Return the whole of a revolved pin; None for a solid model, whose field has it already."""
+def _volume(shown: Picture | None, pressure: CellPressure | None) -> plain.Volume | None:
+    """Return the whole of a pin; None for a solid model, whose field has it already."""
     if shown is None:
         return None
+    pressed = shown.pressed
+    if pressed is None and pressure is not None:  # a pin with cuts
+        pressed = pressure.at(shown.points) > 0.0
     return plain.Volume(
         shown.points,
         shown.cells,
@@ -81,7 +89,8 @@ def _volume(shown: Picture | None) -> plain.Volume | None:
         shown.displacement,
         shown.stress,
         von_mises(shown.stress),
-        shown.pressed,
+        pressed,
+        dict(shown.more),
     )
 
 
@@ -144,3 +153,21 @@ def _outside(peak: Maximum) -> tuple[float, tuple[float, float, float]] | None:
     if not peak.singular_at or peak.max_von_mises is None or peak.location is None:
         return None
     return peak.max_von_mises, peak.location
+
+
+def _beneath(
+    task: Task, peak: Maximum, shown: Picture
+) -> tuple[float, tuple[float, float, float]] | None:
+    """Return the row's stress and its place, if that is inside and only the surface is shown."""
+    profile, place = task.pin.profile, peak.location
+    if shown.cell_type == "tetra10" or profile is None or peak.max_von_mises is None or not place:
+        return None
+    r, z = math.hypot(*place[:2]), place[2]
+    bore, outer = profile.radii(z)
+    if r > (1.0 - MIN_DEPTH) * outer or (bore and r < (1.0 + MIN_DEPTH) * bore):
+        return None
+    # The walls of cuts, and the faces of steps, are surface, too: what is read there are points of
+    # it, but for the angle.
+    x, y, at = shown.points.T
+    on_surface = np.hypot(np.hypot(x, y) - r, at - z).min() < MIN_DEPTH * outer
+    return None if on_surface else (peak.max_von_mises, place)

@@ -12,7 +12,7 @@ from fea.core.requirement import Model, Requirement
 from pinstress.analysis import checks
 from pinstress.analysis.published_quantities import published_values
 from pinstress.study.model.cases import CaseLoads, case_loads
-from pinstress.study.model.mechanism.linkage import determined, linkage
+from pinstress.study.model.mechanism.linkage import any_linkage, determined
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.sequence import chosen_cases, require_times
 from pinstress.study.model.tasks import Task, require_models, tasks
@@ -25,7 +25,7 @@ from pinstress.study.reading.choices import (
 from pinstress.study.reading.errors import Errors, InputError
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.published_tables import Published, read_published
-from pinstress.study.schema.cases import GivenCase, LegCase
+from pinstress.study.schema.cases import GivenCase
 from pinstress.study.schema.shown import as_text
 
 ExtraFields = Literal["motion", "solid"] | None
@@ -38,10 +38,10 @@ def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
     Raises: InputError with the errors of all cases.
     """
     wrong = Errors(study.path)
-    mechanism = wrong.attempt(lambda: linkage(study)) if study.table.mechanism else None
+    mechanism = wrong.attempt(lambda: any_linkage(study)) if study.table.mechanism else None
     if mechanism is not None:  # once, not in every case
         wrong.attempt(partial(determined, study, mechanism))
-    given = [name for name in cases if isinstance(study.table.case[name], GivenCase | LegCase)]
+    given = [name for name in cases if isinstance(study.table.case[name], GivenCase)]
     possible = given if wrong.lines else cases
     attempts = {
         name: wrong.attempt(partial(case_loads, study, name, mechanism)) for name in possible

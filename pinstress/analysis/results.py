@@ -18,8 +18,10 @@ from pinstress.analysis.row import Png, Row
 from pinstress.analysis.solve import solve_tasks
 from pinstress.analysis.stored import PinOutcome
 from pinstress.study.reading.choices import require_count
+from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.extras import EXTRAS, require_fatigue
 from pinstress.study.reading.file import Study
+from pinstress.study.schema.shown import as_text
 from reports.data.results import Field, Results
 from reports.format.words import headline
 from reports.tables.all import load_tables, stress_tables
@@ -213,8 +215,12 @@ def solve(
     before are found, and the others kept. memo: of parts of their solutions.
 
     Raises: InputError where the study has [fatigue] and its extra is not installed, and for what is
-    no number of jobs.
+    no number of jobs, or no plan.
     """
+    given: object = plan
+    if not isinstance(given, Plan):
+        text = f"{as_text(given)} is not a plan; pinstress.prepare makes one of a study"
+        raise InputError(text, code="not-a-plan")
     require_fatigue(plan.study)
     kept_fields: dict[tuple[str, str], Field] = {}
 

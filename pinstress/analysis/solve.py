@@ -194,7 +194,7 @@ def problem_of(task: Task, memo: Memo | None = None) -> PinProblem:
     from fea.support.support import PinProblem
 
     return PinProblem(
-        task.pin, task.material, task.lugs, task.loads, task.between, task.ranges, task.clamps,
+        task.pin, task.material, task.lugs, task.loads, task.between, task.also, task.clamps,
         memo,
     )  # fmt: skip
 
@@ -254,20 +254,21 @@ def _rows(
     plan: Plan, task: Task, solved: tuple[Solution, ...], tell: Tell
 ) -> tuple[PinResult, ...]:
     """Return the rows of a task with their joints, ranges and limit loads."""
-    from pinstress.analysis.gather.gather_landing import landing_range
+    from pinstress.analysis.gather.gather_landing import landing_range, sharing_range
 
     ratio = plan.requirement.for_ratio  # which serves for the whole range
     landing = [None if ratio else landing_range(plan.loads, task, s) for s in solved]
+    sharing = [None if ratio else sharing_range(task, s) for s in solved]
     joints = _in_lugs(task, solved, tell) if task.lugs else _around(plan, task, solved)
     limits = limit_loads(plan, task, solved, tell)
     of_lugs = lug_collapses(plan, task, tell)
-    parts = zip(solved, joints, limits, landing, strict=True)
+    parts = zip(solved, joints, limits, landing, sharing, strict=True)
     return tuple(
         PinResult(
             _with_notes(task, s.peak), joint=joint, limit_load=limit, landing=over,
-            lug_collapses=of_lugs,
+            lug_collapses=of_lugs, sharing=links,
         )
-        for s, joint, limit, over in parts
+        for s, joint, limit, over, links in parts
     )  # fmt: skip
 
 

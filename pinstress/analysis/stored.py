@@ -98,6 +98,7 @@ def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
         study.system,
         None if check is None else check.model_dump(),
         *(() if seconds is None else (seconds,)),
+        *((task.shared,) if task.shared else ()),
     )
 
 

@@ -21,8 +21,8 @@ from reports.format.file_names import plot_name
 from reports.format.numbers import percent
 from reports.plots.chart import chart_plot
 from reports.plots.draw import draw
-from reports.tables.chart import write_chart_csv
-from reports.text.chart import print_chart
+from reports.tables.chart import chart_table
+from reports.text.chart_summary import print_chart
 
 CHART_CSV = f"{CHART_NAME}.csv"
 
@@ -58,7 +58,7 @@ def chart_and_write(
     with replacing(directory, CHART_CSV) as staging:
         with progress_bar() as progress:
             result = chart(plan, partial(measure, limits=limits), meshes, runs, progress, calculix)
-        write_chart_csv(result, staging)
+        chart_table(result).write(staging)
         draw([chart_plot(result)], staging)
     with unneeded(directory):
         print_chart(result, console())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Sized
 from dataclasses import dataclass
 from functools import partial
@@ -11,6 +12,7 @@ from geometry import PinLike
 from loads import Linkage, jump_times
 from loads.forces.sharing import undetermined
 from loads.motion.four_bar import four_bar
+from loads.space.linkage import SpaceLinkage
 from pinstress.explore.sweep.correlations import correlations_of
 from pinstress.explore.sweep.parameters import parameters_of, require_laws
 from pinstress.explore.sweep.sample import designs_of
@@ -19,7 +21,7 @@ from pinstress.study.model.cases import CaseLoads, case_loads
 from pinstress.study.model.lost_fits import lost_fit_warnings
 from pinstress.study.model.lugs import lugs
 from pinstress.study.model.mechanism.drives import span
-from pinstress.study.model.mechanism.linkage import determined, linkage
+from pinstress.study.model.mechanism.linkage import AnyLinkage, any_linkage, determined
 from pinstress.study.model.pins import far_ends, outline, shape_notes, weight
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.sequence import require_times
@@ -28,7 +30,7 @@ from pinstress.study.model.temperature import temperature_assumption
 from pinstress.study.reading.errors import Errors
 from pinstress.study.reading.file import Study, named_materials
 from pinstress.study.reading.published_tables import read_published
-from pinstress.study.schema.cases import GivenCase, LegCase, MotionCase
+from pinstress.study.schema.cases import GivenCase, MotionCase
 from pinstress.study.schema.landing import DropCase, GroundCase
 from pinstress.study.schema.pins import PinTable
 from pinstress.study.schema.require import RequireTable, level_of
@@ -40,7 +42,7 @@ MAX_SHOWN_JUMPS = 6
 
 @dataclass(frozen=True)
 class Examination:
-    """What is known of a valid study before anything is solved.
+    """Everything known of a valid study before anything is solved.
 
     lines: of the summary.
     unheld: why unconstrained pins would not be solved.
@@ -54,15 +56,6 @@ class Examination:
     warnings: list[str]
 
 
-def describe(study: Study) -> tuple[str, list[str], list[str]]:
-    """Return the summary of a study, and the reasons and warnings of its examination.
-
-    Raises: InputError as `examine`.
-    """
-    x = examine(study)
-    return "\n".join(x.lines), x.unheld, x.warnings
-
-
 def examine(study: Study) -> Examination:
     """Read all files of a valid study and compute its loads.
 
@@ -74,14 +67,14 @@ def examine(study: Study) -> Examination:
         lines.append(f"material {stored.name}: that of {stored.file} ({stored.source})")
     wrong = Errors(study.path)
     wrong.attempt(lambda: read_published(study))
-    mechanism = wrong.attempt(lambda: linkage(study)) if table.mechanism else None
+    mechanism = wrong.attempt(lambda: any_linkage(study)) if table.mechanism else None
     if mechanism is not None:
         described = wrong.attempt(partial(_mechanism, study, mechanism))
         lines += described or []
         mechanism = mechanism if described else None  # its cases would say the same again
     loads: dict[str, CaseLoads] = {}
     for name, case in table.case.items():
-        if mechanism is not None or isinstance(case, GivenCase | LegCase):
+        if mechanism is not None or isinstance(case, GivenCase):
             # Without extremes: it is enough that the mechanism can follow.
             case_result = wrong.attempt(partial(case_loads, study, name, mechanism, extremes=False))
             loads |= {} if case_result is None else {name: case_result}
@@ -219,7 +212,9 @@ def _form(pin: PinTable) -> str:
     return ", ".join(f"{n} {what}{'s' * (n > 1)}" for n, what in counted if n)
 
 
-def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
+def _mechanism(study: Study, mechanism: AnyLinkage) -> list[str]:
+    if isinstance(mechanism, SpaceLinkage):
+        return _in_space(study, mechanism)
     mobility = determined(study, mechanism)
     lines = [
         f"mechanism: {len(mechanism.bodies)} bodies, {len(mechanism.joints)} joints, "
@@ -244,26 +239,44 @@ def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
     ]
 
 
+def _in_space(study: Study, linkage: SpaceLinkage) -> list[str]:
+    mobility, mechanism = determined(study, linkage), study.table.mechanism
+    assert mechanism is not None
+    kinds = Counter(joint.kind for joint in linkage.joints)
+    joints = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
+    line = f"mobility {mobility.degrees}"
+    if mobility.kutzbach != mobility.degrees:
+        line += f" by rank, {mobility.kutzbach} by count (Kutzbach)"
+    if mobility.redundant:
+        rule = "a sharing rule" if linkage.sharing else "the stiffness of the links"
+        line += (
+            f"; {mobility.redundant} redundant: the forces at {', '.join(mobility.shared)} follow "
+            f"{rule}"
+        )
+    return [
+        f"mechanism in space: {len(mechanism.body)} bodies, joints: {joints}, "
+        + (f"driven by {', '.join(linkage.driven)}" if linkage.driven else "no drive"),
+        line,
+    ]
+
+
 def _teeth(mechanism: Linkage) -> str:
     pairs = len(mechanism.teeth)
     return f", {pairs} pair{'s' * (pairs > 1)} of teeth" if pairs else ""
 
 
 def _words(study: Study, name: str, loads: CaseLoads) -> str:
-    case, table, reactions = study.table.case[name], study.table.spatial_leg, loads.reactions
+    case, reactions = study.table.case[name], loads.reactions
     if isinstance(case, GivenCase):
         many = "one instant"
         if reactions.times is not None:
             jumps = ", ".join(f"{t:g} s" for t in jump_times(reactions.times)[:MAX_SHOWN_JUMPS])
             many = f"{len(reactions)} instants" + f", jump at t = {jumps}" * bool(jumps)
         return f"given, {many}, connections {', '.join(reactions.connections)}"
-    if isinstance(case, LegCase):
-        assert table is not None
-        return f"spatial leg, {case.samples} instants over {table.fold.duration:g} s"
     if isinstance(case, DropCase):
         return f"drop, {case.samples} instants over {case.duration:g} s, ground on {case.body}"
     if isinstance(case, GroundCase):
-        return f"ground, 14 CFR {case.rule}, on {case.body}"
+        return f"ground, {f'14 CFR {case.rule}' if case.rule else 'stated factors'}, on {case.body}"
     applied = ", ".join(f"{load.body}" for load in case.apply)
     if isinstance(case, MotionCase):
         also = f", loads on {applied}" if applied else ""

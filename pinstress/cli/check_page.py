@@ -8,7 +8,8 @@ import numpy as np
 
 from pinbase.records import in_units
 from pinstress.analysis.gather.gather import shape_of_task
-from pinstress.analysis.mechanics.gather_loads import linkage_motion
+from pinstress.analysis.mechanics.gather_motion import linkage_motion
+from pinstress.analysis.mechanics.gather_space import skeleton_in_space
 from pinstress.cli.check import Examination, support_of
 from pinstress.study.model.balance import given_warnings
 from pinstress.study.model.tasks import Task
@@ -40,6 +41,11 @@ def write_check_page(study: Study, examination: Examination, path: Path) -> None
             linkage_motion(study, name, loads.dynamics, None)
             for name, loads in examination.loads.items()
             if loads.dynamics is not None
+        ),
+        space=tuple(
+            skeleton_in_space(study, name, loads.space)
+            for name, loads in examination.loads.items()
+            if loads.space is not None
         ),
         pins=tuple(
             CheckedPin(

@@ -4,12 +4,12 @@ which CalculiX differs; and before the run, the rows that will take long.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable
-from typing import TypeVar
+from collections.abc import Iterable
 
 import click
 
 from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, YIELDS
+from pinbase.grouped import grouped
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import PinOutcome
 from reports.data.headline import judged_checks
@@ -18,8 +18,6 @@ from reports.data.results import PinResult, Results, SingularZone
 from reports.format.words import but_words, spare_words, undecided_because
 
 EXIT_NUMERICS_FAILED, EXIT_REQUIREMENT_MISSED = 3, 4  # exit statuses
-Row = TypeVar("Row")
-Reason = TypeVar("Reason", bound=Hashable)
 TOLERANCE_REMEDY = '; give a larger tolerance, or goal = "decide"'
 VERDICT_WORDS = {
     "singular": "singular",
@@ -30,10 +28,7 @@ VERDICT_WORDS = {
 
 def report_left_out(results: Results) -> None:
     """Report the forces that were left out because their band is clamped, one line per pin."""
-    ways: dict[tuple[str, tuple[str, ...]], list[str]] = {}
-    for p in results.pins:
-        if p.left_out:
-            ways.setdefault((p.pin, p.left_out), []).append(p.case)
+    ways = grouped(((p.pin, p.left_out), p.case) for p in results.pins if p.left_out)
     for (pin, connections), cases in ways.items():
         click.echo(
             f"Pin {pin}, {', '.join(cases)}: the force at {', '.join(connections)} is left out, "
@@ -107,9 +102,8 @@ def report_unchecked(results: Results) -> int:
         and not row.left_out
         and (row.outcome == NOT_CHECKED or (row.outcome == NOT_DECIDED and row.check != "yield"))
     ]
-    for which, (outcome, title, needs) in _together(
-        (row, (row.outcome, row.title, row.needs)) for row in rows
-    ):
+    reasons = grouped(((row.outcome, row.title, row.needs), row) for row in rows)
+    for (outcome, title, needs), which in reasons.items():
         why = f" (needs {needs})" if needs else ""
         listed = ", ".join(row.where for row in which)
         click.echo(f"Requirement {outcome}: {title}{why}: {listed}.", err=True)
@@ -148,11 +142,11 @@ def report_missed(results: Results, decide: bool) -> int:
         and p.safety_factor is not None
         and p.as_described == NOT_DECIDED
     ]
-    for which, why in _together((p, undecided_because(p)) for p in near):
+    for why, which in grouped((undecided_because(p), p) for p in near).items():
         click.echo(
             f"Not decided: {_listed(which)}: {why}; a smaller tolerance may decide.", err=True
         )
-    for which, reason in _together((p, p.note) for p in failed):
+    for reason, which in grouped((p.note, p) for p in failed).items():
         click.echo(f"Error: the solution failed: {_listed(which)}: {reason}", err=True)
     return EXIT_NUMERICS_FAILED if failed else int(bool(missed or near))
 
@@ -162,9 +156,8 @@ def _lines(rows: Iterable[PinResult]) -> list[str]:
     (landing).
     """
     lines = []
-    for which, (result, verdict, reason) in _together(
-        (p, (p.outcome, p.verdict, _reason(p))) for p in rows
-    ):
+    reasons = grouped(((p.outcome, p.verdict, _reason(p)), p) for p in rows)
+    for (result, verdict, reason), which in reasons.items():
         head = f"{result.capitalize()}, {VERDICT_WORDS[verdict]}"
         if verdict == "singular":
             lines.append(f"{head}{reason}{_between(which)}: {_listed(which)}.")
@@ -172,14 +165,6 @@ def _lines(rows: Iterable[PinResult]) -> list[str]:
             loose = TOLERANCE_REMEDY if "above the tolerance" in reason else ""
             lines.append(f"{head}: {_listed(which)}: {reason}{loose}.")
     return lines
-
-
-def _together(rows: Iterable[tuple[Row, Reason]]) -> list[tuple[list[Row], Reason]]:
-    """Group rows with equal reasons, in the order of the rows."""
-    groups: dict[Reason, list[Row]] = {}
-    for pin, reason in rows:
-        groups.setdefault(reason, []).append(pin)
-    return [(which, reason) for reason, which in groups.items()]
 
 
 def _reason(pin: PinResult) -> str:
@@ -202,7 +187,5 @@ def _between(rows: list[PinResult]) -> str:
 
 def _listed(rows: list[PinResult]) -> str:
     """List pins with their cases: A (retract, landing), B (landing)."""
-    cases: dict[str, list[str]] = {}
-    for p in rows:
-        cases.setdefault(p.pin, []).append(p.case)
+    cases = grouped((p.pin, p.case) for p in rows)
     return ", ".join(f"{pin} ({', '.join(names)})" for pin, names in cases.items())

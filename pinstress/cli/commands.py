@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -29,7 +29,19 @@ from pinstress.cli.more_commands import (
     size,
     view,
 )
-from pinstress.cli.shared import CASES_OPTION, Commands, choices, example, open_page, read_study
+from pinstress.cli.shared import (
+    CASES_OPTION,
+    PATH,
+    POSITIVE,
+    SHARE,
+    STUDY,
+    Commands,
+    choices,
+    example,
+    open_page,
+    output_folder,
+    read_study,
+)
 from pinstress.study.reading.choices import ChoiceError
 from pinstress.study.reading.errors import InputError, clipped
 
@@ -129,8 +141,8 @@ def _settle_environment() -> None:
     "was not checked, or CalculiX disagrees; 2 bad input; 3 the solution failed; 4 with "
     "--fail-on-miss, where a pin misses its requirements; 130 interrupted.",
 )
-@click.argument("study", type=click.Path(path_type=Path))
-@click.option("--out", type=click.Path(path_type=Path), help="Output folder [out/<study name>].")
+@STUDY
+@output_folder("<study name>")
 @choices
 @click.option(
     "--model",
@@ -138,9 +150,7 @@ def _settle_environment() -> None:
     help="Override the study's model.",
 )
 @click.option(
-    "--tolerance",
-    type=click.FloatRange(0.0, 1.0, min_open=True, max_open=True),
-    help="Override the study's tolerance on the maximum stress.",
+    "--tolerance", type=SHARE, help="Override the study's tolerance on the maximum stress."
 )
 @click.option("--plots", is_flag=True, help=PLOTS_HELP)
 @click.option("--pdf", is_flag=True, help="Also write report.pdf, as `pinstress pdf` does.")
@@ -151,12 +161,12 @@ def _settle_environment() -> None:
     default="model",
     show_default=True,
     help="Fields for ParaView. model: the surface of a revolved pin, all of a solid model; "
-    "surface: surfaces only; solid: also the interior of revolved pins (large); motion: also a "
+    "surface: surfaces only; solid: also the interior (large); motion: also a "
     "time series of every motion (large).",
 )
 @click.option(
     "--memory-limit",
-    type=click.FloatRange(0.0, min_open=True),
+    type=POSITIVE,
     metavar="MB",
     help="Memory limit of a model [80 % of free memory]; finer meshes are not solved.",
 )
@@ -174,11 +184,13 @@ def _settle_environment() -> None:
 )
 @click.option(
     "--sensitivities",
+    "sensitive",
     is_flag=True,
     help="Sensitivities of every pin in all cases, not only in its worst one, and in contact too.",
 )
 @click.option(
     "--fail-on-miss",
+    "strict",
     is_flag=True,
     help="Exit with status 4 where a pin fails, or its result depends on a range, a requirement is "
     "missed, or a margin is negative.",
@@ -186,11 +198,12 @@ def _settle_environment() -> None:
 @click.option(
     "--junit",
     metavar="FILE",
-    type=click.Path(path_type=Path),
+    type=PATH,
     help="Also write the requirements as JUnit XML, a test case each, for continuous integration.",
 )
 @click.option(
     "--show-work",
+    "work",
     is_flag=True,
     help="Also print the work of every check: formula, numbers, what would pass, what is missing.",
 )
@@ -205,37 +218,27 @@ def run(
     model: Model | None,
     tolerance: float | None,
     plots: bool,
-    pdf: bool,
     no_pictures: bool,
-    vtk: str,
-    jobs: int | None,
     memory_limit: float | None,
     second_opinion: str | None,
     limit_load: bool,
-    sensitivities: bool,
-    fail_on_miss: bool,
-    junit: Path | None,
-    show_work: bool,
     no_cache: bool,
-    as_json: bool,
-    quiet: bool,
-    opens: bool,
+    **more: Any,
 ) -> int:
     if second_opinion is not None:
         _require_calculix()
     loaded = read_study(study)
-    directory = out or Path("out") / loaded.name
     from pinstress.cli.run import OutputOptions, run_and_write
 
-    second, cached = second_opinion is not None, not no_cache
-    drawn = plots and not no_pictures
     wanted = OutputOptions(
-        drawn, pdf, second, vtk, as_json, quiet, opens, jobs, cached, sensitivities, fail_on_miss,
-        junit, show_work,
-    )  # fmt: skip
+        plots=plots and not no_pictures,
+        second=second_opinion is not None,
+        cached=not no_cache,
+        **more,
+    )
     return run_and_write(
         loaded,
-        directory,
+        out or Path("out") / loaded.name,
         wanted,
         pins=pins,
         cases=cases,
@@ -263,10 +266,8 @@ def _require_calculix() -> None:
     + "\nCompute the mechanism only: reactions, drives and motion, with an animation of every case "
     "and report.html.",
 )
-@click.argument("study", type=click.Path(path_type=Path))
-@click.option(
-    "--out", type=click.Path(path_type=Path), help="Output folder [out/<study name>-loads]."
-)
+@STUDY
+@output_folder("<study name>-loads")
 @CASES_OPTION
 @click.option("--plots", is_flag=True, help=PLOTS_HELP)
 @click.option("--no-pictures", is_flag=True, hidden=True)
@@ -297,19 +298,11 @@ def loads(
     "Exit status: 0 done; 1 done, but no result is within the tolerance, or the reference is not "
     "accurate enough to tell; 2 bad input; 3 the solution failed; 130 interrupted.",
 )
-@click.argument("study", type=click.Path(path_type=Path))
+@STUDY
 @click.option("--pin", required=True, metavar="NAME", help="The pin.")
 @click.option("--case", required=True, metavar="NAME", help="The case (all its instants).")
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="Output folder [out/<study>-chart.PIN.CASE].",
-)
-@click.option(
-    "--tolerance",
-    type=click.FloatRange(0.0, 1.0, min_open=True, max_open=True),
-    help="Override the study's tolerance.",
-)
+@output_folder("<study>-chart.PIN.CASE")
+@click.option("--tolerance", type=SHARE, help="Override the study's tolerance.")
 @click.option(
     "--meshes",
     type=click.IntRange(1, 9),
@@ -325,13 +318,13 @@ def loads(
 )
 @click.option(
     "--time-limit",
-    type=click.FloatRange(0.0, min_open=True),
+    type=POSITIVE,
     default=120.0,
     show_default=True,
     help="Time limit per mesh, s; slower ones are marked as failed. The reference has no limit.",
 )
 @click.option(
-    "--memory-limit", type=click.FloatRange(0.0, min_open=True), default=4000.0,
+    "--memory-limit", type=POSITIVE, default=4000.0,
     show_default=True, help="Memory limit per mesh, MB above the bare process.",
 )  # fmt: skip
 @click.option(
@@ -371,11 +364,11 @@ def chart(
     "Exit status: 0 done; 1 done, but a pin is unconstrained, or its loads are not in equilibrium; "
     "2 bad input.",
 )
-@click.argument("study", type=click.Path(path_type=Path))
+@STUDY
 @click.option("--open", "opens", is_flag=True, help="Draw a page and open it in the browser.")
 @click.option(
     "--out",
-    type=click.Path(path_type=Path),
+    type=PATH,
     help="File of the page, which is then drawn; default with --open out/<study>_check.html.",
 )
 @click.option("--no-browser", is_flag=True, help="With --open, do not open the page.")
@@ -402,21 +395,7 @@ def check(study: Path, opens: bool, out: Path | None, no_browser: bool) -> int:
 
 
 for _command in (
-    cluster_keys,
-    compare_runs,
-    curve,
-    export,
-    fits,
-    import_,
-    init,
-    materials,
-    pdf_of,
-    plots,
-    reliability,
-    schema,
-    size,
-    sweep,
-    view,
-    completion,
-):
+    cluster_keys, compare_runs, curve, export, fits, import_, init, materials, pdf_of, plots,
+    reliability, schema, size, sweep, view, completion,
+):  # fmt: skip
     commands.add_command(_command)

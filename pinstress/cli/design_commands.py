@@ -9,10 +9,13 @@ from typing import Any
 import click
 
 from pinstress.cli.shared import (
+    PATH,
+    STUDY,
     choices,
     chosen_connection,
     cluster_choices,
     example,
+    output_folder,
     read_study,
 )
 
@@ -28,8 +31,8 @@ from pinstress.cli.shared import (
     "random sample also to a larger count.\n\n"
     "Exit status: 0 done; 1 done, but every design failed; 2 bad input; 130 interrupted.",
 )
-@click.argument("study", type=click.Path(path_type=Path))
-@click.option("--out", type=click.Path(path_type=Path), help="Output folder [out/<study>-sweep].")
+@STUDY
+@output_folder("<study>-sweep")
 @choices
 @cluster_choices
 @click.option("--resume", is_flag=True, help="Resume a sweep, or extend it to a larger count.")
@@ -64,10 +67,8 @@ def sweep(
     "Exit status: 0 done; 1 done, but it could not be determined whether a probability of failure "
     "is within the allowed one; 2 bad input; 3 the solution failed; 130 interrupted.",
 )
-@click.argument("study", type=click.Path(path_type=Path))
-@click.option(
-    "--out", type=click.Path(path_type=Path), help="Output folder [out/<study name>-reliability]."
-)
+@STUDY
+@output_folder("<study name>-reliability")
 @choices
 @cluster_choices
 def reliability(
@@ -97,7 +98,7 @@ def reliability(
     "not kept. Files that exist are never overwritten.\n\n"
     "Exit status: 0 done; 2 bad input.",
 )
-@click.argument("directory", metavar="DIR", type=click.Path(path_type=Path))
+@click.argument("directory", metavar="DIR", type=PATH)
 def cluster_keys(directory: Path) -> None:
     from pinstress.explore.sweep.connection import ClusterConnection
     from pinstress.explore.sweep.keys import write_keys

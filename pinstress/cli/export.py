@@ -11,7 +11,8 @@ import click
 
 from pinstress.cli.new_file import require_new, write_new
 from pinstress.cli.shared import QUIET_OPTION, example, read_study
-from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.choices import ChoiceError
+from pinstress.study.reading.errors import InputError, cannot_write
 
 OVERWRITE_REMEDY = "choose another --out, or --force to replace it"
 
@@ -56,7 +57,10 @@ def export(
         if not quiet:
             click.echo(f"{step} ...", err=True)
 
-    lines = review_deck(loaded, pin, case, deck, tell)
+    try:
+        lines = review_deck(loaded, pin, case, deck, tell)
+    except ChoiceError as error:  # of --pins, say others; here it is an argument without a name
+        raise InputError(str(error).partition(": ")[2], code=error.code) from None
     content = "".join(f"{line}\n" for line in lines).encode("ascii")
     if force and path.exists():
         _replace(path, content)
@@ -85,9 +89,7 @@ def _require_writable(path: Path, force: bool, make_folder: bool) -> None:
         if not os.access(path.parent, os.W_OK):
             raise PermissionError(13, "Permission denied")
     except OSError as error:
-        raise InputError(
-            f"{path}: cannot be written ({error.strerror})", code="cannot-write"
-        ) from None
+        raise cannot_write(path, error) from None
 
 
 def _replace(path: Path, content: bytes) -> None:
@@ -101,6 +103,4 @@ def _replace(path: Path, content: bytes) -> None:
         staging.replace(path)
     except OSError as error:
         staging.unlink()
-        raise InputError(
-            f"{path}: cannot be written ({error.strerror})", code="cannot-write"
-        ) from None
+        raise cannot_write(path, error) from None

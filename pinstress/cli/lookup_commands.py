@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from pinstress.cli.shared import example
+from pinstress.cli.shared import PATH, example
 
 JSON_OPTION = click.option("--json", "as_json", is_flag=True, help="Print JSON instead of text.")
 
@@ -37,7 +37,7 @@ def fits(size: str, fit: str, as_json: bool) -> None:
 @click.option(
     "--materials",
     "file",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="FILE",
     help='Also those of this file, which a study names as materials = "FILE".',
 )

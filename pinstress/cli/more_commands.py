@@ -10,16 +10,23 @@ import click
 
 from pinstress.cli.shared import (
     JOBS_OPTION,
+    NEW_FILE,
+    PATH,
     PINS_OPTION,
+    POSITIVE,
     QUIET_OPTION,
+    RESULTS,
+    SHARE,
+    STUDY,
     chosen_connection,
     cluster_choices,
     example,
     names,
+    output_folder,
     read_study,
 )
 from pinstress.cli.streams import unneeded
-from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.errors import InputError, cannot_write
 
 NEW_STUDIES = "pin_in_lugs.toml", "one_pin.toml"  # that init writes, the first to begin with
 
@@ -42,9 +49,7 @@ def init(directory: Path, opens: bool) -> int:
     try:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(
-            f"{target}: cannot be written ({error.strerror})", code="cannot-write"
-        ) from None
+        raise cannot_write(target, error) from None
     remedy = "name another folder"
     for path in targets:
         require_new(path, remedy)
@@ -70,7 +75,7 @@ def init(directory: Path, opens: bool) -> int:
     "flats, and print its table for a study; the axis may have any direction.\n\n"
     "Exit status: 0 done; 2 bad input, or a body that is not a turned part; 130 interrupted.",
 )
-@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("file", type=PATH)
 @click.option("--pin", metavar="NAME", help="Name of the pin [the file's].")
 @click.option(
     "--material", default="steel", metavar="NAME", show_default=True, help="Its material."
@@ -83,10 +88,7 @@ def init(directory: Path, opens: bool) -> int:
     help="Unit of length in the file; STEP files are read in mm, whatever theirs is.",
 )
 @click.option(
-    "--out",
-    type=click.Path(path_type=Path, dir_okay=False),
-    metavar="FILE",
-    help="Write this new file instead of printing.",
+    "--out", type=NEW_FILE, metavar="FILE", help="Write this new file instead of printing."
 )
 def import_(file: Path, pin: str | None, material: str, unit: str, out: Path | None) -> None:
     from pinstress.cli.new_file import write_new
@@ -121,7 +123,7 @@ def schema() -> None:
     + "\nDraw the plots of a report as SVG and PNG, and pictures of the pins, into the folder "
     "`plots` of an earlier run or of `pinstress loads`.",
 )
-@click.argument("results", type=click.Path(path_type=Path))
+@RESULTS
 def plots(results: Path) -> int:
     from pinstress.cli.plots import plots as draw
 
@@ -135,7 +137,7 @@ def plots(results: Path) -> int:
     + "\nWrite report.pdf into the folder of an earlier run: title block, contents, safety "
     "factors, what to change, every pin with its plots, loads, and the values with their sources.",
 )
-@click.argument("results", type=click.Path(path_type=Path))
+@RESULTS
 def pdf_of(results: Path) -> int:
     from pinstress.cli.plots import pdf
 
@@ -153,12 +155,10 @@ def pdf_of(results: Path) -> int:
     "Exit status: 0 done; 1 done, but something could not be drawn; 2 bad input; 4 a requirement "
     "that was met no longer is, or is gone.",
 )
-@click.argument("first", metavar="A", type=click.Path(path_type=Path))
-@click.argument("second", metavar="B", type=click.Path(path_type=Path))
+@click.argument("first", metavar="A", type=PATH)
+@click.argument("second", metavar="B", type=PATH)
 @click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="Also write comparison.html and comparison.md into this folder.",
+    "--out", type=PATH, help="Also write comparison.html and comparison.md into this folder."
 )
 @click.option(
     "--pictures",
@@ -177,12 +177,12 @@ def compare_runs(first: Path, second: Path, out: Path | None, pictures: bool) ->
     + "\nShow the von Mises stress of a pin of an earlier run at its governing instant, in a "
     "window. Default: the pin and case with the lowest safety factor.",
 )
-@click.argument("results", type=click.Path(path_type=Path))
+@RESULTS
 @click.option("--pin", metavar="NAME", help="The pin.")
 @click.option("--case", metavar="NAME", help="The case.")
 @click.option(
     "--screenshot",
-    type=click.Path(path_type=Path, dir_okay=False),
+    type=NEW_FILE,
     metavar="FILE",
     help="Write a picture (.png) instead of opening a window; needs no display.",
 )
@@ -224,10 +224,10 @@ def completion(context: click.Context, shell: str) -> None:
     "Exit status: 0 done; 1 done, but a pin is not shown to reach the factor; 2 bad input; "
     "3 the solution failed; 130 interrupted.",
 )
-@click.argument("study", type=click.Path(path_type=Path))
+@STUDY
 @click.option(
     "--fos",
-    type=click.FloatRange(0.0, min_open=True),
+    type=POSITIVE,
     help="Safety factor to reach; overrides required_safety_factor and [[require]] of the study.",
 )
 @PINS_OPTION
@@ -240,7 +240,7 @@ def completion(context: click.Context, shell: str) -> None:
 )
 @click.option(
     "--out",
-    type=click.Path(path_type=Path, dir_okay=False),
+    type=NEW_FILE,
     metavar="FILE",
     help="The new study [<study name>_sized.toml, next to the study].",
 )
@@ -248,9 +248,7 @@ def completion(context: click.Context, shell: str) -> None:
 @JOBS_OPTION
 @click.option("--resume", is_flag=True, help="Resume a size that did not end.")
 @click.option(
-    "--least-weight",
-    is_flag=True,
-    help="Vary every dimension independently: the lightest pins.",
+    "--least-weight", is_flag=True, help="Vary every dimension independently: the lightest pins."
 )
 @click.option(
     "--vary",
@@ -270,7 +268,7 @@ def completion(context: click.Context, shell: str) -> None:
 )
 @click.option(
     "--probability",
-    type=click.FloatRange(0.0, 1.0, min_open=True, max_open=True),
+    type=SHARE,
     help="With --least-weight: of missing the factor, by the laws in [vary.parameters].",
 )
 def size(
@@ -325,7 +323,7 @@ def size(
     "reached; writes curve.csv, curve.svg and curve.png.\n\n"
     "Exit status: 0 done; 1 done, but no value has a factor; 2 bad input; 130 interrupted.",
 )
-@click.argument("study", type=click.Path(path_type=Path))
+@STUDY
 @click.argument("key")
 @click.option(
     "--from", "first", metavar="VALUE", help="First value [half of that in the study]; 2 or '2 in'."
@@ -342,9 +340,7 @@ def size(
     "--pin", "--pins", "pins", callback=names, metavar="A,B",
     help="Only these pins [that of the key, or all].",
 )  # fmt: skip
-@click.option(
-    "--out", type=click.Path(path_type=Path), help="Output folder [out/<study>-curve.KEY]."
-)
+@output_folder("<study>-curve.KEY")
 @JOBS_OPTION
 @QUIET_OPTION
 def curve(

@@ -7,7 +7,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.errors import InputError, cannot_write
 
 JUNIT_HEAD_SIZE = 4096  # bytes, in which JUnit results begin
 
@@ -34,9 +34,7 @@ def write_new(path: Path, content: bytes, remedy: str) -> None:
     except FileExistsError:
         raise InputError(f"{path} exists already; {remedy}", code="exists") from None
     except OSError as error:
-        raise InputError(
-            f"{path}: cannot be written ({error.strerror})", code="cannot-write"
-        ) from None
+        raise cannot_write(path, error) from None
 
 
 def require_junit(path: Path, directory: Path) -> None:

@@ -18,7 +18,7 @@ from pathlib import Path
 from pinbase.platform import portable
 from pinbase.processes.folder_lock import Release, lock
 from pinstress.cli import manifest
-from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.errors import InputError, cannot_write_out
 
 RESULTS_JSON = "results.json"  # what a run and the loads alone write
 RENAME_EXCHANGE, AT_FDCWD = 2, -100  # of Linux's renameat2
@@ -82,9 +82,7 @@ def replacing(directory: Path, mark: str = RESULTS_JSON) -> Iterator[Path]:
             release = _claim(partial, directory)
             _recover(earlier, directory)
         except OSError as error:
-            raise InputError(
-                f"--out: cannot write to {directory.parent} ({error.strerror})", code="cannot-write"
-            ) from None
+            raise cannot_write_out(directory.parent, error) from None
         require_replaceable(directory, mark)
         try:
             yield partial
@@ -92,9 +90,7 @@ def replacing(directory: Path, mark: str = RESULTS_JSON) -> Iterator[Path]:
         except OSError as error:  # a full disk
             if not _is_inside(error, partial):
                 raise
-            raise InputError(
-                f"--out: cannot write to {directory} ({error.strerror})", code="cannot-write"
-            ) from error
+            raise cannot_write_out(directory, error) from error
         require_replaceable(directory, mark)  # a run takes minutes
         try:
             _replace(partial, directory, earlier)

@@ -15,12 +15,13 @@ from tempfile import TemporaryDirectory
 import click
 
 from pinbase.errors import Damaged
+from pinbase.grouped import grouped
 from pinbase.processes import interrupts
 from pinbase.processes.apart import NO_MEMORY_REASON, Failed, apart
 from pinbase.processes.interrupts import Unfinished
 from pinbase.processes.pool import preload
 from pinstress.cli import manifest
-from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.errors import InputError, cannot_write
 from pinstress.study.reading.extras import require_package
 from pinstress.study.reading.file_names import field_name
 from reports.folder.inside import NotPlain, is_inside, read_inside, write_inside
@@ -126,9 +127,8 @@ def report_failed(directory: Path, failed: dict[str, Failed]) -> int:
     """Report the files that could not be drawn in one message, and return the exit status."""
     if not failed:
         return 0
-    by_reason: dict[str, list[str]] = {}
-    for name, failure in sorted(failed.items(), key=lambda item: item[0] != PDF_FILE):
-        by_reason.setdefault(failure.reason, []).append(name)
+    ordered = sorted(failed.items(), key=lambda item: item[0] != PDF_FILE)
+    by_reason = grouped((failure.reason, name) for name, failure in ordered)
     said = "; ".join(f"{_listed(names)}: {why}" for why, names in by_reason.items())
     ways = [
         w
@@ -262,8 +262,7 @@ def _add(directory: Path, files: dict[str, Path]) -> None:
             write_inside(directory, name, path.read_bytes())
         manifest.drop(directory, partial_names)
     except OSError as error:
-        text = f"{directory}: cannot be written ({error.strerror})"
-        raise InputError(text, code="cannot-write") from None
+        raise cannot_write(directory, error) from None
 
 
 def _entries(directory: Path) -> set[str]:

@@ -33,6 +33,12 @@ def names(_: click.Context, __: click.Parameter, value: str | None) -> list[str]
     return entries
 
 
+PATH = click.Path(path_type=Path)
+NEW_FILE = click.Path(path_type=Path, dir_okay=False)
+POSITIVE = click.FloatRange(0.0, min_open=True)
+SHARE = click.FloatRange(0.0, 1.0, min_open=True, max_open=True)
+STUDY = click.argument("study", type=PATH)
+RESULTS = click.argument("results", type=PATH)
 PINS_OPTION = click.option("--pins", callback=names, metavar="A,B", help="Only these pins.")
 CASES_OPTION = click.option("--cases", callback=names, metavar="X,Y", help="Only these cases.")
 JOBS_OPTION = click.option(
@@ -51,6 +57,11 @@ def choices(command: Command) -> Command:
     return PINS_OPTION(CASES_OPTION(JOBS_OPTION(QUIET_OPTION(command))))
 
 
+def output_folder(default: str) -> Callable[[Command], Command]:
+    """Return the option --out of a command that writes a folder, by default out/<default>."""
+    return click.option("--out", type=PATH, help=f"Output folder [out/{default}].")
+
+
 def cluster_choices(command: Command) -> Command:
     """Add the options that say where a cluster is: --scheduler, --tls and --insecure."""
     scheduler = click.option(
@@ -62,7 +73,7 @@ def cluster_choices(command: Command) -> Command:
     tls = click.option(
         "--tls",
         metavar="DIR",
-        type=click.Path(path_type=Path),
+        type=PATH,
         help="With --scheduler: the folder that `pinstress cluster-keys` wrote; scheduler and "
         "workers use the same three files.",
     )

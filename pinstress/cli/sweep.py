@@ -37,7 +37,7 @@ from pinstress.explore.sweep.parts import (
 from pinstress.explore.sweep.summary import summary
 from pinstress.explore.sweep.sweep import Report, planned, solved
 from pinstress.explore.sweep.table import read_table, table_of, write_table
-from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.errors import InputError, cannot_write_out
 from pinstress.study.reading.file import Study
 from reports.folder.inside import write_inside
 
@@ -130,9 +130,7 @@ def _write(directory: Path, table: pa.Table) -> None:
         write_table(table, directory / DESIGNS_FILE)
         write_inside(directory, DESIGNS_PAGE, render_designs(designs_of(table)).encode())
     except OSError as error:  # a full disk
-        raise InputError(
-            f"--out: cannot write to {directory} ({error.strerror})", code="cannot-write"
-        ) from error
+        raise cannot_write_out(directory, error) from error
 
 
 def _require_usable(directory: Path, parts: BatchFolder, resume: bool) -> None:
@@ -185,9 +183,7 @@ def _claimed(directory: Path, parts: BatchFolder, resume: bool) -> Iterator[None
     except OSError as error:
         if error.filename is None and error.errno is None:
             raise
-        raise InputError(
-            f"--out: cannot write to {directory} ({error.strerror})", code="cannot-write"
-        ) from error
+        raise cannot_write_out(directory, error) from error
     finally:
         if release is not None:
             if not resume and parts.there() and not parts.count:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from reports.animation.frames import nice
-from reports.animation.scene import APPLIED_GAP, MAX_ARROW_LENGTH, Scene
-from reports.data.results import DriveTable, Units
+from reports.animation.scene import APPLIED_GAP, Scene
+from reports.data.results import DriveTable, Floats, Units
 from reports.format.fixed_decimals import Fixed
 from reports.format.numbers import short
 
@@ -37,27 +37,38 @@ class Arrow:
 def arrows(scene: Scene) -> list[Arrow]:
     """Return an arrow for each connection, with a length in proportion to its force."""
     shown_arrows = []
-    for c, ((fx, fy), joint) in enumerate(zip(scene.forces[0].tolist(), scene.tails, strict=True)):
+    forces = scene.projection(scene.forces[0]).tolist()
+    for c, ((fx, fy), joint) in enumerate(zip(forces, scene.tails, strict=True)):
         x, y = scene.joints[0, joint].tolist()
-        length = MAX_ARROW_LENGTH * float(np.hypot(fx, fy)) / (scene.largest or 1.0)
-        colour = scene.colour(scene.motion.connections[c][1])
+        length = scene.longest * float(np.hypot(fx, fy)) / (scene.largest or 1.0)
+        colour = scene.colour(scene.skeleton.connections[c][1])
         shown_arrows.append(Arrow(colour, (x, y), length, float(np.degrees(np.arctan2(-fy, fx)))))
     return shown_arrows
 
 
 def applied_arrows(scene: Scene) -> list[tuple[Arrow, float]]:
-    """Return the arrow of each applied load, which ends just before its point, and its size."""
-    shown_arrows = []
-    for at, force in scene.applied:
-        (x, y), (fx, fy) = at[0].tolist(), force[0].tolist()
-        size = float(np.hypot(fx, fy))
-        length = MAX_ARROW_LENGTH * size / (scene.largest or 1.0)
-        if size > 0.0:
-            back = length + APPLIED_GAP
-            x, y = x - back * fx / size, y + back * fy / size
-        angle = float(np.degrees(np.arctan2(-fy, fx)))
-        shown_arrows.append((Arrow("plain", (x, y), length, angle), size))
-    return shown_arrows
+    """Return the arrow of each applied force, which ends just before its point, and its size."""
+    return [_ending(scene, *load, scene.largest) for load in scene.applied]
+
+
+def couple_arrows(scene: Scene) -> list[tuple[Arrow, float]]:
+    """Return the arrow of each applied couple, about which it turns, and its size."""
+    return [_ending(scene, *load, scene.largest_couple) for load in scene.couples]
+
+
+def _ending(scene: Scene, at: Floats, force: Floats, largest: float) -> tuple[Arrow, float]:
+    """Return the arrow of a load that ends just before its point at the first frame, and its size.
+
+    at, force: (F, 3). largest: load of this kind.
+    """
+    (x, y), (fx, fy) = scene.seen(at[0]).tolist(), scene.projection(force[0]).tolist()
+    size, shown = float(np.linalg.norm(force[0])), float(np.hypot(fx, fy))
+    length = scene.longest * shown / (largest or 1.0)
+    if shown > 0.0:
+        back = length + APPLIED_GAP
+        x, y = x - back * fx / shown, y + back * fy / shown
+    angle = float(np.degrees(np.arctan2(-fy, fx)))
+    return Arrow("plain", (x, y), length, angle), size
 
 
 def key(scene: Scene) -> tuple[float, Arrow] | None:
@@ -65,14 +76,17 @@ def key(scene: Scene) -> tuple[float, Arrow] | None:
     if not scene.largest > 0.0:
         return None
     force = nice(KEY_ARROW_SHARE * scene.largest)
-    return force, Arrow("plain", (0.0, -24.0), MAX_ARROW_LENGTH * force / scene.largest, 0.0)
+    return force, Arrow("plain", (0.0, -24.0), scene.longest * force / scene.largest, 0.0)
 
 
 @dataclass(frozen=True)
 class Shown:
-    """The number formats of the forces and, for each drive, of its position and its force."""
+    """The number formats of the forces and couples and, for each drive, of its position and its
+    force.
+    """
 
     force: Fixed
+    couple: Fixed
     drives: list[tuple[Fixed, Fixed]]
 
     @staticmethod
@@ -87,7 +101,8 @@ class Shown:
                     Fixed.of(d.force, torque if rotary else units.force),
                 )
             )
-        return Shown(Fixed.of(np.array([scene.largest]), units.force), pairs)
+        couple = Fixed.of(np.array([scene.largest_couple]), f"{units.force}·{units.length}")
+        return Shown(Fixed.of(np.array([scene.largest]), units.force), couple, pairs)
 
 
 @dataclass(frozen=True)
@@ -98,8 +113,7 @@ class ForceRow:
     body: str
     joint: int
     colour: str
-    x: str
-    y: str
+    components: list[str]
     force: str
     largest: str
     when: str
@@ -111,8 +125,8 @@ def rows(scene: Scene, shown: Shown) -> list[ForceRow]:
     if table is None:
         return []
     peaks, first, force_rows = table.largest, scene.instants[0], []
-    for c, (name, body, _) in enumerate(scene.motion.connections):
-        fx, fy = (shown.force(v) for v in scene.forces[0, c].tolist())
+    for c, (name, body, _) in enumerate(scene.skeleton.connections):
+        components = [shown.force(v) for v in scene.forces[0, c, : len(scene.axes)].tolist()]
         peak, when = peaks[c].force, peaks[c].time
         force_rows.append(
             ForceRow(
@@ -120,8 +134,7 @@ def rows(scene: Scene, shown: Shown) -> list[ForceRow]:
                 body,
                 scene.tails[c],
                 scene.colour(body),
-                fx,
-                fy,
+                components,
                 shown.force(float(table.magnitudes[first, c])),
                 shown.force(peak),
                 "" if when is None else short(float(f"{when:.4g}")),

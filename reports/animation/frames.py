@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from reports.data.results import DriveTable, Floats, LinkageMotion, ReactionTable
+from reports.data.results import DriveTable, Floats, ReactionTable
+from reports.data.skeleton import Skeleton
+from reports.format.drawing.projection import Projection
 
 MAX_FRAMES = 240  # frames: 4 s at 60 per second
 PICTURE_WIDTH, MAX_PICTURE_HEIGHT, MIN_PICTURE_HEIGHT = 960.0, 560.0, 300.0
@@ -15,10 +18,10 @@ PICTURE_MARGIN = 36.0  # room for names and for what is drawn around a joint
 
 
 def frames(
-    motion: LinkageMotion, table: ReactionTable | None, drives: list[DriveTable]
+    skeleton: Skeleton, table: ReactionTable | None, drives: list[DriveTable]
 ) -> NDArray[np.int64]:
     """Return the indices of at most 240 instants: evenly spaced ones, and those of the peaks."""
-    count = len(motion.joint_position)
+    count = len(skeleton.position)
     if count <= MAX_FRAMES:
         return np.arange(count)
     peaks = [int(np.argmax(np.abs(d.force))) for d in drives if len(d.force) == count]
@@ -66,6 +69,32 @@ class Viewport:
         left = 0.5 * (PICTURE_WIDTH - size[0]) - corner[0]
         top = 0.5 * (height + size[1]) + corner[1]
         return Viewport(low, float(left), float(top), height)
+
+    @staticmethod
+    def turning(
+        points: Floats, tails: Floats, arrows: Floats, views: Sequence[Projection]
+    ) -> Viewport:
+        """Return the viewport about the middle of all points in which they fit in several views.
+
+        points: (N, 3), in the study's unit. tails: (M, 3), the points at which the arrows start.
+        arrows: (M, 3), in units of the picture. views: the first is that of the viewport.
+        """
+        middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+        away = np.concatenate([points, tails]) - middle
+        offsets = np.concatenate([np.zeros_like(points), arrows])
+        room = 0.5 * np.array([PICTURE_WIDTH, MAX_PICTURE_HEIGHT]) - PICTURE_MARGIN
+
+        def fits(scale: float) -> bool:
+            drawn = scale * away + offsets
+            return all(bool((np.abs(view(drawn)) <= room).all()) for view in views)
+
+        low, high = 0.0, float(room.max() / (np.abs(away).max() or 1.0))
+        for _ in range(40):
+            scale = 0.5 * (low + high)
+            low, high = (scale, high) if fits(scale) else (low, scale)
+        x, y = (float(c) for c in low * views[0](middle))
+        half = 0.5 * PICTURE_WIDTH, 0.5 * MAX_PICTURE_HEIGHT
+        return Viewport(low, half[0] - x, half[1] + y, MAX_PICTURE_HEIGHT)
 
     def __call__(self, points: Floats) -> Floats:
         """Return the positions (..., 2) in the picture of points (..., 2)."""

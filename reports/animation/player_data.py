@@ -7,8 +7,15 @@ from typing import Any
 import numpy as np
 
 from reports.animation.frames import nice
-from reports.animation.scene import APPLIED_GAP, MAX_ARROW_LENGTH, Scene
+from reports.animation.scene import (
+    APPLIED_GAP,
+    AXIS_REACH,
+    JOINT_LABEL_GAP,
+    PIN_REACH,
+    Scene,
+)
 from reports.data.results import DriveTable, Floats, Units
+from reports.format.drawing.projection import three_views
 from reports.format.numbers import short
 
 PLAYING_SECONDS = 6.0  # that a motion takes to play, about
@@ -18,18 +25,19 @@ WATCHABLE_SECONDS = (2.0, 12.0)  # seconds that need no other speed
 def player_data(scene: Scene, drives: list[DriveTable], units: Units) -> dict[str, Any]:
     """Return the positions and values of every frame for the script."""
     at = scene.instants
-    time = scene.motion.time
+    time = scene.skeleton.time
     return {
         "time": digits(np.arange(len(at), dtype=np.float64) if time is None else time[at], 7),
         "places": {"left": scene.view.left, "top": scene.view.top, "scale": scene.view.scale},
+        "space": None if scene.skeleton.flat else _space(scene),
         "units": {"length": units.length, "force": units.force, "time": units.time},
-        "joints": list(scene.motion.joints),
-        "xy": [pixels(scene.joints[:, j]) for j in range(len(scene.motion.joints))],
-        "centres": [pixels(scene.centres[:, b]) for b in range(len(scene.motion.bodies))],
+        "joints": list(scene.skeleton.joints),
+        "at": _each(scene, scene.skeleton.position),
+        "centres": _each(scene, scene.skeleton.centre),
         "links": scene.members,
         "slides": [
             {
-                "ends": pixels(s.ends.reshape(-1, 4)),
+                "ends": pixels(scene.placed(scene.skeleton.slides[s.name][at])),
                 "cylinder": round(s.cylinder, 2),
                 "rail": s.rail is not None,
                 "angle": round(s.angle, 3),
@@ -39,13 +47,22 @@ def player_data(scene: Scene, drives: list[DriveTable], units: Units) -> dict[st
         "pitch": [pixels(ends.reshape(-1, 4)) for _, ends, _ in scene.pitch],
         "connections": _connections(scene),
         "applied": [
-            {"xy": pixels(at), "fx": digits(force[:, 0]), "fy": digits(force[:, 1])}
-            for at, force in scene.applied
+            {"at": pixels(scene.placed(point)), **_components(scene, force)}
+            for point, force in scene.applied
+        ],
+        "couples": [
+            {"at": pixels(scene.placed(point)), **_components(scene, couple, 7)}
+            for point, couple in scene.couples
         ],
         "drives": [
             {"position": digits(d.position[at]), "force": digits(d.force[at])} for d in drives
         ],
-        "arrow": {"longest": MAX_ARROW_LENGTH, "largest": scene.largest, "gap": APPLIED_GAP},
+        "arrow": {
+            "longest": scene.longest,
+            "largest": scene.largest,
+            "couple": scene.largest_couple,
+            "gap": APPLIED_GAP,
+        },
     }
 
 
@@ -58,12 +75,42 @@ def _connections(scene: Scene) -> list[dict[str, Any]]:
             "name": name,
             "body": body,
             "joint": scene.tails[c],
-            "fx": digits(scene.forces[:, c, 0]),
-            "fy": digits(scene.forces[:, c, 1]),
+            **_components(scene, scene.forces[:, c]),
             "f": digits(size[:, c]),
         }
-        for c, (name, body, _) in enumerate(scene.motion.connections)
+        for c, (name, body, _) in enumerate(scene.skeleton.connections)
     ]
+
+
+def _each(scene: Scene, points: Floats) -> list[list[float]]:
+    """Return the places of each of N points (T, N, 3) in all frames."""
+    return [pixels(points) for points in np.moveaxis(scene.placed(points[scene.instants]), 1, 0)]
+
+
+def _components(scene: Scene, force: Floats, significant: int = 5) -> dict[str, list[float | None]]:
+    """Return the components (F, 3) of a force in the axes that the picture has."""
+    return {f"f{axis}": digits(force[:, i], significant) for i, axis in enumerate(scene.axes)}
+
+
+def _space(scene: Scene) -> dict[str, Any]:
+    """Return what the script turns a linkage in space by.
+
+    base: the directions right, up and towards the viewer of the front view.
+    """
+    skeleton, at = scene.skeleton, scene.instants
+    front = three_views(skeleton.up)[0]
+    return {
+        "reach": [AXIS_REACH, PIN_REACH],
+        "labels": {"gap": JOINT_LABEL_GAP, "sizes": scene.name_sizes.tolist()},
+        "base": [front.right, front.up, front.towards],
+        "middle": scene.middle.tolist(),
+        "axes": [
+            [round(float(c), 4) for c in skeleton.axes[at, j].ravel()] if shown else None
+            for j, shown in enumerate(np.any(skeleton.axes, axis=(0, 2)).tolist())
+        ],
+        "stems": [skeleton.bodies.index(body) for body in skeleton.stems],
+        "curves": [pixels(scene.placed(path[at])) for path in skeleton.paths.values()],
+    }
 
 
 def speeds(time: Floats | None) -> list[tuple[float, str, bool]]:

@@ -11,12 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reports.animation.frames import PICTURE_WIDTH, Viewport
-from reports.data.results import Floats, LinkageMotion, ReactionTable
+from reports.data.results import Floats, ReactionTable
+from reports.data.skeleton import Skeleton
+from reports.format.drawing.projection import PLANE, Projection, isometric, three_views
 from reports.format.drawing.svg_labels import label_offsets
 
-MAX_ARROW_LENGTH = 120.0  # arrow
+MAX_ARROW_LENGTH, MAX_SPACE_ARROW_LENGTH = 120.0, 80.0  # arrow; in space, which needs room
 APPLIED_GAP = 9.0  # between the tip of an applied load and its point, at which a joint may be
 LABELLED_LENGTH_FACTOR = 1.2  # of an applied load's arrow with the room for its size
+AXIS_REACH, PIN_REACH = 34.0, 20.0  # from a joint: its axis, and the pin about it
 BODY_COLOUR_COUNT = 10  # in animation.css
 JOINT_LETTER_WIDTH, JOINT_LINE_HEIGHT, JOINT_LABEL_GAP = 7.6, 15.0, 13.0  # of joints' names
 MAX_NAME_LETTERS = 14  # of a name on the picture
@@ -58,20 +61,20 @@ class Slide:
 class Scene:
     """The contents of the picture in F frames, with positions in its own unit, y downwards."""
 
-    motion: LinkageMotion
+    skeleton: Skeleton
     instants: NDArray[np.int64]
     table: ReactionTable | None
 
     @cached_property
     def points(self) -> Floats:
-        """The points (N, 2) that must be visible, in the study's unit."""
-        motion = self.motion
-        single = [b for b, joints in enumerate(motion.links) if len(joints) < 2]
-        parts = [motion.joint_position, motion.centre[:, single], *motion.slides.values()]
-        parts += [p.position for p in motion.paths.values()]
-        box = np.array([[-1.0, -1.0], [1.0, 1.0]])
-        parts += [c.ends[:, :1] + c.radius * box if c.round else c.ends for c in motion.pitch]
-        return np.concatenate([p.reshape(-1, 2) for p in parts])
+        """The points (N, 3) that must be visible, in the study's unit."""
+        skeleton = self.skeleton
+        single = [b for b, joints in enumerate(skeleton.links) if len(joints) < 2]
+        parts = [skeleton.position, skeleton.centre[:, single], *skeleton.slides.values()]
+        parts += skeleton.paths.values()
+        box = np.array([[-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]])
+        parts += [c.ends[:, :1] + c.radius * box if c.round else c.ends for c in skeleton.pitch]
+        return np.concatenate([p.reshape(-1, 3) for p in parts])
 
     @cached_property
     def size(self) -> float:
@@ -79,77 +82,130 @@ class Scene:
         return float(np.ptp(self.points, axis=0).max()) or 1.0
 
     @cached_property
+    def projection(self) -> Projection:
+        """The view in which the picture starts."""
+        return PLANE if self.skeleton.flat else isometric(self.skeleton.up)
+
+    def seen(self, points: Floats) -> Floats:
+        """Return the places (..., 2) on the picture of points (..., 3), as it starts."""
+        return self.view(self.projection(points))
+
+    @cached_property
+    def middle(self) -> Floats:
+        """The point (3,) about which the picture of a linkage in space turns."""
+        return np.asarray(0.5 * (self.points.min(axis=0) + self.points.max(axis=0)))
+
+    def placed(self, points: Floats) -> Floats:
+        """Return points (..., 3) as the script takes them: in space from the middle, (..., 3)."""
+        if self.skeleton.flat:
+            return self.seen(points)
+        return np.asarray(self.view.scale * (points - self.middle))
+
+    @cached_property
     def view(self) -> Viewport:
         # With square-root arrows, which are the longer ones.
         size = np.linalg.norm(self.forces, axis=2, keepdims=True)
         longer = np.sqrt(self.largest / np.where(size > 0.0, size, np.inf))
-        arrows = MAX_ARROW_LENGTH * longer * self.forces / (self.largest or 1.0)
-        tails = self.motion.joint_position[self.instants][:, self.tails]
+        arrows = self.longest * longer * self.forces / (self.largest or 1.0)
+        tails = self.skeleton.position[self.instants][:, self.tails]
         # An applied load ends at its point.
-        for load in self.motion.applied:
+        for load in self.skeleton.applied:
             size = load.sizes[self.instants, None]
             longer = np.sqrt(self.largest / np.where(size > 0.0, size, np.inf))
-            away = -(MAX_ARROW_LENGTH * longer * load.force[self.instants]) / self.largest
+            away = -(self.longest * longer * load.force[self.instants]) / self.largest
             tails = np.concatenate([tails, load.position[self.instants, None]], axis=1)
             arrows = np.concatenate([arrows, away[:, None] * LABELLED_LENGTH_FACTOR], axis=1)
+        for couple in self.skeleton.couples:
+            part = np.sqrt(couple.sizes[self.instants, None] / self.largest_couple)
+            unit = couple.couple[self.instants] / np.maximum(
+                couple.sizes[self.instants, None], 1e-300
+            )
+            tails = np.concatenate([tails, couple.position[self.instants, None]], axis=1)
+            away = -self.longest * LABELLED_LENGTH_FACTOR * part * unit
+            arrows = np.concatenate([arrows, away[:, None]], axis=1)
+        tails, arrows = tails.reshape(-1, 3), arrows.reshape(-1, 3)
+        if not self.skeleton.flat:
+            views = (self.projection, *three_views(self.skeleton.up))
+            return Viewport.turning(self.points, tails, arrows, views)
         corners = np.stack([self.points.min(axis=0), self.points.max(axis=0)])
-        return Viewport.of(corners, tails.reshape(-1, 2), arrows.reshape(-1, 2))
+        return Viewport.of(PLANE(corners), PLANE(tails), PLANE(arrows))
 
     @cached_property
     def forces(self) -> Floats:
-        """The forces (F, C, 2) on the pins, in the plane of the linkage."""
+        """The forces (F, C, 3) on the pins; of a planar linkage, in its plane."""
         if self.table is None:
-            return np.zeros((len(self.instants), 0, 2))
-        return self.table.forces[self.instants, :, :2]
+            return np.zeros((len(self.instants), 0, 3))
+        forces = self.table.forces[self.instants]
+        return forces * [1.0, 1.0, 0.0] if self.skeleton.flat else forces
+
+    @property
+    def longest(self) -> float:
+        """The length of the arrow of the largest force."""
+        return MAX_ARROW_LENGTH if self.skeleton.flat else MAX_SPACE_ARROW_LENGTH
 
     @cached_property
     def tails(self) -> list[int]:
         """The index of the joint of each connection of the table."""
         if self.table is None:
             return []
-        return [self.motion.joints.index(joint) for _, _, joint in self.motion.connections]
+        return [self.skeleton.joints.index(joint) for _, _, joint in self.skeleton.connections]
 
     @cached_property
     def largest(self) -> float:
         """The largest force of all connections, applied loads and instants."""
-        sizes = [load.sizes for load in self.motion.applied]
+        sizes = [load.sizes for load in self.skeleton.applied]
         sizes += [] if self.table is None else [self.table.magnitudes]
         return max((float(np.max(x, initial=0.0)) for x in sizes), default=0.0)
 
     @cached_property
     def applied(self) -> list[tuple[Floats, Floats]]:
-        """The points (F, 2) and the forces (F, 2), y upwards, of the applied loads."""
-        loads, at = self.motion.applied, self.instants
-        return [(self.view(load.position[at]), load.force[at]) for load in loads]
+        """The points and the forces, each (F, 3), of the applied loads."""
+        loads, at = self.skeleton.applied, self.instants
+        return [(load.position[at], load.force[at]) for load in loads]
+
+    @cached_property
+    def couples(self) -> list[tuple[Floats, Floats]]:
+        """The points and the couples, each (F, 3), of the applied couples."""
+        loads, at = self.skeleton.couples, self.instants
+        return [(load.position[at], load.couple[at]) for load in loads]
+
+    @cached_property
+    def largest_couple(self) -> float:
+        """The largest applied couple of all instants."""
+        return max((float(load.sizes.max()) for load in self.skeleton.couples), default=0.0)
 
     @cached_property
     def joints(self) -> Floats:
         """The positions (F, J, 2) of the joints."""
-        return self.view(self.motion.joint_position[self.instants])
+        return self.seen(self.skeleton.position[self.instants])
 
     @cached_property
     def centres(self) -> Floats:
         """The positions (F, B, 2) of the centres of mass of the bodies."""
-        return self.view(self.motion.centre[self.instants])
+        return self.seen(self.skeleton.centre[self.instants])
 
     @cached_property
     def members(self) -> list[list[int]]:
         """The indices of the joints of each body."""
-        index = {name: j for j, name in enumerate(self.motion.joints)}
-        return [[index[name] for name in link] for link in self.motion.links]
+        index = {name: j for j, name in enumerate(self.skeleton.joints)}
+        return [[index[name] for name in link] for link in self.skeleton.links]
 
     def shape(self, body: str) -> Floats:
-        """Return the positions (joints, 2) of the joints of a body at the first frame."""
-        return self.joints[0, self.members[self.motion.bodies.index(body)]]
+        """Return the positions (N, 2) at the first frame of the joints of a body, and of the centre
+        of mass where the body is drawn up to it.
+        """
+        b = self.skeleton.bodies.index(body)
+        stem = self.centres[0, [b]] if body in self.skeleton.stems else np.zeros((0, 2))
+        return np.concatenate([self.joints[0, self.members[b]], stem])
 
     def track(self, joint: str) -> Floats:
         """Return the positions (F, 2) of a joint."""
-        return self.joints[:, self.motion.joints.index(joint)]
+        return self.joints[:, self.skeleton.joints.index(joint)]
 
     @cached_property
     def curves(self) -> dict[str, Floats]:
         """The paths (F, 2) of the named points."""
-        return {name: self.view(p.position[self.instants]) for name, p in self.motion.paths.items()}
+        return {name: self.seen(path[self.instants]) for name, path in self.skeleton.paths.items()}
 
     @cached_property
     def pitch(self) -> list[tuple[str, Floats, float]]:
@@ -157,10 +213,10 @@ class Scene:
         return [
             (
                 self.colour(c.body),
-                self.view(c.ends[self.instants]),
+                self.seen(c.ends[self.instants]),
                 c.round * c.radius * self.view.scale,
             )
-            for c in self.motion.pitch
+            for c in self.skeleton.pitch
         ]
 
     def named_between(self, body: str) -> list[int] | None:
@@ -168,7 +224,7 @@ class Scene:
 
         None where the name is too long.
         """
-        members = self.members[self.motion.bodies.index(body)]
+        members = self.members[self.skeleton.bodies.index(body)]
         at = self.joints[0]
 
         def clear(pair: Sequence[int]) -> float:
@@ -181,25 +237,26 @@ class Scene:
 
     def colour(self, body: str) -> str:
         """Return the colour class of a body; what is not a body of the linkage is ground."""
-        if body not in self.motion.bodies:
+        if body not in self.skeleton.bodies:
             return "ground"
-        return f"b{self.motion.bodies.index(body) % BODY_COLOUR_COUNT}"
+        return f"b{self.skeleton.bodies.index(body) % BODY_COLOUR_COUNT}"
 
     @cached_property
     def slides(self) -> list[Slide]:
-        return [self._slide(name, ends) for name, ends in self.motion.slides.items()]
+        return [self._slide(name, ends) for name, ends in self.skeleton.slides.items()]
 
     def _slide(self, name: str, all_ends: Floats) -> Slide:
         owners = [self._owner(all_ends[:, k]) for k in range(2)]
-        ends = self.view(all_ends[self.instants])
+        ends = self.seen(all_ends[self.instants])
         along = ends[:, 1] - ends[:, 0]
-        length = np.linalg.norm(along, axis=1)
+        true = self.placed(all_ends[self.instants])
+        length = np.linalg.norm(true[:, 1] - true[:, 0], axis=1)
         longest = float(length.max())
         cylinder = max(
             CYLINDER_SHARE_OF_SHORTEST * float(length.min()), CYLINDER_SHARE_OF_LONGEST * longest
         )
         straight = along[int(np.argmax(length))] / (longest or 1.0)
-        still = len(ends) > 1 and np.ptp(ends[:, 0], axis=0).max() < 0.01
+        still = self.skeleton.flat and len(ends) > 1 and np.ptp(ends[:, 0], axis=0).max() < 0.01
         across = along[:, 0] * straight[1] - along[:, 1] * straight[0]
         rail = None
         if still and np.abs(across).max() < 0.01:
@@ -213,15 +270,14 @@ class Scene:
         """Return the colour of the body whose only joint is at this end of a slider."""
         for b, members in enumerate(self.members):
             if len(members) == 1:
-                off = self.motion.joint_position[:, members[0]] - end
+                off = self.skeleton.position[:, members[0]] - end
                 if np.abs(off).max() < 1e-6 * self.size:
-                    return self.colour(self.motion.bodies[b])
+                    return self.colour(self.skeleton.bodies[b])
         return "ground" if np.ptp(end, axis=0).max() < 1e-6 * self.size else "plain"
 
     @cached_property
     def names(self) -> Floats:
         """The offsets (J, 2) from each joint to the middle of its name."""
-        wide = [JOINT_LETTER_WIDTH * len(clipped(name)) + 4.0 for name in self.motion.joints]
         few = np.unique(np.linspace(0, len(self.instants) - 1, 12).round().astype(int))
         pairs = [
             (a, b)
@@ -232,9 +288,19 @@ class Scene:
         lines = [self.joints[few][:, list(pair)] for pair in pairs]
         lines += [slide.ends[few] for slide in self.slides]
         inked = np.stack(lines, axis=1) if lines else np.zeros((len(few), 0, 2, 2))
-        sizes = np.column_stack([wide, np.full(len(wide), JOINT_LINE_HEIGHT)])
         picture = (PICTURE_WIDTH, self.view.height)
-        return label_offsets(self.joints[few], sizes, inked, JOINT_LABEL_GAP, picture)
+        return label_offsets(self.joints[few], self.name_sizes, inked, JOINT_LABEL_GAP, picture)
+
+    @cached_property
+    def name_sizes(self) -> Floats:
+        """The width and the height (J, 2) of the name of each joint."""
+        wide = [JOINT_LETTER_WIDTH * len(clipped(name)) + 4.0 for name in self.skeleton.joints]
+        return np.column_stack([wide, np.full(len(wide), JOINT_LINE_HEIGHT)])
+
+    @property
+    def axes(self) -> str:
+        """The axes that the picture has."""
+        return "xy" if self.skeleton.flat else "xyz"
 
 
 def clipped(name: str) -> str:

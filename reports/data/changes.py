@@ -34,9 +34,17 @@ class Remedy:
     singular: bool
 
 
+def unsized(changes: tuple[Remedy, ...]) -> tuple[Remedy, ...]:
+    """Return the changes of the pins that no diameter brings to their factor."""
+    return tuple(
+        c for c in changes if not c.diameter_factor and "pinstress size" not in c.diameter_note
+    )
+
+
 def command(changes: tuple[Remedy, ...], study: str, required: float | None) -> str:
     """Return the command that sizes the pins for which diameters can be found; empty if none."""
-    pins = [c.pin for c in changes if c.diameter_factor or "pinstress size" in c.diameter_note]
+    left_out = unsized(changes)
+    pins = [c.pin for c in changes if c not in left_out]
     if not pins:
         return ""
     fos = "" if required is not None else " --fos 1"

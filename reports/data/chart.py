@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from pinbase.grouped import grouped
+
 MIN_CHART_ERROR = 1e-12  # replaces an error of zero
 CHART_NAME = "chart"
 
@@ -70,11 +72,7 @@ class Chart:
     @property
     def curves(self) -> dict[tuple[str, str], list[ChartPoint]]:
         """Return the points that did not fail, by model and element."""
-        out: dict[tuple[str, str], list[ChartPoint]] = {}
-        for p in self.points:
-            if not p.failed:
-                out.setdefault((p.model, p.element), []).append(p)
-        return out
+        return grouped(((p.model, p.element), p) for p in self.points if not p.failed)
 
 
 def error(point: ChartPoint) -> float:

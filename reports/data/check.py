@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pinbase.dimensions import Force
 from reports.data.mechanics import LinkageMotion
 from reports.data.results import PinShape, Units
+from reports.data.skeleton import Skeleton, planar_skeleton
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,7 @@ class CheckedStudy:
 
     summary: sentences on the study, its mechanism and its cases. problems: what a run would not
     solve, and what may be wrong.
-    motions: of the linkage, by case.
+    motions, space: of the linkage, by case, in the plane and in space.
     """
 
     title: str
@@ -50,3 +51,9 @@ class CheckedStudy:
     motions: tuple[LinkageMotion, ...]
     pins: tuple[CheckedPin, ...]
     rows: tuple[PlannedRow, ...]
+    space: tuple[Skeleton, ...] = ()
+
+    @property
+    def skeletons(self) -> tuple[Skeleton, ...]:
+        """The parts of every motion that are drawn."""
+        return (*map(planar_skeleton, self.motions), *self.space)

@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from itertools import pairwise
 
+from pinbase.grouped import grouped
+
 CURVE_NAME = "curve"
 
 
@@ -87,10 +89,7 @@ class FactorCurve:
         """At every value the pin's case with the smallest factor; first those without a factor,
         since nothing is known of them.
         """
-        by_value: dict[float, list[CurvePoint]] = {}
-        for point in self.points:
-            if point.pin == pin:
-                by_value.setdefault(point.value, []).append(point)
+        by_value = grouped((point.value, point) for point in self.points if point.pin == pin)
         return tuple(
             min(points, key=lambda p: p.safety_factor or 0.0) for points in by_value.values()
         )

@@ -12,15 +12,29 @@ import numpy as np
 from assess.judgement import BELOW_YIELD, NOT_DECIDED, SAFE
 from fea.core.places import ContactPlace
 from fea.support.records import FRICTION, JointResult, Variation
+from pinbase.arrays import Mask
 from reports.data.decision import factor_ends
 from reports.data.results import Dependence, Floats, LandingRange, PinResult
 
+OverStrength = Literal[
+    "strength and joint",
+    "strength and landing",
+    "strength and links",
+    "strength, joint and landing",
+]
 BENEATH_CONTACT: Literal["beneath"] = "beneath"
 WITH_ERROR = "with its error"  # of what lies beneath, which exceeds what is permitted only with it
 IMPULSE_RANGES_TOGETHER = "impulse time, velocity change and pulse together"
 JOINT_AND_LANDING: Literal["joint and landing"] = "joint and landing"
+WITH_STRENGTH: dict[str, OverStrength] = {
+    "joint": "strength and joint",
+    "landing": "strength and landing",
+    "links": "strength and links",
+    JOINT_AND_LANDING: "strength, joint and landing",
+}
 LOST_FIT = "press fit lost in"  # a pin that is loose at the temperature of the case
-TOGETHER = "together"  # what only both ranges together change
+YIELD_STRENGTH = "yield strength"
+TOGETHER = "together"  # what only several ranges together change
 
 
 @dataclass(frozen=True)
@@ -52,8 +66,8 @@ def depends_on(pin: PinResult) -> tuple[Dependence, ...]:
     """Return what changes the outcome of a row; empty where nothing does, and where the outcome is
     not decided as described.
 
-    The stress beneath contact comes first, then the ranges, that of the joint first. A pin that
-    comes loose depends on what else retains it.
+    The stress beneath contact comes first, then the ranges, that of the joint first, that of the
+    yield strength last. A pin that comes loose depends on what else retains it.
     """
     described = pin.as_described
     if described == NOT_DECIDED or not pin.max_von_mises or not pin.safety_factor:
@@ -66,15 +80,66 @@ def depends_on(pin: PinResult) -> tuple[Dependence, ...]:
         low, pin.max_von_mises, high, strength, permitted, described in (SAFE, BELOW_YIELD)
     )
     contact, joint = _as_of_row(contact, pin.joint, strength)
+    ranges = _over_loads_and_joint(pin, judged, contact, joint)
+    if pin.strength_range is not None:
+        ranges += _over_strength(pin, judged, contact, joint, alone=not ranges)
+    return tuple(ranges)
+
+
+def _over_strength(
+    pin: PinResult, judged: JudgedStress, contact: ContactPlace | None,
+    joint: JointResult | None, alone: bool,
+) -> Iterator[Dependence]:  # fmt: skip
+    """Yield the yield strength if it changes the outcome within its range, or with other ranges.
+
+    alone: whether no other range does; else those together are not told.
+    """
+    assert pin.strength_range is not None
+    end = pin.strength_range[0 if judged.safe else 1]
+    deep = contact.upper_end if contact else 0.0
+    if judged.safe and deep > judged.permitted:  # beneath contact it fails as described
+        deep = 0.0
+    most = max(judged.high, deep)
+    permitted = judged.permitted * end / judged.strength
+    if (most > permitted) if judged.safe else (most <= permitted):
+        maximum = max(judged.maximum, deep) if judged.safe else judged.maximum
+        flips = judged.strength * most / judged.permitted
+        yield Dependence(
+            YIELD_STRENGTH, "", "strength", end / maximum, given=judged.strength, at=end,
+            flips_at=flips, dimension="stress",
+        )  # fmt: skip
+    elif alone:
+        there = replace(judged, strength=end, permitted=permitted)
+        others = _over_loads_and_joint(pin, there, contact, joint)
+        if others:
+            over = WITH_STRENGTH[others[0].over]
+            factors = [d.factor for d in others]
+            factor = min(factors) if judged.safe else max(factors)
+            yield Dependence(TOGETHER, "", over, factor)
+
+
+def _over_loads_and_joint(
+    pin: PinResult, judged: JudgedStress, contact: ContactPlace | None, joint: JointResult | None
+) -> list[Dependence]:
+    """Return what changes the outcome of a row at one yield strength."""
+    strength = judged.strength
     ranges = [*_beneath(judged, contact), *_over_joint(judged, contact, joint)]
     if judged.safe:  # loose it is strong enough, but what retains it is open
         lost = ", ".join(pin.lost_fits)
-        ranges += [Dependence(LOST_FIT, lost, "joint", pin.safety_factor)] if lost else []
+        ranges += [Dependence(LOST_FIT, lost, "joint", strength / judged.maximum)] if lost else []
     if pin.landing is not None:
         ranges += _with_beneath(judged, contact, pin.landing)
         if not ranges:
             ranges += _over_both(judged, contact, joint, pin.landing)
-    return tuple(ranges)
+    if pin.sharing is not None:
+        low, high = pin.sharing.max_von_mises
+        ends = ((pin.sharing.lowest, low), (pin.sharing.highest, high))
+        ranges += [
+            Dependence(what, "", "links", strength / stress)
+            for what, stress in ends
+            if what and judged.turns(stress)
+        ]
+    return ranges
 
 
 def _as_of_row(
@@ -242,19 +307,31 @@ def _with_beneath(
     ]
 
 
-def _over_landing(judged: JudgedStress, r: LandingRange) -> Iterator[Dependence]:
-    """Yield the ranges that change the outcome alone, or all ranges together if none does."""
+LandingAxis = tuple[str, str, Floats, float, Mask]
+
+
+def landing_axes(r: LandingRange) -> tuple[tuple[LandingAxis, LandingAxis], Mask]:
+    """Return impulse time and velocity change of a landing's range: name, dimension, values (P,),
+    that of the case, and the points (P,) that differ from it in nothing else; then the points
+    with its time and velocity.
+    """
     time, velocity = (
         np.isclose(x, given)
         for x, given in zip((r.impulse_time, r.velocity_change), r.nominal, strict=True)
     )
     pulse = np.array([name == r.nominal_pulse for name in r.pulses])
-    turned = np.array([judged.turns(float(stress)) for stress in r.max_von_mises])
-    any_alone = False
     axes = (
         ("impulse time", "time", r.impulse_time, r.nominal[0], velocity & pulse),
         ("velocity change", "velocity", r.velocity_change, r.nominal[1], time & pulse),
     )
+    return axes, time & velocity
+
+
+def _over_landing(judged: JudgedStress, r: LandingRange) -> Iterator[Dependence]:
+    """Yield the ranges that change the outcome alone, or all ranges together if none does."""
+    axes, other_pulses = landing_axes(r)
+    turned = np.array([judged.turns(float(stress)) for stress in r.max_von_mises])
+    any_alone = False
     for what, dimension, values, given, alone in axes:
         here = _nearest(values, given, alone & turned)
         if here is not None:
@@ -265,7 +342,9 @@ def _over_landing(judged: JudgedStress, r: LandingRange) -> Iterator[Dependence]
                 what, "", "landing", judged.strength / stress,
                 given=given, at=at, flips_at=flips, dimension=dimension,
             )  # fmt: skip
-    for k in np.flatnonzero(time & velocity & ~pulse & turned):
+    for k in np.flatnonzero(other_pulses & turned):
+        if r.pulses[int(k)] == r.nominal_pulse:
+            continue
         any_alone = True
         factor = judged.strength / float(r.max_von_mises[k])
         yield Dependence("pulse", r.pulses[int(k)], "landing", factor)

@@ -27,10 +27,6 @@ class DropPeak:
     time: Time
     dimension: str
 
-    @property
-    def dimension_of(self) -> dict[str, str]:
-        return {"own": self.dimension}
-
 
 @dataclass(frozen=True)
 class DropRecord:

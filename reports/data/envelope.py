@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from pinbase.grouped import grouped
 from reports.data.decision import limit, utilisation, worst_first
 from reports.data.mechanics import PeakReaction
 from reports.data.results import PinResult, Results
@@ -36,10 +37,11 @@ def governing_cases(results: Results) -> dict[str, str]:
 def envelope(results: Results) -> list[EnvelopeCell]:
     """Return a cell for every pin in every case in which it was solved."""
     governs = governing_cases(results)
-    largest: dict[tuple[str, str], list[PeakReaction]] = {}
-    for table in results.reactions:
-        for pin, peak in zip(table.pins, table.largest, strict=True):
-            largest.setdefault((pin, table.case), []).append(peak)
+    largest = grouped(
+        ((pin, table.case), peak)
+        for table in results.reactions
+        for pin, peak in zip(table.pins, table.largest, strict=True)
+    )
     return [
         EnvelopeCell(
             row,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Annotated
 
 import numpy as np
@@ -59,10 +60,11 @@ class Still:
 
 @dataclass(frozen=True)
 class Volume:
-    """The whole volume of a revolved pin.
+    """The whole volume of a revolved pin, or of one with cuts.
 
-    points: (N, 3). cells: (M, 6), type "wedge". displacement: (N, 3).
+    points: (N, 3). cells: (M, 6), type "wedge", or (M, 10), "tetra10". displacement: (N, 3).
     stress: (N, 6), components as in Field. von_mises: (N,). pressed: (N,), as in Still.
+    more: cells of other types, by type.
     """
 
     points: Lengths
@@ -72,6 +74,7 @@ class Volume:
     stress: Stresses
     von_mises: Stresses
     pressed: NDArray[np.bool_] | None = None
+    more: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -84,8 +87,10 @@ class Field:
     envelope: (N,), the largest von Mises stress over all instants at surface nodes, NaN inside.
     yield_strength: for the factor of safety at each point, None without one.
     outside: the largest stress outside excluded zones and pressed surface, and its place (x, y, z).
+    beneath: the largest stress and its place (x, y, z), if it is inside and the mesh is a surface.
     time: None without a motion. loads: at this instant. stills: along the motion, if requested.
-    volume: the whole volume of a revolved pin, if requested. contact_pressure: (N,), from its lugs.
+    volume: the whole volume, if requested, where the field is a surface.
+    contact_pressure: (N,), from its lugs.
     pressed: (N,), where lugs press on the part shown, and where the envelope has only the instants
     at which they do not (NaN if there are none); None without lugs.
     solids: the ranges of z of local solids about cuts.
@@ -102,6 +107,7 @@ class Field:
     cell_type: str = "tetra10"
     yield_strength: Stress | None = None
     outside: tuple[Stress, Point] | None = None
+    beneath: tuple[Stress, Point] | None = None
     verdict: str = ""
     time: Time | None = None
     loads: tuple[BandLoad, ...] = ()

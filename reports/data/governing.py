@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from assess.margin import PinMargin
 from assess.strength.model_stress import YIELD_METHOD
+from pinbase.grouped import grouped
 from reports.data.results import Results
 
 
@@ -23,8 +24,4 @@ def governing(results: Results) -> list[PinMargin]:
 
 def skipped(results: Results) -> dict[str, list[PinMargin]]:
     """Return the checks that were not made, grouped by the data that they need."""
-    by_need: dict[str, list[PinMargin]] = {}
-    for margin in results.margins:
-        if margin.margin.needs:
-            by_need.setdefault(margin.margin.needs, []).append(margin)
-    return by_need
+    return grouped((m.margin.needs, m) for m in results.margins if m.margin.needs)

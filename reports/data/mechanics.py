@@ -15,6 +15,7 @@ from pinbase.dimensions import (
     Floats,
     Force,
     Forces,
+    Length,
     Lengths,
     Moments,
     Powers,
@@ -49,6 +50,24 @@ class PeakReaction:
 
 
 @dataclass(frozen=True)
+class WheelLoad:
+    """A component of the force of the ground on a wheel: a part of a reference load.
+
+    towards, direction: its direction, in words and as a unit vector in world axes.
+    place, point: where it acts, in words and in world axes.
+    """
+
+    component: str
+    factor: float
+    reference: Force
+    force: Force
+    towards: str
+    direction: tuple[float, float, float]
+    place: str
+    point: tuple[Length, Length, Length]
+
+
+@dataclass(frozen=True)
 class ReactionTable:
     """The forces on the pins in one case, in world axes.
 
@@ -58,9 +77,11 @@ class ReactionTable:
     published: magnitudes by connection, in the study's units.
     note: the origin of the case (an impulse estimate, say).
     peaks: of every connection, along a motion.
-    turn: (T, C), rotation of each pin's own axes about z, rad.
+    turn: rotation of each pin's own axes: (T, C) rad about z, in the plane; (T, C, 3, 3), the axes
+    in world axes as columns, in space.
     position_unit: "deg" for a rotary drive; empty for a slider, whose position is a length.
     unresolved: the time intervals in which forces change too quickly for their peaks to be certain.
+    clause: what demands the loads of a case by a regulation; its sums are `wheel_loads`.
     """
 
     case: str
@@ -78,6 +99,8 @@ class ReactionTable:
     turn: Floats | None = None
     position_unit: str = ""
     unresolved: tuple[tuple[Time, Time], ...] = ()
+    clause: str = ""
+    wheel_loads: tuple[WheelLoad, ...] = ()
 
     @property
     def dimension_of(self) -> dict[str, str]:
@@ -268,7 +291,10 @@ class PitchCurve:
 
 @dataclass(frozen=True)
 class AppliedForce:
-    """A force that a case applies to a body: at a point (T, 2) of it, world axes, (T, 2)."""
+    """A force that a case applies to a body at a point of it.
+
+    position, force: world axes, (T, 2), in space (T, 3).
+    """
 
     body: str
     position: Lengths
@@ -370,30 +396,27 @@ class MotionCheck:
 
 
 @dataclass(frozen=True)
-class Dimensioned:
-    """Values of a dimension (as pinbase.records.in_units writes it), and the study's unit of it."""
+class BodyMotion:
+    """Motion and momenta of a body in space, as seen from outside, along the mechanism's axes.
 
-    values: Annotated[Floats, "own"]
-    dimension: str
-    unit: str
-
-    @property
-    def dimension_of(self) -> dict[str, str]:
-        return {"own": self.dimension}
-
-
-@dataclass(frozen=True)
-class LegTable:
-    """The dynamics of a spatial leg.
-
-    vectors: (T, 3) by name. scalars: (T,) by name. axes: of the components.
+    Vectors are (T, 3): the centre of mass with its rates; coriolis, the part of the acceleration by
+    which a turning ground deflects; rotation, momentum and angular momentum about the centre.
     """
 
     case: str
-    time: Times
-    vectors: dict[str, Dimensioned]
-    scalars: dict[str, Dimensioned]
-    axes: str
+    body: str
+    time: Times | None
+    centre: Lengths
+    velocity: Velocities
+    acceleration: Accelerations
+    coriolis: Accelerations
+    spin: Annotated[Floats, "rad/s"]
+    spin_rate: Annotated[Floats, "rad/s^2"]
+    momentum: Annotated[Floats, "force time"]
+    momentum_rate: Forces
+    angular_momentum: Annotated[Floats, "force length time"]
+    angular_momentum_rate: Moments
+    kinetic_energy: Energies
 
 
 @dataclass(frozen=True)
@@ -413,7 +436,3 @@ class PublishedValue:
     unit: str
     reason: str
     dimension: str = "degrees"
-
-    @property
-    def dimension_of(self) -> dict[str, str]:
-        return {"own": self.dimension}

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from assess.diameter_law import beneath_exponent, estimated_scale
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, SAFE, YIELDS
+from reports.data.changes import unsized
 from reports.data.decision import beneath_factor, factor_ends, limit, utilisation
 from reports.data.envelope import MAX_DETAILED_CASES
 from reports.data.headline import JudgedCheck, judged_checks, worst_checks
@@ -24,7 +25,8 @@ class Diameter:
     """The diameter with which a pin reaches its factor, as estimated by the law of its section.
 
     given: the largest of its bands, or of the pin without any.
-    needed: for the pin as described; whatever: over all that is open. None where given suffices.
+    needed: for the pin as described; whatever: over all that is open. None where given suffices,
+    or where none does.
     eye: the outer diameter of its smallest lug, None without lugs.
     """
 
@@ -109,6 +111,8 @@ def _line(results: Results, check: JudgedCheck, shape: PinShape | None) -> PinLi
     row = check.row or min(rows, key=lambda row: (-_used(row, limit(row)), row.case))
     error = factor_ends(row) if row.safety_factor else None
     diameter = _diameter(row, shape) if check.row or check.outcome in GOOD else None
+    if diameter and check.pin in (change.pin for change in unsized(results.changes)):
+        diameter = replace(diameter, needed=None, whatever=None)
     return PinLine(row, check, error, factor_spread(row), diameter)
 
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
 
-from reports.data.requirements import MET, NOT_CHECKED, OUTCOMES, RequirementRow
+from pinbase.grouped import grouped
+from reports.data.requirements import MET, NOT_CHECKED, OUTCOMES, RequirementRow, keys_in
 
-K = TypeVar("K")
 MAX_CASE_ROWS = 4  # rows of one requirement; of more cases, those that are all met share a row
 
 
@@ -37,7 +36,7 @@ def matrix_rows(rows: Sequence[RequirementRow]) -> list[MatrixRow]:
     checked = [row for row in rows if row.outcome != NOT_CHECKED]
     stated = _by_case(row for row in checked if row.stated)
     derived = [r for r in checked if not r.stated]
-    by_check = _grouped(derived, lambda r: (r.check, r.level))
+    by_check = grouped(((r.check, r.level), r) for r in derived).items()
     missed = [x for x in by_check if any(r.outcome != MET for r in x[1])]
     unmet = [_together(check, level, _case(some), some) for (check, level), some in missed]
     rest = [r for _, some in by_check if all(r.outcome == MET for r in some) for r in some]
@@ -47,10 +46,10 @@ def matrix_rows(rows: Sequence[RequirementRow]) -> list[MatrixRow]:
     open_ = [
         _together(
             ", ".join(dict.fromkeys(r.check for r in some)), level, "", some,
-            tuple(dict.fromkeys(part for r in some for part in r.needs.split(", ") if part)),
+            tuple(dict.fromkeys(part for r in some for part in keys_in(r.needs))),
         )
-        for level, some in _grouped((r for r in rows if r.outcome == NOT_CHECKED),
-                                    lambda r: r.level)
+        for level, some in grouped((r.level, r) for r in rows
+                                   if r.outcome == NOT_CHECKED).items()
     ]  # fmt: skip
     return [*stated, *unmet, *others, *open_]
 
@@ -64,8 +63,8 @@ def _case(rows: Sequence[RequirementRow]) -> str:
 def _by_case(rows: Iterable[RequirementRow]) -> list[MatrixRow]:
     """Return a row for each requirement and case; of many cases, one for those that are met."""
     matrix = []
-    for (check, level), of_check in _grouped(rows, lambda r: (r.check, r.level)):
-        by_case = _grouped(of_check, lambda r: r.case)
+    for (check, level), of_check in grouped(((r.check, r.level), r) for r in rows).items():
+        by_case = [*grouped((r.case, r) for r in of_check).items()]
         shown, met = by_case, []
         if len(by_case) > MAX_CASE_ROWS:
             shown = [x for x in by_case if any(r.outcome != MET for r in x[1])]
@@ -73,7 +72,8 @@ def _by_case(rows: Iterable[RequirementRow]) -> list[MatrixRow]:
         matrix += [_together(check, level, case, some) for case, some in shown]
         if met:
             count = len({r.case for r in met})
-            matrix.append(_together(check, level, f"{count} other cases", met))
+            cases = f"{count} other cases" if shown else f"all {count} cases"
+            matrix.append(_together(check, level, cases, met))
     return sorted(matrix, key=lambda row: min(map(_rank, row.cells.values())))
 
 
@@ -92,13 +92,3 @@ def _together(
     return MatrixRow(
         check, level, case, required.pop() if len(required) == 1 else None, cells, needs
     )
-
-
-def _grouped(
-    rows: Iterable[RequirementRow], key: Callable[[RequirementRow], K]
-) -> list[tuple[K, list[RequirementRow]]]:
-    """Return the rows by a key, in the order of their first."""
-    groups: dict[K, list[RequirementRow]] = {}
-    for row in rows:
-        groups.setdefault(key(row), []).append(row)
-    return list(groups.items())

@@ -33,7 +33,7 @@ class RequirementPair:
 
     @property
     def change(self) -> str:
-        """What a review says of it, one of REQUIREMENT_CHANGES.
+        """The verdict of a review on it, one of REQUIREMENT_CHANGES.
 
         Lost is one that was met and no longer is, whatever the reason; gone one that is no longer
         there, which is as bad.

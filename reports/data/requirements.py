@@ -6,6 +6,7 @@ and about the margins of safety. What was not checked is never met.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import inf
@@ -33,6 +34,7 @@ from assess.strength.collapse import COLLAPSE_METHOD
 from assess.strength.fatigue_life import FATIGUE_LIFE
 from assess.strength.hand_checks import BEARING_METHODS, SHEAR_METHODS
 from assess.strength.model_stress import RUPTURE_METHOD, YIELD_METHOD
+from pinbase.grouped import grouped
 from reports.data.decision import factor_ends
 from reports.data.dependence import depends_on
 from reports.data.results import PinResult, Results
@@ -58,6 +60,13 @@ METHODS_OF_CHECK: Mapping[RequiredCheck, tuple[str, ...]] = {
     "fatigue": (FATIGUE_LIFE,),
 }
 CHECK_OF_METHOD = {m: check for check, methods in METHODS_OF_CHECK.items() for m in methods}
+
+BETWEEN_KEYS = re.compile(r', (?=(?:[^"]*"[^"]*")*[^"]*$)')  # outside of quotes
+
+
+def keys_in(needs: str) -> list[str]:
+    """Return the keys of a list in words; a comma in quotes, in a name, does not end one."""
+    return [key for key in BETWEEN_KEYS.split(needs) if key]
 
 
 @dataclass(frozen=True)
@@ -104,7 +113,7 @@ class RequirementRow:
 
     @property
     def key(self) -> tuple[str, str, RequiredLevel, str]:
-        """What is required where, without the factor."""
+        """The requirement and its place, without the factor."""
         return self.pin, self.case, self.level, self.check
 
 
@@ -118,10 +127,7 @@ def requirement_rows(results: Results) -> tuple[RequirementRow, ...]:
     check that has a margin. Where a factor on loads demands more than is stated, both are there.
     """
     rows = {(row.pin, row.case): row for row in results.pins}
-    margins: dict[Pair, list[Margin]] = {}
-    for m in results.margins:
-        if m.margin.governs:
-            margins.setdefault((m.pin, m.case), []).append(m.margin)
+    margins = grouped(((m.pin, m.case), m.margin) for m in results.margins if m.margin.governs)
     stated = [_stated(s, results, rows, margins) for s in _all_stated(results, rows)]
     known = {row.key: row.required for row in stated}
     assumed = [
@@ -227,10 +233,7 @@ def _assumed(
     pin: str, case: str, margins: Iterable[Margin], row: PinResult | None, results: Results
 ) -> Iterator[RequirementRow]:
     """Yield what follows from the factors on loads: a requirement for each check and level."""
-    groups: dict[tuple[Level, str], list[Margin]] = {}
-    for m in margins:
-        check = CHECK_OF_METHOD.get(m.method, m.method)
-        groups.setdefault((m.level, check), []).append(m)
+    groups = grouped(((m.level, CHECK_OF_METHOD.get(m.method, m.method)), m) for m in margins)
     for (level, check), same in groups.items():
         factor = max(same, key=lambda m: m.used).factor
         if check == "yield" and row is not None and factor <= (row.required or 0.0):

@@ -21,12 +21,11 @@ from reports.data.changes import Remedy
 from reports.data.drop import DropPeak, DropRecord
 from reports.data.fields import BandLoad, Field, Still, Volume
 from reports.data.mechanics import (
-    Dimensioned,
+    BodyMotion,
     DriveEffort,
     DriveTable,
     Extremes,
     GuideForces,
-    LegTable,
     LinkageMotion,
     MotionCheck,
     PeakReaction,
@@ -38,6 +37,7 @@ from reports.data.mechanics import (
 )
 from reports.data.row import SI, Dependence, GoverningLoad, LandingRange, PinResult, Units
 from reports.data.sensitivities import PinSensitivities, Sensitivity
+from reports.data.skeleton import Skeleton, planar_skeleton
 from reports.data.surface import Surface
 from reports.data.wear import BandWear
 
@@ -46,8 +46,8 @@ __all__ = [
     "BandLoad",
     "BandWear",
     "BeamCheck",
+    "BodyMotion",
     "Dependence",
-    "Dimensioned",
     "DriveEffort",
     "DriveTable",
     "DropPeak",
@@ -59,7 +59,6 @@ __all__ = [
     "GoverningLoad",
     "GuideForces",
     "LandingRange",
-    "LegTable",
     "LinkageMotion",
     "LugSketch",
     "MotionCheck",
@@ -212,7 +211,7 @@ class NoSuchRow(KeyError):
 class Results:
     """All results of a run, without the fields inside pins (those are written pin by pin).
 
-    pins: the rows. stated: the requirements of [[require]].
+    pins: the rows. stated: the requirements of [[require]]. space: motions of linkages in space.
     spectrum_margins: of checks over all cases of a pin, as fatigue.
     """
 
@@ -227,10 +226,11 @@ class Results:
     reactions: tuple[ReactionTable, ...] = ()
     drive: tuple[DriveTable, ...] = ()
     motion: tuple[LinkageMotion, ...] = ()
+    space: tuple[Skeleton, ...] = ()
     beam_check: BeamCheck | None = None
     motion_check: MotionCheck | None = None
     published: tuple[PublishedValue, ...] = ()
-    legs: tuple[LegTable, ...] = ()
+    bodies: tuple[BodyMotion, ...] = ()
     drops: tuple[DropRecord, ...] = ()
     wear: tuple[BandWear, ...] = ()
     surfaces: tuple[Surface, ...] = ()
@@ -267,6 +267,11 @@ class Results:
         if cases:
             return f"pin {row[0]} has no case {row[1]!r}; its cases are {cases}"
         return f"no pin {row[0]!r}; the pins are {pins}"
+
+    @property
+    def skeletons(self) -> tuple[Skeleton, ...]:
+        """The parts of every motion that are drawn, planar or in space."""
+        return (*map(planar_skeleton, self.motion), *self.space)
 
     @property
     def margins(self) -> tuple[PinMargin, ...]:

@@ -19,6 +19,7 @@ from pinbase.dimensions import (
     Forces,
     Length,
     Moments,
+    Stress,
     Stresses,
     Time,
     Times,
@@ -60,8 +61,9 @@ class Dependence:
 
     what: "clearance", "impulse time", "beneath". value: in words where it is not a number
     ("guided").
-    over: the owner of the range, or of both ranges that only together change the outcome, or
-    "beneath" for the stress beneath contact as the study has it;
+    over: the owner of the range ("links": their stiffness, "strength": of yield), or of the ranges
+    that only together change the outcome, or "beneath" for the stress beneath contact as the study
+    has it;
     for that stress over a range, `value` is what changes ("clearance").
     factor: of safety at that value.
     given, at, flips_at: the study's value, one at which the outcome differs, and the interpolated
@@ -71,17 +73,17 @@ class Dependence:
 
     what: str
     value: str
-    over: Literal["joint", "landing", "joint and landing", "beneath"]
+    over: Literal[
+        "joint", "landing", "joint and landing", "beneath", "links", "strength",
+        "strength and joint", "strength and landing", "strength and links",
+        "strength, joint and landing",
+    ]  # fmt: skip
     factor: float
     given: Annotated[float, "own"] | None = None
     at: Annotated[float, "own"] | None = None
     flips_at: Annotated[float, "own"] | None = None
     dimension: str = "1"
     reach: Length | None = None
-
-    @property
-    def dimension_of(self) -> dict[str, str]:
-        return {"own": self.dimension}
 
 
 @dataclass(frozen=True)
@@ -109,6 +111,18 @@ class LandingRange:
     error: float = 0.0
 
 
+@dataclass(frozen=True)
+class SharingRange:
+    """The range of a maximum over the stiffness of links that share loads out of the plane.
+
+    max_von_mises: its ends. lowest, highest: what is different there; empty where it is the row's.
+    """
+
+    max_von_mises: tuple[Stress, Stress]
+    lowest: str
+    highest: str
+
+
 @dataclass(frozen=True, repr=False)
 class PinResult:
     """A row of the results: one pin in one case. Numbers are None for `rigid` and `failed`.
@@ -118,6 +132,8 @@ class PinResult:
     joint: contact with the lugs at the governing instant, if lugs support the pin.
     limit_load: past yield, if requested; lug_collapses: of lugs, if requested.
     landing: the results over the ranges of a landing's impulse, if it has any.
+    sharing: the range over the stiffness of links, where they share loads out of the plane.
+    strength_range: between which the yield strength may lie, where the study states it.
     margins: of every check at every place and level; worst: the worst place of each that counts.
     arms: of the bending moment, None where the formulas do not apply.
     second_opinion: of CalculiX, if any.
@@ -141,6 +157,8 @@ class PinResult:
     limit_load: LimitLoad | None = None
     lug_collapses: tuple[LugCollapse, ...] = ()
     landing: LandingRange | None = None
+    sharing: SharingRange | None = None
+    strength_range: tuple[Stress, Stress] | None = None
     margins: tuple[Margin, ...] = ()
     worst: tuple[Margin, ...] = ()
     arms: BendingArms | None = None

@@ -7,14 +7,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-
 from fea.support.records import FRICTION
-from reports.data.dependence import BENEATH_CONTACT
+from pinbase.grouped import grouped
+from reports.data.dependence import BENEATH_CONTACT, YIELD_STRENGTH, landing_axes
 from reports.data.results import Dependence, LandingRange, PinResult
 
-Owner = Literal["joint", "landing"]
+Owner = Literal["joint", "landing", "links", "strength"]
 Ends = tuple[float, float]
+LINK_STATES = ("times 0.1", "times 10")  # over which links without a stated stiffness are taken
 NO_SPREAD = 1.005  # ratio of factors up to which a value does not matter: 0.5 %
 
 
@@ -82,12 +82,13 @@ class Unknown:
 
 
 def decided_by(unknown: Sequence[Unknown]) -> dict[Owner, list[str]]:
-    """Return the pins whose outcome changes within the joint or the landing, most pins first.
+    """Return the pins whose outcome changes within the joint, the landing, the links or the
+    strength, most pins first.
 
     Values that only together change an outcome count too.
     """
     rows = {(row.pin, row.case): row for each in unknown for row, _ in each.rows}.values()
-    owners: dict[Owner, list[str]] = {"landing": [], "joint": []}
+    owners: dict[Owner, list[str]] = {"landing": [], "joint": [], "links": [], "strength": []}
     for owner, pins in owners.items():
         pins += dict.fromkeys(r.pin for r in rows if any(owner in d.over for d in r.depends_on))
     ranked = sorted(owners, key=lambda owner: -len(owners[owner]))
@@ -96,10 +97,7 @@ def decided_by(unknown: Sequence[Unknown]) -> dict[Owner, list[str]]:
 
 def unknowns(rows: Iterable[PinResult]) -> list[Unknown]:
     """Return what is open: first what changes the outcomes of most rows, then by its effect."""
-    by_name: dict[str, list[tuple[PinResult, OpenValue]]] = {}
-    for row in rows:
-        for value in open_values(row):
-            by_name.setdefault(value.what, []).append((row, value))
+    by_name = grouped((value.what, (row, value)) for row in rows for value in open_values(row))
     every = [Unknown(tuple(values)) for values in by_name.values()]
     return sorted(every, key=lambda u: (-len(u.flipped), -u.ratio))
 
@@ -111,12 +109,23 @@ def open_values(row: PinResult) -> Iterator[OpenValue]:
     if row.landing is not None:
         yield from _of_landing(row, row.landing)
     yield from _of_joint(row)
+    if row.sharing is not None:
+        low, high = _factors(row, row.sharing.max_von_mises)
+        flip = next((d for d in row.depends_on if d.over == "links"), None)
+        yield OpenValue(
+            "stiffness of the links", "links", "1", None, LINK_STATES, None, low, high, flip
+        )
+    if row.strength_range is not None:
+        ends, given = row.strength_range, row.yield_strength
+        low, high = (end / row.max_von_mises for end in ends)
+        flip = next((d for d in row.depends_on if d.what == YIELD_STRENGTH), None)
+        yield OpenValue(YIELD_STRENGTH, "strength", "stress", ends, (), given, low, high, flip)
 
 
 def factor_spread(row: PinResult) -> Ends | None:
     """Return the ends of a row's factor over all that is open together, without its error.
 
-    Ratios over the joint and over the landing multiply: they were not solved together.
+    Ratios over the joint, the landing, the links and the strength multiply.
     None where nothing is open, or the row has no factor.
     """
     factor, stress = row.safety_factor, row.max_von_mises
@@ -130,7 +139,14 @@ def factor_spread(row: PinResult) -> Ends | None:
     if row.landing is not None:
         ratios = row.landing.max_von_mises / stress
         low, high = low / max(float(ratios.max()), 1.0), high / min(float(ratios.min()), 1.0)
-    return None if over is None and row.landing is None else (low, high)
+    if row.sharing is not None:
+        least, most = row.sharing.max_von_mises
+        low, high = low * stress / most, high * stress / least
+    if row.strength_range is not None:
+        least, most = row.strength_range
+        low, high = low * least / (factor * stress), high * most / (factor * stress)
+    ranges = over, row.landing, row.sharing, row.strength_range
+    return None if all(each is None for each in ranges) else (low, high)
 
 
 def without_range(row: PinResult) -> bool:
@@ -140,15 +156,7 @@ def without_range(row: PinResult) -> bool:
 
 
 def _of_landing(row: PinResult, r: LandingRange) -> Iterator[OpenValue]:
-    time, velocity = (
-        np.isclose(x, given)
-        for x, given in zip((r.impulse_time, r.velocity_change), r.nominal, strict=True)
-    )
-    pulse = np.array([name == r.nominal_pulse for name in r.pulses])
-    axes = (
-        ("impulse time", "time", r.impulse_time, r.nominal[0], velocity & pulse),
-        ("velocity change", "velocity", r.velocity_change, r.nominal[1], time & pulse),
-    )
+    axes, other_pulses = landing_axes(r)
     for what, dimension, values, given, alone in axes:
         here = values[alone]
         if len(here) > 1:
@@ -158,7 +166,7 @@ def _of_landing(row: PinResult, r: LandingRange) -> Iterator[OpenValue]:
             yield OpenValue(what, "landing", dimension, ends, (), given, low, high, flip)
     states = tuple(dict.fromkeys(r.pulses))
     if len(states) > 1:
-        low, high = _factors(row, r.max_von_mises[time & velocity].tolist())
+        low, high = _factors(row, r.max_von_mises[other_pulses].tolist())
         flip = _flip(row, "landing", "pulse")
         given_pulse = r.nominal_pulse or None
         yield OpenValue("pulse", "landing", "1", None, states, given_pulse, low, high, flip)

@@ -9,6 +9,7 @@ from decimal import Decimal
 DASH = "–"
 SUPERSCRIPT_DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 COMPONENT_ROUND_OFF = 1e-9  # of the largest component; anything smaller is round-off
+LARGE_NUMBER = 1000.0  # from which on three digits would need an exponent
 
 
 def engineering(value: float | None, digits: int = 4) -> str:
@@ -82,3 +83,8 @@ def seconds(value: float | None) -> str:
     if value is None:
         return engineering(None)
     return f"{engineering(value, 2)} s" if value >= 0.1 else f"{engineering(1e3 * value, 2)} ms"
+
+
+def threshold(value: float) -> str:
+    """Return a value at which something changes, with three digits: "0.000387", "0.1", "88,900"."""
+    return engineering(value, 3) if abs(value) >= LARGE_NUMBER else f"{value:.3g}"

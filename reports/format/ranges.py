@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 
 from reports.data.decision import utilisation
 from reports.data.results import PinResult
@@ -54,20 +53,23 @@ def factor_text(factor: float | None, required: float) -> str:
     return engineering(factor, MAX_DIGITS)
 
 
-def utilisation_range(pin: PinResult, required: float, to: str = " to ") -> str:
+def utilisation_range(pin: PinResult, required: float) -> str:
     """Return required over actual factor in per cent, or its interval."""
     used = utilisation(pin, required)
-    return DASH if used is None else f"{_interval((100.0 * end for end in used), to)} %"
-
-
-def _interval(ends: Iterable[float], to: str) -> str:
-    """Return two numbers as a range; one number where they are equal."""
-    return to.join(dict.fromkeys(engineering(end, END_DIGITS) for end in ends))
+    if used is None:
+        return DASH
+    return f"{' to '.join(dict.fromkeys(engineering(100.0 * end, END_DIGITS) for end in used))} %"
 
 
 def joint_range(pin: PinResult, to: str = " to ") -> str:
     """Return the maximum over the unknowns of the joint; a dash where that was not computed."""
     over = pin.joint.range if pin.joint else None
+    return to.join(engineering(end, END_DIGITS) for end in over.max_von_mises) if over else DASH
+
+
+def sharing_range(pin: PinResult, to: str = " to ") -> str:
+    """Return the maximum over the stiffness of links; a dash where statics gives all loads."""
+    over = pin.sharing
     return to.join(engineering(end, END_DIGITS) for end in over.max_von_mises) if over else DASH
 
 

@@ -34,6 +34,11 @@ def environment() -> Environment:
     )
 
 
+def rendered(template: str, **values: object) -> str:
+    """Return a page as text: a template by its name, with the values that it names."""
+    return environment().get_template(template).render(values)
+
+
 def _compiled() -> BytecodeCache:
     """Return where compiled templates are kept for other runs: where Python keeps our modules, if
     it may; compiling them takes a tenth of a short run.

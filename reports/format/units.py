@@ -16,6 +16,8 @@ def unit_name(dimension: str, units: Units) -> str:
         "velocity": f"{units.length}/{units.time}",
         "acceleration": f"{units.length}/{units.time}²",
         "power": f"{units.force} {units.length}/{units.time}",
+        "momentum": f"{units.force} {units.time}",
+        "angular momentum": f"{units.force} {units.length} {units.time}",
         "stress velocity": f"{units.stress} {units.length}/{units.time}",
         "force per length": f"{units.force}/{units.length}",
         "curvature": f"1/{units.length}",

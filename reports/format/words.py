@@ -11,7 +11,7 @@ from reports.data.decision import worst_first
 from reports.data.dependence import BENEATH_CONTACT
 from reports.data.headline import JudgedCheck, worst_checks
 from reports.data.results import Dependence, PinResult, Results, Units
-from reports.format.numbers import engineering, short
+from reports.format.numbers import engineering, short, threshold
 from reports.format.ranges import factor_range, factor_text
 from reports.format.units import unit_name
 
@@ -27,6 +27,11 @@ RESULT_ROWS_NOTE = (
     "required) divided by the safety factor, the margin of safety its inverse less 1. A solid "
     "model reports the mean over several rotations of the loads about the axis; pictures and VTU "
     "files show one orientation, so their maximum may differ by up to the ±."
+)
+SHARING_NOTE = (
+    "Links is the range of the maximum over the stiffness of links of which none is stated, each a "
+    "tenth and ten times as stiff as the others, then all in torsion: parallel pins share loads "
+    "out of the plane by it. It is not part of the ±; [mechanism.link_stiffness] closes it."
 )
 JOINT_RANGE_NOTE = (
     "Joint is the range of the maximum over properties of the joint that are seldom known: other "
@@ -170,7 +175,7 @@ def _dependence(d: Dependence, units: Units) -> str:
     unit = unit_name(d.dimension, units)
     flips = d.at if d.flips_at is None else d.flips_at
     side = "" if d.given is None else "above " if d.at > d.given else "below "
-    return f"{what} {side}{flips:.3g} {unit}"
+    return f"{what} {side}{threshold(flips)} {unit}"
 
 
 def headline(results: Results) -> str:
@@ -249,6 +254,9 @@ def _all_safe(results: Results, least: JudgedCheck, pins: int) -> str:
     factor, needed = _factor_words(row)
     safe = row.outcome == SAFE
     other = "" if least.row else f"; {_margin_words(least)}, pin {least.pin}"
+    if row.max_von_mises == 0.0:
+        who = f"Pin {row.pin} is" if pins == 1 else f"All {pins} pins are"
+        return f"{who} safe: no load stresses {'it' if pins == 1 else 'them'}{other}."
     if pins == 1:
         state = "is safe" if safe else "stays below yield"
         return f"Pin {row.pin} {state}: {factor} ≥ {needed} ({row.case}){other}."

@@ -7,11 +7,12 @@ from pathlib import Path
 import numpy as np
 
 from reports.data.check import CheckedStudy, PlannedRow
-from reports.data.mechanics import LinkageMotion
-from reports.data.results import PinShape
+from reports.data.results import PinShape, Units
+from reports.data.skeleton import Skeleton
 from reports.format.numbers import short
-from reports.format.template import environment
-from reports.page.linkage_drawing import Instant, Mark, draw_linkage
+from reports.format.template import rendered
+from reports.page.linkage_drawing import draw_linkage
+from reports.page.linkage_panel import Instant, Mark
 from reports.page.pin_drawing import draw_pin
 from reports.tables.column import Column, Table, read_only
 
@@ -39,38 +40,37 @@ def render(study: CheckedStudy) -> str:
     from markupsafe import Markup
 
     units = study.units
-    return (
-        environment()
-        .get_template("check.html.j2")
-        .render(
-            study=study,
-            units=units,
-            linkages=[
-                (motion.case, Markup(_loaded(motion, units.force)))
-                for motion in study.motions[:MAX_DRAWN_CASES]
-            ],
-            pins=[
-                (
-                    pin.shape.pin,
-                    pin.shape.material,
-                    Markup(draw_pin(pin.shape, units)),
-                    _lug_words(pin.shape, units.length) or [pin.support],
-                )
-                for pin in study.pins[:MAX_DRAWN_PINS]
-            ],
-            more_linkages=len(study.motions) - MAX_DRAWN_CASES,
-            more_pins=len(study.pins) - MAX_DRAWN_PINS,
-            rows=Table("planned", ROW_COLUMNS, study.rows).grid(units),
-        )
+    return rendered(
+        "check.html.j2",
+        study=study,
+        units=units,
+        linkages=[
+            (skeleton.case, Markup(_loaded(skeleton, units)))
+            for skeleton in study.skeletons[:MAX_DRAWN_CASES]
+        ],
+        pins=[
+            (
+                pin.shape.pin,
+                pin.shape.material,
+                Markup(draw_pin(pin.shape, units)),
+                _lug_words(pin.shape, units.length) or [pin.support],
+            )
+            for pin in study.pins[:MAX_DRAWN_PINS]
+        ],
+        more_linkages=len(study.skeletons) - MAX_DRAWN_CASES,
+        more_pins=len(study.pins) - MAX_DRAWN_PINS,
+        rows=Table("planned", ROW_COLUMNS, study.rows).grid(units),
     )
 
 
-def _loaded(motion: LinkageMotion, unit: str) -> str:
+def _loaded(skeleton: Skeleton, units: Units) -> str:
     """Return the linkage at the instant of the largest applied force, with names of the joints."""
-    sizes = sum((load.sizes for load in motion.applied), np.zeros(len(motion.condition)))
-    title = f"The linkage in case {motion.case}, with its applied forces"
-    marks = [Mark(joint, joint) for joint in motion.joints]
-    return draw_linkage(Instant(motion, int(np.argmax(sizes))), marks, title, unit)
+    sizes = sum((load.sizes for load in skeleton.applied), np.zeros(len(skeleton.position)))
+    title = f"The linkage in case {skeleton.case}, with its applied forces"
+    marks = [Mark(joint, joint) for joint in skeleton.joints]
+    return draw_linkage(
+        Instant(skeleton, int(np.argmax(sizes))), marks, title, units.force, units.length
+    )
 
 
 def _lug_words(shape: PinShape, unit: str) -> list[str]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from reports.data.comparison import RunComparison
-from reports.format.template import environment
+from reports.format.template import rendered
 from reports.plots.comparison import comparison_plot
 from reports.text.comparison import headline, review, sections
 
@@ -36,19 +36,16 @@ def write_comparison(
     drawn: the plot as SVG, empty without one.
     """
     plot = comparison_plot(comparison)
-    text = (
-        environment()
-        .get_template("comparison.html.j2")
-        .render(
-            found=comparison,
-            review=review(comparison),
-            headline=headline(comparison),
-            sections=[
-                (name, t.grid(), note) for name, t, note in sections(comparison) if t.rows or note
-            ],
-            plot=drawn,
-            caption=plot.caption if plot and drawn else "",
-            pictures=pictures,
-        )
+    text = rendered(
+        "comparison.html.j2",
+        comparison=comparison,
+        review=review(comparison),
+        headline=headline(comparison),
+        sections=[
+            (name, t.grid(), note) for name, t, note in sections(comparison) if t.rows or note
+        ],
+        plot=drawn,
+        caption=plot.caption if plot and drawn else "",
+        pictures=pictures,
     )
     path.write_text(text, encoding="utf-8", newline="\n")

@@ -61,9 +61,9 @@ class ZoneMarks:
             _Mark(
                 left + scale * zone.z,
                 scale * zone.r,
-                scale * zone.found.excluded,
+                scale * zone.place.excluded,
                 _words(zone),
-                zone.found.governs,
+                zone.place.governs,
             )
             for zone in zones
         ] + [
@@ -145,7 +145,7 @@ def _drawn(mark: _Mark, axis: float) -> list[str]:
 
 
 def _words(zone: ShownZone) -> str:
-    return f"{zone.number} {zone.short_kind}" + (", governs" if zone.found.governs else "")
+    return f"{zone.number} {zone.short_kind}" + (", governs" if zone.place.governs else "")
 
 
 def _touches(x: float, y: float, radius: float, wall: tuple[float, float, float, float]) -> bool:

@@ -1,4 +1,4 @@
-"""The safety factors on the page: the worst first."""
+"""Safety factors on the page, the worst first; margins, cases by pins, and fatigue."""
 
 from __future__ import annotations
 
@@ -13,8 +13,17 @@ from reports.format.words import OUTCOME_MEANINGS
 from reports.tables.column import grid_of
 from reports.tables.published import published_maxima
 from reports.tables.strength.changes import REMEDIES_NOTE, change_notes, changes_table
+from reports.tables.strength.envelope import ENVELOPE_NOTE, cell_text, heat, matrix
+from reports.tables.strength.fatigue import fatigue_sentence, shown_fatigue, worst_points
 from reports.tables.strength.limit_load import LEFT_OUT_NOTE, limit_notes, limits_table
 from reports.tables.strength.limit_load import LIMIT_LOAD_NOTE as PAST_YIELD
+from reports.tables.strength.margins import (
+    BENDING_ARMS_NOTE,
+    MARGINS_NOTE,
+    governing_table,
+    not_made_words,
+    shown_arms,
+)
 from reports.tables.strength.safety_factors import reading, shown_factors
 from reports.tables.strength.sensitivities import SENSITIVITIES_NOTE as SENSITIVE
 from reports.tables.strength.sensitivities import sensitivity_notes, shown_sensitivities
@@ -76,3 +85,39 @@ def _sorted_by(value: Cell) -> str:
     """Return a sort key with all digits; empty for no value."""
     value = plain(value)
     return "" if value is None else str(value)
+
+
+def margin_part(results: Results) -> dict[str, Any] | None:
+    """Return the part on margins; None where no check was made."""
+    grid = grid_of(governing_table(results), results.units)
+    if grid is None:
+        return None
+    return {
+        "grid": grid,
+        "reading": MARGINS_NOTE,
+        "not_made": not_made_words(results),
+        "arms": grid_of(shown_arms(results), results.units),
+        "arms_reading": BENDING_ARMS_NOTE,
+    }
+
+
+def envelope_part(results: Results) -> dict[str, Any] | None:
+    """Return the matrix of cases and pins; None for a single case."""
+    utilisations = matrix(results)
+    return (
+        None
+        if utilisations is None
+        else {"matrix": utilisations, "reading": ENVELOPE_NOTE, "heat": heat, "text": cell_text}
+    )
+
+
+def fatigue_part(results: Results) -> dict[str, Any] | None:
+    """Return the part on fatigue; None where it was not assessed."""
+    if results.fatigue is None:
+        return None
+    return {
+        "of": results.fatigue,
+        "sentence": fatigue_sentence(results.fatigue),
+        "grid": grid_of(shown_fatigue(results), results.units),
+        "points": worst_points(results.fatigue),
+    }

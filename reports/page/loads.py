@@ -21,6 +21,7 @@ from reports.plots.loads.reactions import NO_PIN_NAME
 from reports.tables.column import Column, Grid, Table, grid_of, read_only, texts
 from reports.tables.loads.drop import drop_words, impulse_grid, peak_grid
 from reports.tables.loads.wear import WEAR_NOTE, wear_table
+from reports.tables.loads.wheel import WHEEL_NOTE, wheel_table
 from reports.tables.published import published_reactions
 from reports.tables.strength.landing import LANDING_NOTE, landing_blocks
 
@@ -35,8 +36,12 @@ class DropPart:
     grids: list[Grid]
 
 
-def load_part(results: Results) -> dict[str, Any]:
-    """Return the reactions, drops and landings of all cases."""
+def load_part(results: Results, everything: Results) -> dict[str, Any]:
+    """Return the reactions, drops and landings of the cases that are shown, and loads on wheels of
+    all.
+
+    everything: results with all cases.
+    """
     return {
         "published": published_reactions(results),
         "timed": any(v.time is not None for v in results.published),
@@ -53,6 +58,8 @@ def load_part(results: Results) -> dict[str, Any]:
         ],
         "wear": grid_of(wear_table(results), results.units),
         "wear_note": WEAR_NOTE,
+        "wheel": grid_of(wheel_table(everything), results.units),
+        "wheel_note": WHEEL_NOTE,
         "landing": landing_blocks(results),
         "landed": list(dict.fromkeys(r.case for r in results.landing)),
         "landing_note": LANDING_NOTE,

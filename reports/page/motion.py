@@ -1,4 +1,4 @@
-"""Motions on the page: plots of linkages and legs, and the animation."""
+"""Motions on the page: plots of linkages, and the animation."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from reports.format.packed import deflated
 from reports.plots.spec import Plot
 
 Find = Callable[..., Plot | None]
-LEG_PLOT_KINDS = ("leg-motion", "leg-momenta", "leg-hinge")
 
 
 @dataclass(frozen=True)
@@ -30,8 +29,7 @@ def motion_parts(results: Results, find: Find, directory: Path) -> list[MotionPa
 
     find: returns a plot by its kind and names, None if there is none.
     """
-    kinds = {m.case: list(_linkage(m.case, find)) for m in results.motion}
-    kinds |= {leg.case: list(LEG_PLOT_KINDS) for leg in results.legs}
+    kinds = {s.case: list(_linkage(s.case, find)) for s in results.skeletons}
     parts = [
         MotionPart(
             case,

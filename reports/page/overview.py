@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
 from reports.data.decision import common_factor, limit
-from reports.data.overview import GOOD, MAX_LUG_SHARE, PinLine, factor_at, pin_lines
+from reports.data.overview import GOOD, PinLine, pin_lines
 from reports.data.requirement_matrix import MatrixRow, matrix_rows
 from reports.data.requirements import requirement_rows
 from reports.data.results import Results
@@ -17,6 +16,7 @@ from reports.format.numbers import DASH, engineering, short
 from reports.format.place_words import place_words
 from reports.format.ranges import factor_range
 from reports.format.words import headline
+from reports.page.factor_curve import draw_factor_curve
 from reports.page.linkage_drawing import draw_linkage
 from reports.page.pin_marks import governing_instant, pin_marks
 from reports.tables.strength.overview import (
@@ -44,10 +44,10 @@ from reports.text.summary import caveats
 
 MAX_PEAKS = 5  # pins whose largest stress the page tells
 MAX_UNKNOWNS = 6  # rows of the table of what is open
+LABEL_AT_END = 12.0  # per cent of the axis: nearer to its left end, the label begins at its line
+LABEL_WIDTH = 20.0  # of "1.5 required", per cent of the axis: no tick is written so near to it
 MAX_CHECKS = 3  # of a row of the matrix by name
 MAX_MATRIX_PINS = 14  # columns of the matrix of requirements; of more pins it is left out here
-CURVE_WIDTH, CURVE_HEIGHT = 260.0, 62.0
-FACTOR_CURVE_POINTS, CURVE_REACH = 24, 1.25  # points; ratio of scales beyond the needed one
 MARKS = {
     FAILS: "✕", YIELDS: "✕", SAFE: "✓", BELOW_YIELD: "✓", DEPENDS: "◐", NOT_DECIDED: "?",
     "met": "✓", "missed": "✕", "not checked": "?",
@@ -73,16 +73,16 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "about": _about(results, lines),
         "linkage": linkage,
         "drawing": "" if linkage else drawing,
+        "caption": _caption(results, lines) if linkage else "",
         "case": lines[0].row.case if lines else "",
         "same_case": len({line.row.case for line in lines}) == 1,
         "axis": _ticks(axis) if axis else None,
         "lines": [_line(line, results, axis, anchors) for line in lines],
-        "open": [x.what for x in unknown],
         "length": results.units.length,
         "diameters": any(line.diameter for line in lines),
-        "eyes": any(
-            line.diameter and line.diameter.too_large(line.diameter.whatever) for line in lines
-        ),
+        "spreads": any(line.spread for line in lines),
+        "whatever": any(line.spread and whatever_words(line) != DASH for line in lines),
+        "legend": _legend(lines, axis, bool(unknown)) if axis else "",
         "checks": any(check_words(line) != DASH for line in lines),
         "matrix": [_matrix_row(row, lines) for row in matrix],
         "why": why(results, lines, MAX_PEAKS),
@@ -90,7 +90,7 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "actions": [*steps.repairs, *steps.remarks],
         "nothing": _nothing(lines),
         "command": steps.command,
-        "curve": _curve(lines[0], results) if lines else None,
+        "curve": draw_factor_curve(lines[0], results.units.length) if lines else None,
         "accuracy": [*_accurate(lines), *certainty(lines), *measure_first(unknown)],
         "unknowns": [_unknown(x, results) for x in unknown[:MAX_UNKNOWNS]],
         "caveats": [*skipped_checks(results, lines), *caveats(results)],
@@ -101,8 +101,32 @@ def _linkage(results: Results, lines: Sequence[PinLine], anchors: Mapping[str, s
     at = governing_instant(results, lines)
     if at is None:
         return None
-    title = f"Linkage in case {at.motion.case}; each pin with its factor of safety"
-    return draw_linkage(at, pin_marks(at, lines, anchors), title, results.units.force)
+    title = f"Linkage in case {at.skeleton.case}; each pin with its factor of safety"
+    return draw_linkage(
+        at, pin_marks(at, lines, anchors), title, results.units.force, results.units.length
+    )
+
+
+def _caption(results: Results, lines: Sequence[PinLine]) -> str:
+    """Return what the signs in the drawing of the linkage mean."""
+    text = (
+        f"Case {lines[0].row.case}. Number: factor. Width: force. Arrow: applied load. Triangle: "
+        "frame, with its force."
+    )
+    return f"{text} Dash-dotted: axis of a pin." if results.space else text
+
+
+def _legend(lines: Sequence[PinLine], axis: FactorAxis, open_values: bool) -> str:
+    """Return what the signs in the lines of the pins mean."""
+    parts = ["Mark: factor and error."]
+    parts += ["Bar: range over all that is open (last card)."] * open_values
+    parts += [f"Line: {_required(axis)}."] * (axis.required is not None)
+    sized = [line.diameter for line in lines if line.diameter]
+    parts += ["→: estimate."] * any(d.needed for d in sized)
+    parts += ["†: above 3/4 of its lug's diameter."] * any(
+        d.too_large(d.needed) or d.too_large(d.whatever) for d in sized
+    )
+    return " ".join(parts)
 
 
 def _about(results: Results, lines: Sequence[PinLine]) -> str:
@@ -116,8 +140,9 @@ def _about(results: Results, lines: Sequence[PinLine]) -> str:
         if strength:
             text += f", yield strength {engineering(strength)} {results.units.stress}"
         parts.append(text)
-    named = ", ".join(cases) if len(cases) <= MAX_UNKNOWNS else f"{len(cases)} cases"
-    parts.append(f"case{'s' * (len(cases) != 1)} {named}")
+    few = len(cases) <= MAX_UNKNOWNS
+    named = f"case{'s' * (len(cases) != 1)} {', '.join(cases)}" if few else f"{len(cases)} cases"
+    parts.append(named)
     if (required := common_factor(results.pins)) is not None:
         parts.append(f"required factor {short(required)}")
     return "; ".join(parts)
@@ -141,13 +166,20 @@ def _css(outcome: str) -> str:
 def _ticks(axis: FactorAxis) -> dict[str, Any]:
     ticks = [(short(tick), 100.0 * axis.at(tick)) for tick in axis.ticks]
     if axis.required is None:
-        return {"required": None, "label": "required", "ticks": ticks}
+        return {"required": None, "label": "", "ticks": ticks}
     required = 100.0 * axis.at(axis.required)
+    # At the left end the label is written to the right of its line, else around it.
+    beside = 2.0 * LABEL_WIDTH if required < LABEL_AT_END else LABEL_WIDTH
     return {
         "required": required,
-        "label": f"{short(axis.required)} {'required' if axis.required != 1.0 else 'yield'}",
-        "ticks": [(text, at) for text, at in ticks if abs(at - required) > 12.0],
+        "label": _required(axis),
+        "ticks": [(text, at) for text, at in ticks if abs(at - required) > beside],
     }
+
+
+def _required(axis: FactorAxis) -> str:
+    """Return the required factor of an axis in words."""
+    return f"{short(axis.required or 1.0)} {'required' if axis.required != 1.0 else 'yield'}"
 
 
 def _span(ends: tuple[float, float], axis: FactorAxis) -> dict[str, float]:
@@ -208,45 +240,3 @@ def _unknown(unknown: Unknown, results: Results) -> dict[str, str]:
         "range": range_words(unknown, results.units),
         "flips": flips_words(unknown, results.units),
     }
-
-
-def _curve(line: PinLine, results: Results) -> dict[str, Any] | None:
-    """Return the factor, with its error and beneath contact, against the diameter of the worst pin,
-    by the law of its section, in the unit of the drawing; None where no diameter is estimated.
-    """
-    d, row = line.diameter, line.row
-    if d is None or d.needed is None:
-        return None
-    most = CURVE_REACH * d.needed / d.given
-    scales = [most ** (k / (FACTOR_CURVE_POINTS - 1)) for k in range(FACTOR_CURVE_POINTS)]
-    factors = [factor_at(row, scale) for scale in scales]
-    required = row.required or 1.0
-    axis = FactorAxis(min(factors) / 1.1, max(factors) * 1.1, required)
-    across = [CURVE_WIDTH * k / (FACTOR_CURVE_POINTS - 1) for k in range(FACTOR_CURVE_POINTS)]
-    points = [
-        f"{x:.1f},{CURVE_HEIGHT * (1.0 - axis.at(f)):.1f}"
-        for x, f in zip(across, factors, strict=True)
-    ]
-    unit = results.units.length
-    return {
-        "points": " ".join(points),
-        "width": CURVE_WIDTH,
-        "height": CURVE_HEIGHT,
-        "required": CURVE_HEIGHT * (1.0 - axis.at(required)),
-        "needed": _across(d.needed / d.given, most),
-        "label": f"Pin {line.pin}: lowest factor against diameter, estimated",
-        "start": CURVE_HEIGHT * (1.0 - axis.at(factors[0])),
-        "lug": _across(MAX_LUG_SHARE * (d.eye or 0.0) / d.given, most)
-        if d.too_large(d.needed)
-        else None,
-        "ends": (
-            f"{engineering(d.given, 3)} {unit}",
-            f"{engineering(d.needed, 3)} {unit}",
-            short(required),
-            engineering(factors[0], 3),
-        ),
-    }
-
-
-def _across(scale: float, most: float) -> float:
-    return CURVE_WIDTH * math.log(scale) / math.log(most)

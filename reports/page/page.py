@@ -7,29 +7,34 @@ from typing import TYPE_CHECKING
 
 from reports.data.decision import worst_first
 from reports.data.envelope import detailed_rows
-from reports.data.results import PinShape, Results
+from reports.data.results import Results
 from reports.format.file_names import drive_names, plot_name
 from reports.format.numbers import DASH, engineering, like, ratio, short
 from reports.format.ranges import error_words, factor_range
 from reports.format.template import environment
 from reports.format.words import BEYOND_YIELD, VERDICT_MEANINGS, verdict_words
-from reports.page.drawing_places import place_marks
-from reports.page.factors import change_part, factor_part, limit_part, sensitivity_part
+from reports.page.factors import (
+    change_part,
+    envelope_part,
+    factor_part,
+    fatigue_part,
+    limit_part,
+    margin_part,
+    sensitivity_part,
+)
 from reports.page.loads import largest_force, load_part, timings
 from reports.page.lug_across import draw_across
 from reports.page.motion import motion_parts
 from reports.page.overview import overview_part
 from reports.page.paper import document
-from reports.page.pin_drawing import DRAWING_WIDTH, draw_pin
 from reports.page.pins import pin_parts
 from reports.page.pins_reading import SIGNS_NOTE, reading_parts, signs
+from reports.page.row_drawing import draw_shape
 from reports.page.scripts import script_part
-from reports.page.strength import envelope_part, fatigue_part, margin_part
 from reports.page.stress_along import stress_along
 from reports.plots.all import all_plots
 from reports.plots.spec import Plot
 from reports.plots.theme import style_sheet
-from reports.tables.stress.singular_zones import circles, pin_zones
 from reports.text.method import METHOD_NOTE
 
 if TYPE_CHECKING:
@@ -56,16 +61,16 @@ def render(results: Results, directory: Path) -> str:
 
     shown = detailed_rows(results)
     drawings: dict[str, str] = {
-        s.pin: Markup(_drawing(s, shown) + draw_across(shown, s, stress_along(shown, s)))
+        s.pin: Markup(draw_shape(s, shown) + draw_across(shown, s, stress_along(shown, s)))
         for s in shown.shapes
     }
-    printed = {s.pin: _drawing(s, shown, PRINTED_DRAWING_WIDTH) for s in shown.shapes}
+    printed = {s.pin: draw_shape(s, shown, PRINTED_DRAWING_WIDTH) for s in shown.shapes}
     pins, plots = pin_parts(shown, drawings), all_plots(shown)
 
     anchors = {part.pin: part.anchor for part in pins}
     worst = next(iter(worst_first(results)), None)
     of_worst = [s for s in results.shapes if worst and s.pin == worst.pin]
-    small = Markup(_drawing(of_worst[0], shown, SMALL_DRAWING_WIDTH)) if of_worst else ""
+    small = Markup(draw_shape(of_worst[0], shown, SMALL_DRAWING_WIDTH)) if of_worst else ""
 
     overview = overview_part(results, anchors, small) if results.pins else None
 
@@ -92,7 +97,7 @@ def render(results: Results, directory: Path) -> str:
         anchors=anchors,
         plot=plot,
         motion=motion_parts(shown, plot, directory),
-        loads=load_part(shown),
+        loads=load_part(shown, results),
         timings=timings(results),
         scripts=script_part(plots, document(results, printed, overview)),
     )
@@ -118,10 +123,3 @@ def _template() -> Template:
         shades=style_sheet(),
     )
     return templates.get_template("report.html.j2")
-
-
-def _drawing(shape: PinShape, results: Results, width: float = DRAWING_WIDTH) -> str:
-    zones = pin_zones(results, shape.pin).values()
-    every = circles(zone for case in zones for zone in case)
-    places = place_marks(results, shape.pin, sum(s[0] for s in shape.segments))
-    return draw_pin(shape, results.units, every, width, places, stress_along(results, shape))

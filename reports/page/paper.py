@@ -43,6 +43,16 @@ PAPER_STYLE = (
     ".fails circle,.yields circle{fill:#a8211b}.pin .k{stroke:#fff}.safe .h,.below-yield .h,"
     ".safe path,.below-yield path{stroke:#14663c}.depends .h,.not-decided .h,.not-decided path"
     "{stroke:#7a5200}.pin .hf{fill:#7a5200;stroke:none}"
+    ".axis,.triad{fill:none;stroke:#5a6068;stroke-width:1}.axis{stroke-dasharray:9 2.5 2 2.5}"
+    ".barrel{fill:none;stroke:#5a6068;stroke-width:5;stroke-linecap:round}.mass{fill:#5a6068}"
+    ".load.end{fill:#fff;stroke-width:2.4}path.load.end{fill:none}.view text,text.letter"
+    "{font-size:11px;text-anchor:middle}text.letter{fill:#5a6068}"
+    "text.view-title{font-size:12px;fill:#5a6068}"
+)
+CURVE_STYLE = (  # as reports/templates/overview.css has it
+    "text{font-family:'Libertinus Serif';font-size:12px;fill:#5a6068}polyline,path{fill:none}"
+    "polyline{stroke:#0b5cad;stroke-width:2}.lug{stroke:#a8211b;stroke-width:1.5}"
+    ".frame{stroke:#b5bac1}.limit{stroke:#1d1f23;stroke-dasharray:3 3}"
 )
 PINS_PER_MATRIX = 12  # pins of the matrix of cases
 MAX_DIMENSIONS = 5  # of a pin's sensitivities
@@ -87,16 +97,23 @@ def document(
 
 
 def _on_paper(overview: Content) -> Content:
-    """Return the first screen with a drawing that has its own colours."""
-    linkage = overview["linkage"]
-    styled = None
-    if linkage:
-        plain = re.sub(r'<a href="[^"]*">|</a>', "", linkage)
-        styled = plain.replace(">", f"><style>{PAPER_STYLE}</style>", 1)
+    """Return the first screen with drawings that have their own colours."""
+    drawings = {
+        "linkage": _styled(overview["linkage"], PAPER_STYLE),
+        "curve": _styled(overview["curve"], CURVE_STYLE),
+    }
     content: Content = json.loads(
-        json.dumps({**overview, "linkage": styled}, ensure_ascii=False).replace("✕", "×")
+        json.dumps({**overview, **drawings}, ensure_ascii=False).replace("✕", "×")
     )
     return content
+
+
+def _styled(drawing: str | None, style: str) -> str | None:
+    """Return an SVG drawing without links and with its style."""
+    if not drawing:
+        return None
+    plain = re.sub(r'<a href="[^"]*">|</a>', "", drawing)
+    return plain.replace(">", f"><style>{style}</style>", 1)
 
 
 def _factors(results: Results) -> Content | None:

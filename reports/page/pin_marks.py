@@ -11,7 +11,7 @@ from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIE
 from reports.data.overview import PinLine
 from reports.data.results import Results
 from reports.format.ranges import factor_range
-from reports.page.linkage_drawing import Instant, Mark
+from reports.page.linkage_panel import Instant, Mark
 
 SYMBOLS = {  # of an outcome: a cross, a tick, half a disc, a question mark
     FAILS: '<circle r="9"/><path class="k" d="M-4-4L4 4M4-4L-4 4"/>',
@@ -26,14 +26,14 @@ SYMBOLS |= {YIELDS: SYMBOLS[FAILS], BELOW_YIELD: SYMBOLS[SAFE]}
 def governing_instant(results: Results, lines: Sequence[PinLine]) -> Instant | None:
     """Return the linkage in the case and at the instant of the worst pin; None without one."""
     for line in lines:
-        motion = next((m for m in results.motion if m.case == line.row.case), None)
-        if motion is None:
+        skeleton = next((s for s in results.skeletons if s.case == line.row.case), None)
+        if skeleton is None:
             continue
         table = next((t for t in results.reactions if t.case == line.row.case), None)
         k = 0
-        if motion.time is not None and line.row.time is not None:
-            k = int(np.argmin(np.abs(motion.time - line.row.time)))
-        return Instant(motion, k, table)
+        if skeleton.time is not None and line.row.time is not None:
+            k = int(np.argmin(np.abs(skeleton.time - line.row.time)))
+        return Instant(skeleton, k, table)
     return None
 
 
@@ -59,7 +59,7 @@ def _joints_of_pins(at: Instant) -> dict[str, str]:
     """Return the joint at which each pin sits."""
     if at.table is None:
         return {}
-    by_connection = {name: joint for name, _, joint in at.motion.connections}
+    by_connection = {name: joint for name, _, joint in at.skeleton.connections}
     return {
         pin: by_connection[connection]
         for connection, pin in zip(at.table.connections, at.table.pins, strict=True)

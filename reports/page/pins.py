@@ -152,12 +152,5 @@ CASE_COLUMNS: list[Column[PinResult]] = [
     read_only("±", _error),
     read_only("place", _place, numeric=False, drop_if_empty=True),
     read_only("z", lambda row: row.location and row.location[2], "length", drop_if_empty=True),
-    Column(
-        "",
-        lambda row: row.time,
-        "time",
-        "time",
-        lambda row: engineering(row.time),
-        drop_if_empty=True,
-    ),
+    read_only("time", lambda row: row.time, "time", text=_time, drop_if_empty=True),
 ]

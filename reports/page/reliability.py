@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from reports.data.reliability import Reliability, Risk
-from reports.format.template import environment
+from reports.format.template import rendered
 from reports.plots.draw import svg
 from reports.plots.reliability import distribution_plot
 from reports.plots.theme import on_paper
@@ -27,23 +27,18 @@ def write_reliability_page(reliability: Reliability, path: Path) -> None:
         for risk in _worst_first(reliability)[:MAX_DISTRIBUTION_PLOTS]
     )
     laws = Table("laws", LAW_COLUMNS, reliability.parameters)
-    text = (
-        environment()
-        .get_template("reliability.html.j2")
-        .render(
-            found=reliability,
-            sentence=sentence(reliability, reliability.risks[0]) if reliability.risks else "",
-            sections=[
-                ("Pins and cases", risks_table(reliability).grid()),
-                (ways_title(reliability), ways_table(reliability).grid()),
-                ("What drives it", drivers_table(reliability).grid()),
-                ("Random numbers", laws.grid()),
-            ],
-            remarks=[*remarks(reliability), solved(reliability)],
-            plots=[
-                (svg({**plot.spec, "config": on_paper()}), plot.caption) for plot in plots if plot
-            ],
-        )
+    text = rendered(
+        "reliability.html.j2",
+        reliability=reliability,
+        sentence=sentence(reliability, reliability.risks[0]) if reliability.risks else "",
+        sections=[
+            ("Pins and cases", risks_table(reliability).grid()),
+            (ways_title(reliability), ways_table(reliability).grid()),
+            ("What drives it", drivers_table(reliability).grid()),
+            ("Random numbers", laws.grid()),
+        ],
+        remarks=[*remarks(reliability), solved(reliability)],
+        plots=[(svg({**plot.spec, "config": on_paper()}), plot.caption) for plot in plots if plot],
     )
     path.write_text(text, encoding="utf-8", newline="\n")
 

@@ -1,10 +1,10 @@
-"""One row as a drawing: the pin with its loads, and the stress along it."""
+"""The rows of a pin as a drawing: the pin with its loads, and the stress along it."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-from reports.data.results import PinResult, Results
+from reports.data.results import PinResult, PinShape, Results
 from reports.page.drawing_places import place_marks
 from reports.page.pin_drawing import DRAWING_WIDTH, draw_pin
 from reports.page.stress_along import stress_along
@@ -19,8 +19,13 @@ def draw_row(results: Results, row: PinResult) -> str:
     shape = next((s for s in results.shapes if s.pin == row.pin), None)
     if shape is None:
         return ""
-    only = replace(results, pins=(row,))
-    zones = circles(zone for case in pin_zones(only, row.pin).values() for zone in case)
-    marks = place_marks(only, row.pin, sum(s[0] for s in shape.segments))
-    along = stress_along(only, shape)
-    return draw_pin(shape, results.units, zones, DRAWING_WIDTH, marks, along)
+    return draw_shape(shape, replace(results, pins=(row,)))
+
+
+def draw_shape(shape: PinShape, results: Results, width: float = DRAWING_WIDTH) -> str:
+    """Return a pin as an <svg> element with the zones and places of its rows, and the stress and
+    loads of the one that governs.
+    """
+    zones = circles(zone for case in pin_zones(results, shape.pin).values() for zone in case)
+    marks = place_marks(results, shape.pin, sum(s[0] for s in shape.segments))
+    return draw_pin(shape, results.units, zones, width, marks, stress_along(results, shape))

@@ -49,8 +49,9 @@ def typeset(content: Content, plots: Mapping[str, Plot]) -> bytes:
         ).encode()
         pins.append({**pin, "drawing": f"pin{number}.svg"})
     data = {**content, "pins": pins, "captions": captions}
-    if (overview := content.get("overview")) and overview.get("linkage"):
-        files["linkage.svg"] = overview["linkage"].encode()
+    for drawing in ("linkage", "curve"):
+        if (overview := content.get("overview")) and overview.get(drawing):
+            files[f"{drawing}.svg"] = overview[drawing].encode()
     files["data.json"] = json.dumps(data, ensure_ascii=False).encode()
     day = content["block"]["date"]
     timestamp = datetime.fromisoformat(day).replace(tzinfo=UTC) if day else FIXED_DATE

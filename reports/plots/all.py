@@ -6,12 +6,9 @@ from collections.abc import Iterator
 
 from reports.data.decision import common_factor
 from reports.data.results import PinResult, ReactionTable, Results
-from reports.plots.loads.drive import drive_plot
-from reports.plots.loads.drop import drop_plots
-from reports.plots.loads.leg import leg_plots
+from reports.plots.loads.histories import drive_plot, drop_plots, motion_plot
 from reports.plots.loads.linkage import linkage_plot
 from reports.plots.loads.motion import motion_plots
-from reports.plots.loads.motion_check import motion_plot
 from reports.plots.loads.reactions import bars, reaction_plot
 from reports.plots.spec import Plot
 from reports.plots.strength.fatigue import collective_plot, history_plot
@@ -46,8 +43,6 @@ def _mechanics(results: Results) -> Iterator[Plot]:
     for motion in results.motion:
         yield linkage_plot(motion, units)
         yield from motion_plots(motion, units)
-    for leg in results.legs:
-        yield from leg_plots(leg, units)
     if results.motion_check is not None:
         yield motion_plot(results.motion_check, units)
 

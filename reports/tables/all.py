@@ -11,13 +11,14 @@ from reports.tables.loads.drop import drop_table
 from reports.tables.loads.linkage import linkage_tables
 from reports.tables.loads.motion import (
     beam_check_table,
+    bodies_table,
     drive_table,
-    leg_table,
     motion_check_table,
     reactions_pin_axes_table,
     reactions_table,
 )
 from reports.tables.loads.wear import wear_table
+from reports.tables.loads.wheel import wheel_table
 from reports.tables.published import published_reactions_table, published_values_table
 from reports.tables.strength.envelope import envelope_table
 from reports.tables.strength.fatigue import fatigue_tables
@@ -54,8 +55,11 @@ def sheets(tables: Sequence[Table[Any]]) -> list[Table[Any]]:
     return [t for t in tables if t.name not in CSV_ONLY_TABLES and len(t) <= MAX_SHEET_ROWS]
 
 
-def stress_tables(results: Results) -> list[Table[Any]]:
-    """Return the tables that need stresses, without empty ones; safety factors come first."""
+def stress_tables(results: Results, *, empty: bool = False) -> list[Table[Any]]:
+    """Return the tables that need stresses; safety factors come first.
+
+    empty: whether tables without rows are among them.
+    """
     check = results.beam_check
     rest: list[Table[Any]] = [
         envelope_table(results),
@@ -70,20 +74,23 @@ def stress_tables(results: Results) -> list[Table[Any]]:
     rest += [*joint_tables(results), *opinion_tables(results), *fatigue_tables(results)]
     rest += [limit_load_table(results), sensitivities_table(results)]
     rest += [] if check is None else [beam_check_table(check)]
-    return [safety_factors_table(results), *(table for table in rest if len(table))]
+    return [safety_factors_table(results), *(table for table in rest if empty or len(table))]
 
 
-def load_tables(results: Results) -> list[Table[Any]]:
-    """Return the tables of the loads, without empty ones."""
+def load_tables(results: Results, *, empty: bool = False) -> list[Table[Any]]:
+    """Return the tables of the loads.
+
+    empty: whether tables without rows are among them.
+    """
     tables: list[Table[Any]] = [published_reactions_table(results), published_values_table(results)]
     tables += [reactions_table(results), reactions_pin_axes_table(results), drive_table(results)]
     if results.motion_check is not None:
         tables.append(motion_check_table(results.motion_check))
     if results.drops:
         tables.append(drop_table(results))
-    if results.legs:
-        tables.append(leg_table(results.legs))
+    tables.append(bodies_table(results))
     tables.append(wear_table(results))
+    tables.append(wheel_table(results))
     # All tables of a linkage, so that every run has the same files.
-    full = [table for table in tables if len(table)]
-    return full + (linkage_tables(results) if results.motion else [])
+    full = [table for table in tables if empty or len(table)]
+    return full + (linkage_tables(results) if empty or results.motion else [])

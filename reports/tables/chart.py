@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from reports.data.chart import CHART_NAME, Chart, ChartPoint, error
 from reports.format.numbers import DASH, engineering, percent, seconds
 from reports.tables.column import Column, Table, fields
@@ -35,8 +33,3 @@ def chart_table(chart: Chart) -> Table[ChartPoint]:
         *fields("failed"),
     ]  # fmt: skip
     return Table(CHART_NAME, columns, chart.points)
-
-
-def write_chart_csv(chart: Chart, directory: Path) -> None:
-    """Write chart.csv with all digits."""
-    chart_table(chart).write(directory)

@@ -21,6 +21,7 @@ from reports.format.numbers import finite
 from reports.format.words import headline
 from reports.tables.column import Column, Table, fields, json_of
 from reports.tables.loads.wear import wear_table
+from reports.tables.loads.wheel import wheel_table
 from reports.tables.strength.fatigue import fatigue_json
 from reports.tables.strength.lets_go import lets_go_table
 from reports.tables.strength.limit_load import limit_load_json
@@ -93,6 +94,7 @@ def to_json(results: Results) -> dict[str, Any]:
         "fatigue": fatigue_json(results.fatigue),
         "loads": [_loads(results, table) for table in results.reactions],
         "wear": wear_table(results).records(),
+        "wheel_loads": wheel_table(results).records(),
         "drops": [_drop(d) for d in results.drops],
         "provenance": [asdict(entry) for entry in results.provenance],
         "inputs": results.inputs,
@@ -111,6 +113,7 @@ def _loads(results: Results, table: ReactionTable) -> dict[str, Any]:
     return {
         "case": table.case,
         "note": table.note,
+        "clause": table.clause,
         "shared": list(table.shared),
         "largest_forces": [json_of(PEAK, peak) for peak in table.largest],
         "drives": [json_of(DRIVE, drive) for drive in results.drive if drive.case == table.case],

@@ -52,16 +52,6 @@ def published_reactions_table(results: Results) -> Table[PublishedReaction]:
     return Table("reactions_published", columns, published_reactions(results))
 
 
-def write_published_reactions(results: Results, directory: Path) -> None:
-    """Write reactions_published.md, if there are published reactions."""
-    table = published_reactions_table(results)
-    if not table.rows:
-        return
-    body = table.grid(results.units).markdown()
-    title = f"# Reactions compared with published values: {markdown.escaped(results.title)}"
-    (directory / "reactions_published.md").write_text(f"{title}\n\n{body}\n", encoding="utf-8")
-
-
 VALUE_COLUMNS: list[Column[PublishedValue]] = [
     *texts("case"),
     *fields("time", "time"),
@@ -83,14 +73,17 @@ def published_values_table(results: Results) -> Table[PublishedValue]:
     return Table("published", VALUE_COLUMNS, results.published)
 
 
-def write_published_values(results: Results, directory: Path) -> None:
-    """Write published.md, if there are published values."""
-    if not results.published:
-        return
-    title = f"# Comparison with published values: {markdown.escaped(results.title)}"
-    body = published_values_table(results).grid(results.units).markdown()
-    text = f"{title}\n\n{body}\n"
-    (directory / "published.md").write_text(text, encoding="utf-8")
+def write_published(results: Results, directory: Path) -> None:
+    """Write reactions_published.md and published.md, where there are published values."""
+    reactions, values = published_reactions_table(results), published_values_table(results)
+    for name, title, table in (
+        ("reactions_published", "Reactions compared with published values", reactions),
+        ("published", "Comparison with published values", values),
+    ):
+        if table.rows:
+            title = f"# {title}: {markdown.escaped(results.title)}"
+            text = f"{title}\n\n{table.grid(results.units).markdown()}\n"
+            (directory / f"{name}.md").write_text(text, encoding="utf-8")
 
 
 MAXIMUM_COLUMNS: list[Column[PinResult]] = [

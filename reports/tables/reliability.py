@@ -26,7 +26,7 @@ class RiskRow:
     """The probability of failure of a pin in a case, with all results of the study."""
 
     risk: Risk
-    found: Reliability
+    whole: Reliability
 
     @property
     def by(self) -> str:
@@ -73,20 +73,20 @@ def _by(errors: str) -> list[Column[RiskRow]]:
 
 COLUMNS: list[Column[RiskRow]] = [
     *fields("risk.pin risk.case"),
-    Column("result", lambda row: row.risk.result(row.found.probability)),
-    *fields("risk.verdict safety_factor=risk.factor limit_factor=found.limit"),
+    Column("result", lambda row: row.risk.result(row.whole.probability)),
+    *fields("risk.verdict safety_factor=risk.factor limit_factor=whole.limit"),
     *_ends("probability", lambda row: row.risk.probability),
     *fields("probability_by=by"),
     *_ends("beneath", lambda row: row.risk.beneath),
     *_ends("sampled", lambda row: row.risk.sampled),
-    *fields("risk.failures found.samples risk.unknown"),
+    *fields("risk.failures whole.samples risk.unknown"),
     *_ends("weighted", lambda row: row.risk.weighted),
     _form("form", "probability"),
     _form("form_index", "index"),
     _form("form_design_points", "points"),
     *(replace(c, key="mesh_error" if c.key == "mesh_most" else c.key) for c in _by("mesh")[1:]),
     *_by("joint"),
-    *fields("quantile_probability=found.probability"),
+    *fields("quantile_probability=whole.probability"),
     *_ends("quantile", lambda row: row.risk.quantile),
     _form("quantile_form", "quantile"),
     Column("remark", lambda row: remark(row.risk)),

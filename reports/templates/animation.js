@@ -11,6 +11,8 @@
     applied: all("[data-applied]"), sizes: all("[data-size-of]"),
     names: all("[data-between]"), pitch: all("[data-pitch]"),
   };
+  const space = data.space && inSpace(data), dim = space ? 3 : 2; // coordinates of a point
+  const axesOf = space ? ["fx", "fy", "fz"] : ["fx", "fy"];
   const time = data.time, last = time.length - 1, span = time[last] - time[0];
   const seek = one("#seek"), play = one("#play"), callout = one("#callout"), key = one("#key");
   const LEFT = 70, RIGHT = 946; // of the strips' curves
@@ -48,6 +50,14 @@
     const b = values[Math.min(i + 1, last) * width + k];
     return a === null || b === null ? null : a + (b - a) * u;
   };
+  // A point of the data, of several in a row that of number k, and its place on the picture.
+  const point3 = (values, f, count = 1, k = 0) => Array.from({ length: dim }, (_, i) => at(values, f, dim * count, dim * k + i));
+  const seen = (p) => (space ? space.seen(p) : p);
+  const spot = (values, f, count, k) => seen(point3(values, f, count, k));
+  // A force: its components, and its direction on the picture, as long as it is seen.
+  const forceOf = (c, f) => axesOf.map((axis) => at(c[axis], f));
+  const aimed = (force) => (space ? space.aimed(force) : [force[0], -force[1]]);
+  const apart = (p, q) => Math.hypot(...p.map((x, i) => x - q[i]));
   const nearest = () => { const { i, u } = frame(); return u > 0.5 ? i + 1 : i; };
 
   // --- picture -------------------------------------------------------------------------------
@@ -61,18 +71,26 @@
     arrow.querySelector("line").setAttribute("x2", (length - 0.8 * head).toFixed(2));
     arrow.querySelector("path").setAttribute("transform", `translate(${length.toFixed(2)}) scale(${(head / HEAD).toFixed(3)})`);
   };
-  const length = (force) => {
-    const part = data.arrow.largest > 0 ? force / data.arrow.largest : 0;
+  const length = (force, largest = data.arrow.largest) => {
+    const part = largest > 0 ? force / largest : 0;
     return data.arrow.longest * (root ? Math.sqrt(part) : part);
+  };
+
+  // The length of the arrow of a force on the picture.
+  const foreshortened = (force, aim, largest) => {
+    const size = Math.hypot(...force);
+    return size > 0 ? (length(size, largest) * Math.hypot(...aim)) / size : 0;
   };
 
   const draw = () => {
     const f = frame();
-    const joints = data.xy.map((xy) => [at(xy, f, 2, 0), at(xy, f, 2, 1)]);
+    const joints = data.at.map((values) => spot(values, f)), centres = data.centres.map((values) => spot(values, f));
     parts.joints.forEach((g, j) => g.setAttribute("transform", place(...joints[j])));
     parts.links.forEach((g, b) => {
-      if (data.links[b].length < 2) return;
-      const d = line(data.links[b].map((j) => joints[j]), data.links[b].length > 2);
+      const points = data.links[b].map((j) => joints[j]);
+      if (space?.stems.has(b)) points.push(centres[b]);
+      if (points.length < 2) return;
+      const d = line(points, points.length > 2);
       for (const path of g.children) path.setAttribute("d", d);
     });
     parts.names.forEach((text) => {
@@ -80,52 +98,51 @@
       text.setAttribute("transform", place((p[0] + q[0]) / 2, (p[1] + q[1]) / 2));
     });
     parts.pitch.forEach((g, n) => {
-      const [ax, ay, bx, by] = [0, 1, 2, 3].map((k) => at(data.pitch[n], f, 4, k));
+      const [[ax, ay], [bx, by]] = [0, 1].map((k) => spot(data.pitch[n], f, 2, k));
       g.children[0].setAttribute("d", line([[ax, ay], [bx, by]]));
       if (g.children[1]) g.children[1].setAttribute("transform", place(ax, ay));
     });
     parts.slides.forEach((g, s) => {
       const slide = data.slides[s];
-      const [ax, ay, bx, by] = [0, 1, 2, 3].map((k) => at(slide.ends, f, 4, k));
+      const ends = [0, 1].map((k) => point3(slide.ends, f, 2, k)), [[ax, ay], [bx, by]] = ends.map(seen);
       if (slide.rail) {
         g.firstElementChild.setAttribute("transform", `${place(bx, by)} rotate(${slide.angle})`);
         return;
       }
-      const whole = Math.hypot(bx - ax, by - ay), part = whole > 0 ? Math.min(1, slide.cylinder / whole) : 0;
+      const whole = apart(...ends), part = whole > 0 ? Math.min(1, slide.cylinder / whole) : 0;
       const [rod, rim, core] = g.children;
       rod.setAttribute("d", line([[ax, ay], [bx, by]]));
       const barrel = line([[ax, ay], [ax + part * (bx - ax), ay + part * (by - ay)]]);
       rim.setAttribute("d", barrel);
       core.setAttribute("d", barrel);
     });
-    parts.centres.forEach((g, b) => g.setAttribute("transform", place(at(data.centres[b], f, 2, 0), at(data.centres[b], f, 2, 1))));
+    parts.centres.forEach((g, b) => g.setAttribute("transform", place(...centres[b])));
     data.connections.forEach((c, n) => {
-      const fx = at(c.fx, f), fy = at(c.fy, f), force = at(c.f, f);
-      const angle = (Math.atan2(-fy, fx) * 180) / Math.PI;
+      const force = forceOf(c, f), [u, v] = aimed(force), angle = (Math.atan2(v, u) * 180) / Math.PI;
       parts.arrows[n].setAttribute("transform", `${place(...joints[c.joint])} rotate(${angle.toFixed(2)})`);
-      stretch(parts.arrows[n], length(Math.hypot(fx, fy)));
+      stretch(parts.arrows[n], foreshortened(force, [u, v]));
       const cells = parts.rows[n].children;
-      cells[2].textContent = written(fx, data.fixed.force);
-      cells[3].textContent = written(fy, data.fixed.force);
-      cells[4].textContent = written(force, data.fixed.force);
+      [...force, at(c.f, f)].forEach((value, k) => { cells[2 + k].textContent = written(value, data.fixed.force); });
     });
-    data.applied.forEach((a, n) => {
+    [...data.applied, ...data.couples].forEach((a, n) => {
+      const couple = n >= data.applied.length, fixed = couple ? data.fixed.couple : data.fixed.force;
       // It ends just before its point; its size is written beyond its tail.
-      const x = at(a.xy, f, 2, 0), y = at(a.xy, f, 2, 1), fx = at(a.fx, f), fy = at(a.fy, f);
-      const force = Math.hypot(fx, fy), long = length(force), back = long + data.arrow.gap, size = parts.sizes[n];
-      const [u, v] = force > 0 ? [fx / force, -fy / force] : [0, 0];
+      const [x, y] = spot(a.at, f), components = forceOf(a, f), aim = aimed(components);
+      const force = Math.hypot(...components), long = foreshortened(components, aim, couple ? data.arrow.couple : data.arrow.largest), back = long + data.arrow.gap, size = parts.sizes[n];
+      const [u, v] = force > 0 ? aim.map((c) => c / (Math.hypot(...aim) || 1)) : [0, 0];
       const angle = (Math.atan2(v, u) * 180) / Math.PI;
       parts.applied[n].setAttribute("transform", `${place(x - back * u, y - back * v)} rotate(${angle.toFixed(2)})`);
       stretch(parts.applied[n], long);
       size.setAttribute("transform", place(x - (back + 12) * u, y - (back + 12) * v + 4));
       size.style.textAnchor = u > 0.4 ? "end" : u < -0.4 ? "start" : "middle";
-      size.textContent = force > 0 ? `${written(force, data.fixed.force)} ${data.fixed.force.unit}` : "";
+      size.textContent = force > 0 ? `${written(force, fixed)} ${fixed.unit}` : "";
     });
     data.drives.forEach((d, n) => {
       if (!parts.positions[n]) return;
       parts.positions[n].textContent = written(at(d.position, f), data.fixed.drives[n][0]);
       parts.forces[n].textContent = written(at(d.force, f), data.fixed.drives[n][1]);
     });
+    space?.draw(f, joints, at);
     const x = LEFT + (span > 0 ? (now - time[0]) / span : 0) * (RIGHT - LEFT);
     for (const cursor of parts.cursors) { cursor.setAttribute("x1", x.toFixed(1)); cursor.setAttribute("x2", x.toFixed(1)); }
     if (seek) {
@@ -143,13 +160,20 @@
 
   const element = (name, text) => { const e = document.createElement(name); e.textContent = text; return e; };
 
+  // The coordinates of a point of the data, in the study's unit of length.
+  const placeOf = (p) => {
+    const { left, top, scale } = data.places;
+    const world = space ? p.map((c, i) => data.space.middle[i] + c / scale) : [(p[0] - left) / scale, (top - p[1]) / scale];
+    return world.map((c, i) => `${"xyz"[i]} ${plain(c)}`).join(", ");
+  };
+
   const tell = (f, joints) => {
     const j = chosen();
     callout.hidden = j === null;
     if (j === null) return;
-    const [x, y] = joints[j], { left, top, scale } = data.places;
+    const [x] = joints[j];
     const box = element("div", "");
-    box.append(element("b", data.joints[j]), element("small", `x ${plain((x - left) / scale)}, y ${plain((top - y) / scale)} ${data.units.length}`));
+    box.append(element("b", data.joints[j]), element("small", `${placeOf(point3(data.at[j], f))} ${data.units.length}`));
     const table = element("table", "");
     data.connections.forEach((c, n) => {
       if (c.joint !== j) return;
@@ -157,11 +181,12 @@
       row.className = parts.rows[n].className.replace("hot", "");
       const head = element("th", "");
       head.append(element("i", ""), c.body ? `${c.name}, ${c.body}` : c.name);
+      row.append(head, element("td", written(at(c.f, f), data.fixed.force)));
       const angle = (Math.atan2(at(c.fy, f), at(c.fx, f)) * 180) / Math.PI;
-      row.append(head, element("td", written(at(c.f, f), data.fixed.force)), element("td", `${written(angle, { factor: 1, decimals: 0 })}°`));
-      row.cells[1].className = row.cells[2].className = "n";
+      if (!space) row.append(element("td", `${written(angle, { factor: 1, decimals: 0 })}°`));
+      for (const cell of [...row.cells].slice(1)) cell.className = "n";
     });
-    if (table.rows.length) box.append(table, element("small", "force on the pin; angle from the x axis"));
+    if (table.rows.length) box.append(table, element("small", `force on the pin${space ? "" : "; angle from the x axis"}`));
     callout.replaceChildren(...box.childNodes);
     // In the corner farther from the joint.
     callout.classList.toggle("right", x < one("#scene").viewBox.baseVal.width / 2);
@@ -273,6 +298,7 @@
   for (const box of all("[data-show]")) { box.addEventListener("change", () => show(box)); show(box); }
   addEventListener("resize", draw);
 
+  space?.start(draw);
   for (const part of all(".controls, .help")) part.hidden = false;
   rescale();
   // animation_x.html#t=1.5 opens at that time; otherwise it plays, unless the user prefers reduced

@@ -1,13 +1,20 @@
-"""Summary of a speed-accuracy chart: the cheapest model, and the cost of equal errors."""
+"""A speed-accuracy chart in words: the cheapest model, the cost of equal errors, its table."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from reports.data.chart import Chart, ChartPoint, error
 from reports.format.numbers import engineering, percent, seconds
+from reports.tables.chart import chart_table
+from reports.text.fitted_table import fitted_table
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
 
 FOUNDATION_MODEL = "foundation"  # whose error is not that of a mesh
 HARMONIC_MODEL_NAMES = {
@@ -209,3 +216,22 @@ def failures(chart: Chart) -> list[str]:
         what = f"{model} ({element})" if model == "solid" else model
         out.append(f"Failed: {what}{which}: {why}")
     return out
+
+
+def print_chart(chart: Chart, console: Console) -> None:
+    """Print the table of meshes, the reference, failures and a summary."""
+    from rich.text import Text
+
+    table = chart_table(chart)
+    inside = [p.error is not None and p.error <= chart.tolerance for p in chart.points]
+    tints = {heading: ["green" * good for good in inside] for heading in table.grid().head}
+    console.print(fitted_table(table, None, console.width, tints, gap=1))
+    of = f"median of {chart.runs} runs" if chart.runs > 1 else "one run"
+    console.print(
+        Text(
+            f"Time: {of}, including meshing. Memory: above the bare process ({chart.bare:.0f} MB)."
+        )
+    )
+    for line in (reference_line(chart), chart.note, *failures(chart), summary(chart)):
+        if line:
+            console.print(Text(line))

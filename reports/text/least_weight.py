@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from reports.format.numbers import DASH, engineering, short
 from reports.tables.column import Column, Table, read_only, texts
 from reports.text.fitted_table import fitted_table
+from reports.text.sizes import heavy, reached
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -97,9 +98,9 @@ def light_table(rows: Sequence[LightRow], weight: str) -> Table[LightRow]:
         *texts("Pin=pin Result=result"),
         read_only("factor", lambda row: row.factor),
         read_only("factor at p", lambda row: row.at, drop_if_empty=True),
-        read_only(weight, lambda row: _heavy(row.weights[0]), rank=1),
-        read_only("scaled", lambda row: _heavy(row.weights[1])),
-        read_only("least", lambda row: _heavy(row.weights[2])),
+        read_only(weight, lambda row: heavy(row.weights[0]), rank=1),
+        read_only("scaled", lambda row: heavy(row.weights[1])),
+        read_only("least", lambda row: heavy(row.weights[2])),
         read_only("saved", lambda row: _saved(row.saved)),
         read_only("residual", lambda row: _residual(row.residual)),
         read_only("governs", lambda row: row.governs, rank=2, numeric=False),
@@ -107,10 +108,6 @@ def light_table(rows: Sequence[LightRow], weight: str) -> Table[LightRow]:
         read_only("designs", lambda row: str(row.solved), rank=4),
     ]
     return Table("least_weight", columns, rows)
-
-
-def _heavy(weight: float | None) -> str:
-    return DASH if weight is None else engineering(weight, 3)
 
 
 def _saved(part: float | None) -> str:
@@ -124,17 +121,9 @@ def _residual(residual: float | None) -> str:
 
 
 def _total(rows: Sequence[LightRow], required: float | None, what: str, unit: str) -> Iterator[str]:
-    everywhere = sum(not row.why for row in rows)
-    count = everywhere + sum(row.depends for row in rows)
-    ranges = "" if count == everywhere else f" as described, {everywhere} over its ranges"
-    factors = "their required factors"
-    if required is not None:
-        factors = f"the safety factor {short(required)}"
-    yield (
-        f"{count} of {len(rows)} pin{'s' if len(rows) != 1 else ''} "
-        f"reach{'es' if len(rows) == 1 else ''} {factors} in a run of the new study{ranges}, "
-        "with the error of its stress."
-    )
+    whys, depending = [row.why for row in rows], sum(row.depends for row in rows)
+    text = reached(whys, depending, required, "in a run of the new study")
+    yield f"{text}, with the error of its stress."
     known = [row for row in rows if row.saved is not None]
     if len(known) > 1:
         was, scaled, now = (sum(row.weights[k] or 0.0 for row in known) for k in range(3))

@@ -14,14 +14,22 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 
+ROUND_OFF = 1e-12  # of the largest force in a case
+
 COLUMNS: list[Column[tuple[ReactionTable, int, PeakReaction]]] = [
     read_only("Case", lambda row: row[0].case, numeric=False),
     read_only("Connection", lambda row: row[2].connection, numeric=False),
     read_only("Pin", lambda row: row[0].pins[row[1]] or DASH, numeric=False),
     read_only("Body", lambda row: row[0].bodies[row[1]] or DASH, numeric=False),
-    read_only("maximum\nforce\n", lambda row: row[2].force, "force"),
+    read_only("maximum\nforce\n", lambda row: _clear_of_round_off(row[0], row[2]), "force"),
     read_only("t\n", lambda row: engineering(row[2].time), "time"),
 ]
+
+
+def _clear_of_round_off(table: ReactionTable, peak: PeakReaction) -> float:
+    """Return the largest force of a connection, 0 where it is round-off of the others."""
+    largest = max(other.force for other in table.largest)
+    return peak.force if peak.force > ROUND_OFF * largest else 0.0
 
 
 def print_loads(results: Results, console: Console) -> None:

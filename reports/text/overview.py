@@ -5,36 +5,37 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, OUTCOME_ORDER, SAFE, YIELDS
+from pinbase.grouped import grouped
 from reports.data.changes import Remedy, command
 from reports.data.decision import largest_factor, limit
 from reports.data.dependence import BENEATH_CONTACT, IMPULSE_RANGES_TOGETHER, TOGETHER
 from reports.data.overview import GOOD, PinLine, QuietCase, quiet_cases
-from reports.data.results import Dependence, GoverningLoad, PinResult, PinShape, Results, Units
+from reports.data.results import Dependence, PinResult, PinShape, Results, Units
 from reports.data.unknowns import NO_SPREAD, Unknown, decided_by, factor_spread, without_range
-from reports.format.numbers import DASH, engineering, short
+from reports.format.numbers import DASH, engineering, short, threshold
 from reports.format.place_words import action, place_words
 from reports.format.ranges import factor_range, factor_text
 from reports.format.units import unit_name
 from reports.format.words import undecided_because
-from reports.tables.strength.changes import singularity_remedies
+from reports.tables.strength.changes import singularity_remedies, unsized_notes
 from reports.tables.strength.margins import not_made_briefly
+from reports.text.load_path import load_path, names
 from reports.text.lug_advice import lug_advice, lug_peaks
 
-MAX_NAMED_PINS = 6  # in a sentence; of more, their number is given
 MAX_NAMED_CASES = 4
 MAX_FLIPS = 3  # values of one kind that change an outcome, in a sentence
-LARGE_FORCE = 0.5  # of the largest force: what passes through the same pins
+ROUND_OFF = 1e-9
 STRONGER = 3.0  # times the strength, which no other steel has
 MEASURED = {
     "landing": "force over time at landing",
     "joint": "clearance and stiffness of the lugs",
+    "links": "stiffness of the links",
+    "strength": "yield strength",
 }
 ESTIMATES_TEXT = (
-    "Diameters are estimates: of five pins 0.6 to 1.1 times what size found. The command verifies "
-    "them."
+    "Diameters are estimates, on five pins 0.6 to 1.1 times those that the command found; it "
+    "verifies them."
 )
 Content = list[str]
 
@@ -45,7 +46,11 @@ def decisions(results: Results, lines: Sequence[PinLine]) -> str:
     lines: here and below, those of the pins (`pin_lines`).
     """
     parts = [_undecided(lines), _depending(results, lines), _good(lines), _also(results, lines)]
-    parts += [_quiet(results, case, len(lines)) for case in quiet_cases(results, lines)]
+    quiet = quiet_cases(results, lines)
+    if len(quiet) > MAX_NAMED_CASES:
+        parts.append(_all_quiet(quiet))
+    else:
+        parts += [_quiet(results, case, len(lines)) for case in quiet]
     return " ".join(part for part in parts if part)
 
 
@@ -60,14 +65,15 @@ def why(results: Results, lines: Sequence[PinLine], most: int) -> Content:
     bad = [line for line in solved if line.outcome not in GOOD] or solved[:1]
     shapes = {shape.pin: shape for shape in results.shapes}
     failing = [line for line in bad if line.outcome in (FAILS, YIELDS)] or bad
-    parts = [_path(results, solved), _dominating(failing), _peaks(results, bad[:most], shapes)]
+    path = load_path(results, [line.row for line in solved])
+    parts = [path, _dominating(failing), _peaks(results, bad[:most], shapes)]
     parts.append(lug_peaks(lines, results.units))
     return [part for part in parts if part]
 
 
 @dataclass(frozen=True)
 class Actions:
-    """What brings the pins to their factor.
+    """The changes that bring the pins to their factor.
 
     repairs: sentences on failing checks by formula, and on singularities that can be removed.
     remarks: sentences on diameters and on other ways.
@@ -85,6 +91,7 @@ def actions(results: Results, lines: Sequence[PinLine], study: str = "") -> Acti
     study: its path, by default its name.
     """
     repairs = [*lug_advice(results, lines), *_exceeded(lines), *_singular(lines)]
+    repairs += unsized_notes(results)
     if not results.changes:
         return Actions(repairs, [], "")
     needed = [line for line in lines if line.diameter and line.diameter.needed]
@@ -101,7 +108,7 @@ def accuracy(lines: Sequence[PinLine]) -> Content:
     if not sound:
         return []
     most = max((r.error_estimate or 0.0) / (r.max_von_mises or 1.0) for r in sound)
-    return [f"up to {engineering(100.0 * most, 2)} %."]
+    return [f"up to {engineering(100.0 * most, 2)} %." if most >= 1e-4 else "below 0.01 %."]
 
 
 def certainty(lines: Sequence[PinLine]) -> Content:
@@ -181,31 +188,35 @@ def given_words(unknown: Unknown) -> str:
     return short(float(f"{value:.6g}")) if isinstance(value, float) else value or DASH
 
 
-def names(pins: Sequence[str]) -> str:
-    """Return names of pins: "A", "A and B", "A, B and C"."""
-    if len(pins) > MAX_NAMED_PINS:
-        return f"{len(pins)} pins"
-    return " and ".join(filter(None, [", ".join(pins[:-1]), pins[-1]])) if pins else ""
-
-
 def _flip(row: PinResult, d: Dependence, units: Units) -> str:
     state = "may fail" if row.as_described in GOOD else "is safe"
-    at = _at(d, units)
+    at = f"with {d.what}" if d.over == "links" else _at(d, units)
     return f"{row.pin} {state} {'with ' if at and at == d.value else ''}{at}".strip()
 
 
 def _undecided(lines: Sequence[PinLine]) -> str:
     open_ = [line for line in lines if line.outcome == NOT_DECIDED]
+    alone = _one_pin(lines)
+    if alone:  # of whose worst case the headline tells
+        open_ = [line for line in open_ if line is not lines[0]]
     if not open_:
         return ""
-    told = (f"{x.pin} ({x.check.reason or undecided_because(x.row)})" for x in open_)
-    return f"Not decided: {', '.join(told)}."
+    told = (
+        f"{x.row.case if alone else x.pin} ({x.check.reason or undecided_because(x.row)})"
+        for x in open_
+    )
+    return f"Not decided{' in' if alone else ':'} {', '.join(dict.fromkeys(told))}."
+
+
+def _one_pin(lines: Sequence[PinLine]) -> bool:
+    """Return whether the lines are the cases of a single pin."""
+    return len({line.pin for line in lines}) == 1
 
 
 def _depending(results: Results, lines: Sequence[PinLine]) -> str:
     open_ = [line for line in lines if line.outcome == DEPENDS]
     told = [f"{x.pin} on {flips(x.row, results.units)}" for x in open_]
-    if not told or len({line.pin for line in lines}) == 1:  # which the headline tells
+    if not told or _one_pin(lines):  # which the headline tells
         return ""
     first, *rest = told
     return f"{first.replace(' on ', ' depends on ', 1)}{''.join(f'; {x}' for x in rest)}."
@@ -234,7 +245,7 @@ def _at(d: Dependence, units: Units) -> str:
     if value is None:
         return "" if d.what == BENEATH_CONTACT else d.value
     side = "" if d.given is None else "above " if (d.at or value) > d.given else "below "
-    return f"{side}{value:.3g} {unit_name(d.dimension, units)}"
+    return f"{side}{threshold(value)} {unit_name(d.dimension, units)}"
 
 
 def _good(lines: Sequence[PinLine]) -> str:
@@ -242,6 +253,8 @@ def _good(lines: Sequence[PinLine]) -> str:
     if not good or len(good) == len(lines):
         return ""
     state = "safe" if any(x.outcome == SAFE for x in good) else BELOW_YIELD
+    if _one_pin(lines):
+        return f"{state.capitalize()} in {names([x.row.case for x in good])}."
     return f"{names([x.pin for x in good])} {'are' if len(good) > 1 else 'is'} {state}."
 
 
@@ -269,6 +282,17 @@ def _state(outcome: str, pins: Sequence[str]) -> str:
     return outcome.removesuffix("s") if plural else outcome
 
 
+def _all_quiet(cases: Sequence[QuietCase]) -> str:
+    """Return a sentence on many cases in which all pins are safe."""
+    lowest = [case.lowest for case in cases if case.lowest is not None]
+    state = "safe" if lowest and all(row.required for row in lowest) else BELOW_YIELD
+    text = f"In {len(cases)} other cases all pins are {state}"
+    if not lowest:
+        return f"{text}."
+    row = min(lowest, key=lambda row: row.safety_factor or 0.0)
+    return f"{text}, lowest {factor_range(row)} ({row.pin}, {row.case})."
+
+
 def _quiet(results: Results, case: QuietCase, pins: int) -> str:
     low = case.lowest
     state = "safe" if low is not None and low.required else BELOW_YIELD
@@ -280,48 +304,11 @@ def _quiet(results: Results, case: QuietCase, pins: int) -> str:
     return f"In {case.case} {every} {state}{least}."
 
 
-def _path(results: Results, lines: Sequence[PinLine]) -> str:
-    """Return a sentence on the pins through which the largest forces of the worst case pass."""
-    worst = lines[0].row
-    units = results.units
-    forces = {
-        x.row.pin: _largest(x.row.loads) for x in lines if x.row.case == worst.case and x.row.loads
-    }
-    if len(forces) < 2:
-        return _on_one_pin(worst, units) if forces else ""
-    most = max(forces.values())
-    through = [pin for pin, force in forces.items() if force >= LARGE_FORCE * most]
-    rest = [force for force in forces.values() if force < LARGE_FORCE * most]
-    verb = "carry" if len(through) > 1 else "carries"
-    text = f"{names(through)} {verb} up to {engineering(most, 3)} {units.force}"
-    others = f", others {engineering(max(rest), 3)}" if rest else ""
-    return f"{text}{others}."
-
-
-def _on_one_pin(row: PinResult, units: Units) -> str:
-    load = max(row.loads, key=_size)
-    return (
-        f"The largest force on pin {row.pin} is {engineering(_size(load), 3)} {units.force}, at "
-        f"{load.connection} ({row.case})."
-    )
-
-
-def _size(load: GoverningLoad) -> float:
-    return float(np.linalg.norm(load.force))
-
-
-def _largest(loads: Sequence[GoverningLoad]) -> float:
-    """Return the largest force of a link on a pin, or of all together, which its supports take."""
-    total = sum(np.asarray(load.force) for load in loads)
-    return max(*map(_size, loads), float(np.linalg.norm(total)))
-
-
 def _dominating(lines: Sequence[PinLine]) -> str:
     """Return a sentence on the internal forces that govern pins."""
-    by_action: dict[str, list[str]] = {}
-    for line in lines:
-        if kind := action(line.row):
-            by_action.setdefault(kind, []).append(line.pin)
+    # Pins once, whatever the number of their lines.
+    pairs = dict.fromkeys((kind, line.pin) for line in lines if (kind := action(line.row)))
+    by_action = grouped(pairs)
     told = [
         f"{kind} {'dominates ' * (not k)}{names(pins)}"
         for k, (kind, pins) in enumerate(by_action.items())
@@ -384,6 +371,10 @@ def _other_ways(results: Results) -> Content:
     row = results[worst.pin, worst.case]
     strength = f"{engineering(worst.yield_strength, 3)} {results.units.stress}"
     given = row.yield_strength or 0.0
+    # The strength counts errors, and the stress beneath contact, which the factor leaves out.
+    contact = row.maximum.places.contact if row.maximum.places else None
+    if contact and worst.yield_strength <= (1.0 + ROUND_OFF) * worst.required * contact.upper_end:
+        strength += " beneath its lugs, with the error"
     parts = []
     if worst.yield_strength > STRONGER * given:
         parts.append(f"No stronger material: {worst.pin} needs a yield strength of {strength}.")

@@ -15,6 +15,7 @@ from reports.format.numbers import engineering, short
 from reports.format.words import headline
 from reports.tables.published import published_maxima
 from reports.tables.strength.codes import CODES_TITLE, codes_table
+from reports.tables.strength.envelope import worst_cases
 from reports.tables.strength.fatigue import fatigue_sentence
 from reports.tables.strength.limit_load import limits_table
 from reports.tables.strength.overview import (
@@ -60,12 +61,17 @@ def print_safety_factors(results: Results, console: Console, study: str = "") ->
         console.print(fitted_table(table, results.units, console.width, {"result": tints}))
         if key := _key(lines):
             console.print(Text(key))
+        worst = worst_cases(results, [line.pin for line in lines])
+        if worst is not None and len({line.pin for line in lines}) > 1:
+            print_table(console, "", worst)
     else:
         console.print(Text("No pin was solved."))
     for title, sentences, command in _parts(results, lines, unknown, study):
-        console.print(Text.assemble((f"{title} ", "bold"), " ".join(sentences or [command])))
+        alone = not sentences  # a command is to be copied, so it stays in one line
+        told = Text.assemble((f"{title} ", "bold"), " ".join(sentences or [command]))
+        console.print(told, soft_wrap=alone)
         if sentences and command:
-            console.print(Text(f"  {command}"), soft_wrap=True)  # to be copied
+            console.print(Text(f"  {command}"), soft_wrap=True)
     if len(results.changes) == 1:
         sensitivities = shown_sensitivities(_of_changes(results), MAX_BRIEF_ROWS)
         print_table(console, "Sensitivities", sensitivities, results.units)
@@ -89,10 +95,14 @@ def _parts(
     steps = actions(results, lines, study)
     brief = bool(steps.command) and len(results.changes) > 1  # the table has the diameters
     notes = [note for note in caveats(results) if not note.startswith(ALL_CONVERGED)]
+    errors = accuracy(lines)
+    if not errors and any(x.row.max_von_mises != 0.0 for x in lines):
+        errors = ["not known, as every row is singular or unsolved."]
+    errors = [*errors, *measure_first(unknown)]
     parts = [
         ("Why:", why(results, lines, 1), ""),
         ("Do:", steps.repairs if brief else [*steps.repairs, *steps.remarks], steps.command),
-        ("Error:", [*accuracy(lines), *measure_first(unknown)], ""),
+        ("Error:", errors, ""),
         ("Other checks:", [*_margins(results), *skipped_checks(results, lines)], ""),
         ("Note:", notes, ""),
     ]

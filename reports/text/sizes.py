@@ -65,22 +65,32 @@ def print_sizes(
 
     tints = {"Result": ["yellow" if row.why else "green" for row in rows]}
     console.print(fitted_table(sizes_table(rows), units, console.width, tints))
-    everywhere = sum(not row.why for row in rows)
-    as_described = everywhere + sum(row.depends for row in rows)
-    ranges = "" if as_described == everywhere else f" as described, {everywhere} over its ranges"
-    factor = "their required factors"
-    if required is not None:
-        factor = f"the safety factor {short(required)}"
+    whys, depending = [row.why for row in rows], sum(row.depends for row in rows)
     console.print(
         Text(
-            f"{as_described} of {len(rows)} pin{'s' if len(rows) != 1 else ''} "
-            f"reach{'es' if len(rows) == 1 else ''} {factor} in the "
-            f"new study{ranges}. Lengths and the weights of links are unchanged; check that the "
-            "links have room for the new diameters."
+            f"{reached(whys, depending, required, 'in the new study')}. Lengths and the weights of "
+            "links are unchanged; check that the links have room for the new diameters."
         )
     )
     for line in _remarks(rows):
         console.print(Text(line))
+
+
+def reached(whys: Sequence[str], depending: int, required: float | None, where: str) -> str:
+    """Return how many pins reach the factor: "2 of 3 pins reach the safety factor 2 ...".
+
+    whys: the reasons why pins do not, empty for those that do. depending: the number of those
+    that do as described, but not over all ranges of the study.
+    required: None where it is not the same for all.
+    """
+    everywhere = sum(not why for why in whys)
+    as_described = everywhere + depending
+    ranges = "" if as_described == everywhere else f" as described, {everywhere} over its ranges"
+    factor = "their required factors"
+    if required is not None:
+        factor = f"the safety factor {short(required)}"
+    pins = "pin reaches" if len(whys) == 1 else "pins reach"
+    return f"{as_described} of {len(whys)} {pins} {factor} {where}{ranges}"
 
 
 def _remarks(rows: Sequence[SizeRow]) -> Iterator[str]:
@@ -102,7 +112,7 @@ def sizes_table(rows: Sequence[SizeRow]) -> Table[SizeRow]:
         read_only("new", lambda row: _joined(row.after) or "unchanged", "length", numeric=False),
         read_only("before", lambda row: _joined(row.before), "length", rank=4, numeric=False),
         read_only("factor before", lambda row: engineering(row.factor_before, 2), rank=5),
-        read_only("weight", lambda row: " → ".join(map(_heavy, row.weights)), "force", rank=2),
+        read_only("weight", lambda row: " → ".join(map(heavy, row.weights)), "force", rank=2),
         read_only("L/d", lambda row: engineering(row.slenderness, 2), rank=1),
         read_only("governs", lambda row: row.governs, rank=3, numeric=False),
     ]
@@ -113,5 +123,6 @@ def _joined(diameters: tuple[float, ...] | None) -> str:
     return ", ".join(map(short, diameters or ()))
 
 
-def _heavy(weight: float | None) -> str:
+def heavy(weight: float | None) -> str:
+    """Return a weight in words; a dash where it is not known."""
     return DASH if weight is None else engineering(weight, 3)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
+from pinbase.grouped import grouped
 from reports.data.decision import common_factor, largest_factor
 from reports.data.governing import governing
 from reports.data.headline import JudgedCheck, pins_with, worst_checks
@@ -51,9 +52,7 @@ def _against_required(results: Results) -> str:
 
 def _with_reasons(checks: list[JudgedCheck]) -> str:
     """Return the pins with the reasons for their outcome, equal reasons together."""
-    together: dict[str, list[str]] = {}
-    for check in checks:
-        together.setdefault(_due_to(check), []).append(check.pin)
+    together = grouped((_due_to(check), check.pin) for check in checks)
     return ", ".join(
         ", ".join(pins) + (f" ({why})" if why else "") for why, pins in together.items()
     )
@@ -85,7 +84,7 @@ def _depending(results: Results) -> str:
             else ""
         )
         text = f"Safe as described: {'; '.join(clauses)}{more}."
-    for over in ("joint", "landing"):
+    for over in ("joint", "landing", "links", "strength"):
         some = [
             (p.pin, p.case)
             for p in results.pins

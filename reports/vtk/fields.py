@@ -14,7 +14,7 @@ from assess.plastic.records import FlowField
 from reports.data.results import BandLoad, Field, Units, Volume
 from reports.vtk.render import render_pin
 from reports.vtk.renderer import renderer_problem
-from reports.vtk.writer import Block, Data, write_block, write_multiblock, write_series
+from reports.vtk.writer import Block, write_block, write_multiblock, write_series
 
 __all__ = [
     "block",
@@ -74,8 +74,12 @@ def write_vtu(field: Field, path: Path, units: Units) -> None:
 def block(field: Field, units: Units) -> Block:
     """Return the part of a field that a VTU file has."""
     # "TimeValue" is the name by which VTK knows a file's time.
-    time: Data = {} if field.time is None else {"TimeValue": np.array([field.time])}
-    return Block(field.points, field.cells, field.cell_type, point_data(field, units), whole=time)
+    whole: Arrays = {} if field.time is None else {"TimeValue": np.array([field.time])}
+    if field.beneath is not None:
+        stress, place = field.beneath
+        whole[f"beneath [{units.stress}]"] = np.array([stress])
+        whole[f"beneath at [{units.length}]"] = np.array([place])
+    return Block(field.points, field.cells, field.cell_type, point_data(field, units), whole=whole)
 
 
 def write_pin(field: Field, name: str, directory: Path, units: Units) -> None:
@@ -127,7 +131,7 @@ def _volume(volume: Volume, units: Units) -> Block:
         f"von Mises [{units.stress}]": volume.von_mises,
     }
     data |= _pressed(volume.pressed)
-    return Block(volume.points, volume.cells, volume.cell_type, data)
+    return Block(volume.points, volume.cells, volume.cell_type, data, more=volume.more)
 
 
 def _write_stills(field: Field, directory: Path, units: Units) -> list[tuple[float, str, str]]:

@@ -22,9 +22,9 @@ Data = Mapping[str, "NDArray[Any] | Sequence[str]"]  # numbers, or texts
 
 @dataclass(frozen=True)
 class Block:
-    """A mesh with cells of one type and data by name.
+    """A mesh with data by name.
 
-    points: (N, 3). cells: (M, k). whole: data of the whole block.
+    points: (N, 3). cells: (M, k). whole: data of the whole block. more: cells of other types.
     """
 
     points: Floats
@@ -33,6 +33,7 @@ class Block:
     point_data: Data = field(default_factory=dict)
     cell_data: Data = field(default_factory=dict)
     whole: Data = field(default_factory=dict)
+    more: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)
 
 
 def write_block(block: Block, path: Path) -> None:
@@ -62,11 +63,13 @@ def grid(block: Block) -> Any:
     vtk_grid, points, cells = vtkUnstructuredGrid(), vtkPoints(), vtkCellArray()
     points.SetData(numpy_to_vtk(_numbers(block.points), deep=True))
     vtk_grid.SetPoints(points)
-    count, width = block.cells.shape
-    ends = np.arange(0, count * width + 1, width, dtype=np.int32)
-    nodes = np.ascontiguousarray(block.cells, dtype=np.int32).ravel()
+    parts = {block.cell_type: block.cells, **block.more}
+    widths = np.concatenate([np.full(len(part), part.shape[1]) for part in parts.values()])
+    ends = np.concatenate([[0], np.cumsum(widths)]).astype(np.int32)
+    nodes = np.concatenate([part.ravel() for part in parts.values()]).astype(np.int32)
     cells.SetData(numpy_to_vtk(ends, deep=True), numpy_to_vtk(nodes, deep=True))
-    vtk_grid.SetCells(VTK_CELL_TYPES[block.cell_type], cells)
+    types = np.repeat([VTK_CELL_TYPES[kind] for kind in parts], [len(x) for x in parts.values()])
+    vtk_grid.SetCells(numpy_to_vtk(types.astype(np.uint8), deep=True), cells)
     for place, data in (
         (vtk_grid.GetPointData(), block.point_data),
         (vtk_grid.GetCellData(), block.cell_data),

@@ -10,6 +10,7 @@ from benchmarks.pins.calculix_plastic import factor_reached
 from fea.core.pin_loads import PinLoads
 from geometry import Pin, Segment
 from geometry.mesh.hexahedra import HexSize, twenty
+from tests.support.each import sampled
 from tests.support.exact.plastic import RULE, D, limit
 
 COARSE = HexSize(2, 0.5)
@@ -21,7 +22,7 @@ def test_nodes_of_other_programs_are_ours_in_another_order() -> None:
 
 @pytest.mark.peers
 @pytest.mark.slow
-@pytest.mark.parametrize("aslant", [False, True])
+@pytest.mark.parametrize("aslant", sampled([True, False], every=2))
 def test_limit_load_as_in_calculix(tmp_path: Path, aslant: bool) -> None:
     """aslant: two forces in different planes, of which half the pin is modelled by half a turn."""
     a, b = (Segment(0.5 * D, D, connection=name) for name in "ab")

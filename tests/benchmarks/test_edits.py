@@ -11,6 +11,7 @@ import pytest
 import pinstress
 from benchmarks.runs.edits import STUDIES, _difference, _draws, edits
 from pinstress.study.reading.in_python import changed_study
+from tests.support.each import each
 
 
 def test_every_kind_of_edit_is_drawn_and_makes_a_valid_study() -> None:
@@ -25,10 +26,12 @@ def test_every_kind_of_edit_is_drawn_and_makes_a_valid_study() -> None:
             changed = changed_study(study, {change.key: change.value})
             assert changed.table != study.table, change.key
             assert change.pin in study.table.pin
-    assert kinds == {"load", "strength", "clearance", "diameter", "impulse time", "material"}
+    sizes = {"clearance", "gap", "diameter", "length"}
+    loads = {"load", "small load", "impulse time"}
+    assert kinds == sizes | loads | {"strength", "range of strength", "material"}
 
 
-@pytest.mark.parametrize(
+@each(
     ("one", "other", "apart"),
     [
         ({"a": [1.0, 2.0], "seconds": 3.0}, {"a": [1.0, 2.0], "seconds": 4.0}, 0.0),

@@ -9,6 +9,7 @@ import pytest
 
 from tests.browser.test_pins import AXE, FAULTS, WIDER, screen
 from tests.conftest import ROOT
+from tests.support.each import sampled
 from tests.support.programs.command_line import run_here
 from tests.support.results.browser_page import errors
 
@@ -30,7 +31,7 @@ def page(browser: Any, check_page: Path) -> Any:
     return browser
 
 
-@pytest.mark.parametrize("width", [1400, 1024, 390])
+@pytest.mark.parametrize("width", sampled([1400, 1024, 390], every=2))
 def test_it_fits_and_shows_linkage_pins_and_rows(page: Any, width: int) -> None:
     with screen(page, width):
         assert page.execute_script(WIDER) == []

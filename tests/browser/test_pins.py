@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from tests.docs.test_captions import build_docs
+from tests.support.each import sampled
 from tests.support.results.browser_page import errors, opened, slide, unfold, wait
 
 pytestmark = pytest.mark.browser
@@ -87,7 +88,7 @@ def test_nine_closed_pins_take_few_screens(page: Any) -> None:
         assert not page.find_elements("css selector", "main details[open]")
 
 
-@pytest.mark.parametrize("width", [1400, 1024, 390])
+@pytest.mark.parametrize("width", sampled([1400, 1024, 390], every=2))
 def test_pins_fit_the_screen(page: Any, width: int) -> None:
     with screen(page, width):
         assert page.execute_script(WIDER) == []
@@ -158,7 +159,7 @@ def faults(page: Any) -> list[str]:
 
 
 @pytest.mark.parametrize("shade", ["light", "dark"])
-@pytest.mark.parametrize("open_", [False, True])
+@pytest.mark.parametrize("open_", sampled([True, False], every=2))
 def test_axe_finds_nothing(page: Any, shade: str, open_: bool) -> None:
     with screen(page, 1400, shade=shade):
         if open_:

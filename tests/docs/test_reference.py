@@ -7,6 +7,7 @@ from typing import Any
 
 from docs.study_reference import reference, sections, takes
 from pinstress.study.schema.cases import ImpulseTable, MotionCase
+from pinstress.study.schema.mechanism import SliderTable
 from pinstress.study.schema.pins import PinTable, SegmentTable
 from pinstress.study.schema.tables import StudyTable
 from pinstress.study.schema.types import StrictTable, described
@@ -53,7 +54,8 @@ def test_the_reference_has_type_unit_domain_default_and_description() -> None:
     [
         (SegmentTable, "bore", "length ≥ 0 or [length ≥ 0, length ≥ 0]"),
         (PinTable, "meridian", "list of list of 2 to 3 length ≥ 0"),
-        (ImpulseTable, "direction", "[number, number]"),
+        (SliderTable, "direction", "[number, number]"),
+        (ImpulseTable, "direction", "list of 2 to 3 number"),
         (MotionCase, "clamp", "by name: list of string"),
         (MotionCase, "distribution", '`"uniform"`, `"cosine"`'),
         (MotionCase, "kind", '`"motion"`'),

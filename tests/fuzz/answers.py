@@ -42,10 +42,12 @@ def answers(tree: Tree, spelling: random.Random | None = None, model: str = "aut
         rows[row.pin, row.case] = Row(
             row.max_von_mises * pascal, row.error_estimate * pascal, row.verdict
         )
+    margins = [m for m in results.margins if m.margin.governs]
+    checks = [(m.pin, m.case, m.margin.method, m.margin.level) for m in margins]
+    # Of a check with one margin `at` is the worst place, which others may equal to round-off.
     used: dict[tuple[str, str, str, str, str], float | None] = {
-        (m.pin, m.case, m.margin.method, m.margin.level, m.margin.at): m.margin.utilisation
-        for m in results.margins
-        if m.margin.governs
+        (*check, m.margin.at if checks.count(check) > 1 else ""): m.margin.utilisation
+        for check, m in zip(checks, margins, strict=True)
     }
     damage: dict[str, float] = {}
     for point in results.fatigue.points if results.fatigue is not None else ():

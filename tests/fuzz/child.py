@@ -20,6 +20,7 @@ __all__ = ["End", "check", "run", "write"]
 SECONDS = 60  # of processor time: the machine may have other things to do
 OUT_OF_TIME = f"signal {int(signal.SIGXCPU)} "  # as a worker's end is reported
 MEMORY = 4 * 2**30  # bytes of address space
+MEMORY_OF_CHARTS = 64 * 2**30  # which their engine reserves, of which it takes little
 SIGNS = re.compile(
     r"Traceback|\w+Warning\b|Exception ignored|\w+Error\b(?!:? the numerics)|<class "
 )
@@ -54,11 +55,11 @@ class End:
         return "" if errors or self.status < 2 else "no message"
 
 
-def run(folder: Path, arguments: list[str], seconds: int = SECONDS) -> End:
+def run(folder: Path, arguments: list[str], seconds: int = SECONDS, memory: int = MEMORY) -> End:
     """Run a pinstress command in a folder; forked, so that nothing is imported anew."""
     out, err = folder.with_suffix(".out"), folder.with_suffix(".err")
     process = multiprocessing.get_context("fork").Process(
-        target=_serve, args=(folder, arguments, out, err, seconds)
+        target=_serve, args=(folder, arguments, out, err, seconds, memory)
     )
     process.start()
     process.join(5.0 * seconds)  # one that waits takes no processor time
@@ -71,12 +72,14 @@ def run(folder: Path, arguments: list[str], seconds: int = SECONDS) -> End:
     return End(status, said, warned, seconds)
 
 
-def _serve(folder: Path, arguments: list[str], out: Path, err: Path, seconds: int) -> None:
+def _serve(
+    folder: Path, arguments: list[str], out: Path, err: Path, seconds: int, memory: int
+) -> None:
     sys.stdout, sys.stderr = out.open("w"), err.open("w")  # pytest has its own there
     os.dup2(sys.stdout.fileno(), 1)
     os.dup2(sys.stderr.fileno(), 2)
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
     os.chdir(folder)
     status = run_command_line(arguments)
     sys.stdout.flush()

@@ -137,6 +137,10 @@ def _joint(rng: random.Random, name: str, skeleton: Skeleton, classes: set[str])
         classes.add("floating pin")
     else:
         table["fixed_in"] = carrier
+        if rng.random() < 0.15:
+            classes.add("friction in pins")
+            size = abs(skeleton.points["A"] - skeleton.points["O"])
+            table |= {"friction": rng.uniform(0.02, 0.2), "diameter": length(0.05 * size)}
     table["connections"] = {f"{name}{i}": body for i, body in enumerate(on) if body != carrier}
     return table
 
@@ -215,12 +219,12 @@ def _cases(rng: random.Random, skeleton: Skeleton, classes: set[str]) -> Tree:
             angular = "" if skeleton.pushes else "angular "
             case["velocity"] = Quantity(rng.uniform(-20.0, 20.0), f"{angular}velocity")
             case["acceleration"] = Quantity(rng.uniform(-50.0, 50.0), f"{angular}acceleration")
-        case["apply"] = [_load(rng, skeleton) for _ in range(rng.choice((1, 1, 2)))]
+        case["apply"] = [_load(rng, skeleton, classes) for _ in range(rng.choice((1, 1, 2)))]
         found[kind] = case
     return found
 
 
-def _load(rng: random.Random, skeleton: Skeleton) -> Tree:
+def _load(rng: random.Random, skeleton: Skeleton, classes: set[str]) -> Tree:
     """On a body that the drive moves, so that every joint has something to carry."""
     last = [*skeleton.links][-1]
     body = "piston" if skeleton.guide is not None and rng.random() < 0.5 else last
@@ -229,4 +233,7 @@ def _load(rng: random.Random, skeleton: Skeleton) -> Tree:
         load["couple"] = moment(rng.uniform(-50.0, 50.0))
     if rng.random() < 0.3:
         load["follows"] = True
+    if rng.random() < 0.15:
+        classes.add("side force")
+        load["force"].append(force(rng.uniform(-1e3, 1e3)))
     return load

@@ -11,14 +11,23 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from tests.fuzz import draw_asked, draw_cut, draw_joint, draw_machine, draw_mechanism, draw_pin
-from tests.fuzz.child import End, run
+from tests.fuzz import (
+    draw_asked,
+    draw_cut,
+    draw_joint,
+    draw_machine,
+    draw_mechanism,
+    draw_pin,
+    draw_space,
+)  # fmt: skip
+from tests.fuzz.child import MEMORY, MEMORY_OF_CHARTS, End, run
 from tests.fuzz.quantity import Tree, write
 
 TOLERANCE = 0.2  # of all studies
 OPTIONS = {
     "run": ("--no-cache", "--no-pictures", "--vtk", "none", "--jobs", "1", "--memory-limit", "500"),
     "sweep": ("--jobs", "1", "--quiet"),
+    "reliability": ("--jobs", "1", "--quiet"),
 }
 SECONDS = 120  # of processor time
 
@@ -118,6 +127,12 @@ def _head(rng: random.Random) -> Tree:
     }
 
 
+def _with_bronze(rng: random.Random) -> Tree:
+    head = _head(rng)
+    head["material"] = head["material"] | {"bronze": draw_joint.BRONZE}
+    return head
+
+
 def with_given_loads(rng: random.Random) -> Study:
     """One pin or two, under stated loads in one case or several."""
     classes, pins = {"stated loads"}, {}
@@ -152,11 +167,22 @@ def with_machine(rng: random.Random) -> Study:
     return _on_pins(rng, draw_machine.machine(rng))
 
 
+def in_space(rng: random.Random) -> Study:
+    """A linkage in space and one or two of its pins."""
+    return _on_pins(rng, draw_space.spatial(rng))
+
+
 def _on_pins(rng: random.Random, drawn: draw_mechanism.Drawn) -> Study:
     classes, pins = {"linkage", *drawn.classes}, {}
     joints = sorted(name for name, (connections, _) in drawn.joints.items() if connections)
     for joint in rng.sample(joints, min(len(joints), rng.choice((1, 1, 2)))):
-        connections, _ = drawn.joints[joint]
+        connections, floats = drawn.joints[joint]
+        if rng.random() < 0.4 and (len(connections) > 1 or not floats):
+            layout = "L" * len(connections)
+            layout = layout if floats else f"S{layout}S"
+            seat = draw_joint.Seat(rng, joint, layout, connections)
+            pins[joint], classes = seat.table, classes | seat.classes
+            continue
         shape = draw_pin.profile(rng, len(connections))
         classes |= shape.classes
         clamp = [rng.choice(("start", "end"))]  # links beside each other leave a couple
@@ -166,7 +192,7 @@ def _on_pins(rng: random.Random, drawn: draw_mechanism.Drawn) -> Study:
         steps = [{"case": name} | ({} if case["kind"] == "motion" else {"duration": "2 s"})
                  for name, case in drawn.cases.items()]  # fmt: skip
         parts["sequence"] = {"cycle": {"steps": steps * 2}}
-    return Study(0, _head(rng) | parts, frozenset(classes))
+    return Study(0, _with_bronze(rng) | parts, frozenset(classes))
 
 
 def with_joint(rng: random.Random) -> Study:
@@ -188,14 +214,12 @@ def _one_pin(rng: random.Random, pin: Tree, forces: Tree, classes: set[str]) -> 
     if rng.random() < 0.3:
         back = {name: [f * -0.4 for f in pull] for name, pull in forces.items()}
         cases["push"] = cases["pull"] | {"forces": back}
-    head = _head(rng)
-    head["material"] = head["material"] | {"bronze": draw_joint.BRONZE}
-    return Study(0, head | {"pin": {"P": pin}, "case": cases}, frozenset(classes))
+    return Study(0, _with_bronze(rng) | {"pin": {"P": pin}, "case": cases}, frozenset(classes))
 
 
 KINDS_OF_STUDY = (
     with_linkage, with_given_loads, with_joint, with_cut, with_machine, with_joint,
-    with_given_loads,
+    with_given_loads, in_space,
 )  # fmt: skip
 
 
@@ -206,7 +230,8 @@ def ended(seed: int, place: Path) -> Result:
     study = draw(seed)
     study.write(folder)
     command = [study.command, "study.toml", *OPTIONS[study.command]]
-    end, results = run(folder, command, SECONDS), folder / "out" / "study" / "results.json"
+    memory = MEMORY_OF_CHARTS if study.command == "reliability" else MEMORY
+    end, results = run(folder, command, SECONDS, memory), folder / "out" / "study" / "results.json"
     rows = json.loads(results.read_text())["pins"] if results.is_file() else []
     found = Result(study, end, tuple(rows))
     shutil.rmtree(folder / "out", ignore_errors=True)

@@ -26,8 +26,12 @@ def draw(seed: int, friction: bool = True) -> Tree:
     rng = random.Random(f"linkage {seed}")
     drawn = draw_mechanism.mechanism(rng)
     if not friction:
-        for guide in drawn.mechanism.get("slider", {}).values():
-            guide.pop("friction", None)
+        for part in (
+            *drawn.mechanism.get("slider", {}).values(),
+            *drawn.mechanism["joint"].values(),
+        ):
+            part.pop("friction", None)
+            part.pop("diameter", None)
     return {"title": "A linkage", "units": "m-N-s", "mechanism": drawn.mechanism,
             "case": drawn.cases}  # fmt: skip
 
@@ -71,9 +75,9 @@ def moved(tree: Tree, turn: float, shift: complex) -> Tree:
 
     def vector(v: Any) -> Any:
         plain = not isinstance(v[0], Quantity)
-        z = complex(*(v if plain else (q.value for q in v))) * unit
+        z = complex(*(v if plain else (q.value for q in v[:2]))) * unit
         return [z.real, z.imag] if plain else [
-            Quantity(x, v[0].dimension) for x in (z.real, z.imag)
+            *(Quantity(x, v[0].dimension) for x in (z.real, z.imag)), *v[2:]
         ]  # fmt: skip
 
     m = tree["mechanism"]

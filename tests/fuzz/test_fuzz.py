@@ -18,6 +18,7 @@ from pinstress.study.schema.units import (
     to_si,
 )
 from tests.fuzz.kills import kill, whole_run
+from tests.support.each import sampled
 
 ROOT = Path(__file__).parents[2]
 
@@ -26,10 +27,10 @@ ROOT = Path(__file__).parents[2]
 @pytest.mark.parametrize(
     ("kind", "first", "count"),
     [
-        ("mutants", 1, 40),
-        ("files", 1, 30),
-        pytest.param("mutants", 41, 400, marks=pytest.mark.long),
-        pytest.param("files", 31, 100, marks=pytest.mark.long),
+        ("mutants", 1, 10),
+        ("files", 1, 8),
+        pytest.param("mutants", 11, 430, marks=pytest.mark.long),
+        pytest.param("files", 9, 122, marks=pytest.mark.long),
     ],
 )
 def test_broken_input_ends_with_a_message_or_a_result(kind: str, first: int, count: int) -> None:
@@ -46,9 +47,9 @@ def test_broken_input_ends_with_a_message_or_a_result(kind: str, first: int, cou
 @pytest.mark.parametrize(
     ("first", "count"),
     [
-        (1, 7),  # one of each kind, which takes half a minute; all else is slow
-        pytest.param(8, 21, marks=pytest.mark.slow),
-        pytest.param(29, 100, marks=[pytest.mark.slow, pytest.mark.long]),
+        (1, 1),  # one of each kind takes half a minute
+        pytest.param(2, 7, marks=pytest.mark.slow),
+        pytest.param(9, 120, marks=[pytest.mark.slow, pytest.mark.long]),
     ],
 )
 def test_valid_studies_have_results(first: int, count: int) -> None:
@@ -62,7 +63,7 @@ def test_valid_studies_have_results(first: int, count: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("jobs", [1, 2])
+@pytest.mark.parametrize("jobs", sampled([1, 2], every=2, first=1))
 def test_a_run_that_is_ended_leaves_a_whole_folder_and_no_process(
     tmp_path: Path, jobs: int
 ) -> None:

@@ -13,12 +13,10 @@ import pytest
 from tests.fuzz import draw_asked, draw_cut, draw_joint
 from tests.fuzz.answers import Answers, answers
 from tests.fuzz.quantity import Quantity, Tree, angle, mapped
-from tests.support.each import sampled
+from tests.support.each import in_turn, sampled
 
 ROUND_OFF = 1e-9  # of the same meshes, where sums have another order
-# Two joints in contact, a pin with a cut
-SEEDS = ("lugs 2", "cut 3", "lugs 9")
-seeds = pytest.mark.parametrize("seed", sampled(SEEDS, every=1))
+seeds = in_turn("seed", ("lugs 2", "cut 3", "lugs 9"))  # two joints in contact, a pin with a cut
 pytestmark = pytest.mark.slow
 EXPONENTS = {"length": 1, "force": 2, "moment": 3, "stress": 0}
 
@@ -69,7 +67,9 @@ def agree(one: Answers, other: Answers, times: float = 1.0) -> None:
         if used is None:
             assert other.used[name] is None, name
         else:
-            assert other.used[name] == pytest.approx(times * used, rel=share + 1e-6), name
+            of_damage = name[2] == "fatigue life"  # of slope 5, as below
+            rel = (1.0 - share) ** -5.0 - 1.0 if of_damage else share
+            assert other.used[name] == pytest.approx(times * used, rel=rel + 1e-6), name
     assert one.damage.keys() == other.damage.keys()
     for pin, damage in one.damage.items():  # of slope 5, between cells of either mesh
         assert (1.0 - share) ** 5 * damage <= other.damage[pin] * (1.0 + 1e-6), pin
@@ -77,7 +77,7 @@ def agree(one: Answers, other: Answers, times: float = 1.0) -> None:
 
 
 @seeds
-@pytest.mark.parametrize("units", ["in-lbf-s", "words"])
+@pytest.mark.parametrize("units", sampled(["words", "in-lbf-s"], every=2))
 def test_units_change_nothing(seed: str, units: str) -> None:
     tree = drawn(seed)
     said = answers(tree, random.Random(1)) if units == "words" else answers(tree | {"units": units})
@@ -114,7 +114,7 @@ def test_a_stronger_and_stiffer_joint_under_more_load_has_the_same_margins(seed:
 
 
 @seeds
-@pytest.mark.parametrize("by", [1.1, None])
+@pytest.mark.parametrize("by", sampled([1.1, None], every=2))
 def test_a_joint_turned_or_in_a_mirror_is_stressed_as_much(seed: str, by: float | None) -> None:
     """With its cuts and shanks; None: mirrored in the plane x, z."""
     tree = drawn(seed)
@@ -125,7 +125,7 @@ def test_a_joint_turned_or_in_a_mirror_is_stressed_as_much(seed: str, by: float 
         if isinstance(node, list) and node and getattr(node[0], "dimension", "") == "force":
             z = complex(node[0].value, node[1].value)
             z = z.conjugate() if by is None else z * cmath.rect(1.0, by)
-            return [Quantity(z.real, "force"), Quantity(z.imag, "force")]
+            return [Quantity(z.real, "force"), Quantity(z.imag, "force"), *node[2:]]
         if isinstance(node, list):
             return [turned(v) for v in node]
         if isinstance(node, Quantity) and node.dimension == "angle":

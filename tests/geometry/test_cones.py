@@ -80,7 +80,7 @@ def test_meshes_have_the_exact_volume() -> None:
     assert edges | {"fillet 2", "fillet 3", "bore fillet 2"} <= set(found.edges) | {"fillet 1"}
 
 
-@pytest.mark.parametrize("pin", [CONE, EVERYTHING])
+@each("pin", [CONE, EVERYTHING])
 def test_the_solid_is_the_same_body(pin: Pin) -> None:
     made = solid_mesh(pin, MeshSize(across=3.0, corner=1.0))
     tetrahedra = made.mesh.mapping().detDF(made.mesh.p[:, :1] * 0.0 + 0.25)

@@ -20,6 +20,7 @@ from geometry import (
 from geometry.imported.meshing import solid_mesh
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 from geometry.mesh.solid_mesh import MeshSize
+from tests.support.each import each
 from tests.support.errors import raises
 
 INCH, MM = 0.7 * 0.0254, 17.78 * 1e-3  # the same, but for the last place
@@ -30,7 +31,7 @@ def test_the_two_ways_to_write_it_do_differ() -> None:
     assert 0.0 < abs(INCH - MM) < 1e-17
 
 
-@pytest.mark.parametrize("fillet", [0.0, 0.004])
+@each("fillet", [0.0, 0.004])
 def test_equal_diameters_in_different_units_are_one_surface(fillet: float) -> None:
     pin = Pin("P", SHAFT, fillet)
     assert {s.diameter for s in pin.segments} == {min(INCH, MM)}
@@ -56,7 +57,7 @@ def test_so_are_bores_and_what_is_drilled_across_them() -> None:
     assert {"hole 1", "bore segment 1", "bore segment 2", "bore segment 3"} <= set(named)
 
 
-@pytest.mark.parametrize("apart", [1e-12, 9e-10])
+@each("apart", [1e-12, 9e-10])
 def test_what_is_merged_is_known(apart: float) -> None:
     pin = Pin("P", (Segment(1.0, 1.0 + apart), Segment(1.0, 1.0)))
     assert pin.segments[0].diameter == pin.segments[1].diameter == 1.0
@@ -70,7 +71,7 @@ def test_a_chain_of_small_differences_is_merged_as_a_whole() -> None:
     assert [s.diameter for s in pin.segments] == [1.0, 1.0, 1.0, 1.5]
 
 
-@pytest.mark.parametrize("apart", [2e-9, 1e-7, 1e-5])
+@each("apart", [2e-9, 1e-7, 1e-5])
 def test_a_larger_difference_is_a_real_step(apart: float) -> None:
     pin = Pin("P", (Segment(1.0, 1.0 + apart), Segment(1.0, 1.0)))
     assert pin.merged == 0.0
@@ -116,7 +117,7 @@ def test_flats_end_where_a_band_does() -> None:
     assert {"flat 1", "B", "segment 1", "segment 3"} <= set(named)
 
 
-@pytest.mark.parametrize(
+@each(
     ("segments", "code"),
     [
         ((Segment(1.0, 1.0, bore=1.0 - 1e-10),), "bore-too-large"),
@@ -129,7 +130,7 @@ def test_less_than_the_tolerance_is_nothing(segments: tuple[Segment, ...], code:
         Pin("P", segments)
 
 
-@pytest.mark.parametrize(
+@each(
     ("holes", "flats", "code"),
     [
         ((Hole(0.03, INCH),), (), "hole-too-large"),

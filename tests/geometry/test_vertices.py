@@ -26,7 +26,7 @@ def test_equal_diameters_meet_smoothly() -> None:
     assert vertices(pin)[1] == Vertex(1.0, 1.0, SMOOTH, ("B", "segment 2"))
 
 
-@pytest.mark.parametrize("rises", [True, False])
+@each("rises", [True, False])
 def test_a_sharp_shoulder(rises: bool) -> None:
     thin, thick = Segment(2.0, 2.0, name="thin"), Segment(2.0, 3.0, name="thick")
     pin = Pin("P", (thin, thick) if rises else (thick, thin))

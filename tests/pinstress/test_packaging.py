@@ -18,11 +18,13 @@ import tarfile
 import tomllib
 import venv
 import zipfile
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
 from tests.conftest import ROOT
+from tests.support.each import sampled
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 PACKAGES = PROJECT["tool"]["importlinter"]["root_packages"]
@@ -108,52 +110,87 @@ def test_a_citation_says_what_the_project_says() -> None:
     assert re.findall(r"^  - (.+)$", keywords, re.MULTILINE) == project["keywords"]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("ending", [".whl", ".tar.gz", "pip install ."])
-def test_an_install_initialises_checks_and_runs(ending: str, dist: Path, tmp_path: Path) -> None:
-    venv.create(tmp_path / "env", symlinks=True)
-    bin_ = tmp_path / "env" / "bin"
-    installer = (sys.executable, "-m", "pip", "--python", bin_ / "python", "install")
-    done(tmp_path, *installer, *OFFLINE, only(dist, ending) if ending.startswith(".") else ROOT)
-    (tmp_path / "hidden").mkdir()
-    (tmp_path / "hidden" / "sitecustomize.py").write_text(HIDDEN, encoding="utf-8")
+@dataclass(frozen=True)
+class Installed:
+    """An environment, in a folder of its own, and the files of our packages there; `shipped`: the
+    path of a study.
+    """
 
+    folder: Path
+    files: frozenset[str]
+    shipped: Path
+
+    @property
+    def python(self) -> Path:
+        return self.folder / "env" / "bin" / "python"
+
+
+def installed(what: Path, folder: Path) -> Installed:
+    """An empty environment into which a distribution or a checkout is installed."""
+    venv.create(folder / "env", symlinks=True)
+    python = folder / "env" / "bin" / "python"
+    done(folder, sys.executable, "-m", "pip", "--python", python, "install", *OFFLINE, what)
+    (folder / "hidden").mkdir()
+    (folder / "hidden" / "sitecustomize.py").write_text(HIDDEN, encoding="utf-8")
     here = done(
-        tmp_path,
-        bin_ / "python",
+        folder,
+        python,
         "-c",
         f"import {', '.join(PACKAGES)}; from pinstress.study.reading.shipped import shipped\n"
         f"print(*(m.__file__ for m in ({', '.join(PACKAGES)})))\n"
         "print(shipped('grenier2008.toml'))",
     ).split()
     assert len(here) == len(PACKAGES) + 1
-    inside = (tmp_path / "env").resolve()
+    inside = (folder / "env").resolve()
     assert all(inside in Path(path).resolve().parents for path in here)
     assert Path(here[-1]).is_file()
+    site = Path(here[0]).parents[1]
+    found = (p for room in PACKAGES for p in (site / room).rglob("*") if p.is_file())
+    names = {p.relative_to(site).as_posix() for p in found if "__pycache__" not in p.parts}
+    return Installed(folder, frozenset(names), Path(here[-1]))
 
-    program = bin_ / "pinstress"
-    assert "pinstress" in done(tmp_path, program, "--version")
-    done(tmp_path, program, "init", "trial")
-    assert "B" in done(tmp_path, program, "check", "trial/one_pin.toml")
-    done(tmp_path, program, "check", here[-1])
+
+@pytest.fixture(scope="module")
+def from_wheel(dist: Path, tmp_path_factory: pytest.TempPathFactory) -> Installed:
+    return installed(only(dist, ".whl"), tmp_path_factory.mktemp("wheel"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ending", sampled(["pip install .", ".tar.gz"], every=2))
+def test_every_way_installs_the_same(
+    ending: str, dist: Path, from_wheel: Installed, tmp_path: Path
+) -> None:
+    """So that what the wheel's does, the others do, too. The program of each starts."""
+    other = installed(only(dist, ending) if ending.startswith(".") else ROOT, tmp_path)
+    assert other.files == from_wheel.files
+    assert "pinstress" in done(tmp_path, other.python.with_name("pinstress"), "--version")
+
+
+@pytest.mark.slow
+def test_an_install_initialises_checks_and_runs(from_wheel: Installed) -> None:
+    folder, program = from_wheel.folder, from_wheel.python.with_name("pinstress")
+    assert "pinstress" in done(folder, program, "--version")
+    done(folder, program, "init", "trial")
+    assert "B" in done(folder, program, "check", "trial/one_pin.toml")
+    done(folder, program, "check", from_wheel.shipped)
     studies = {Path(name).stem for name in files("studies") if name.count("/") == 1}
-    listed = done(tmp_path, bin_ / "python", "-c", SHIPPED)
+    listed = done(folder, from_wheel.python, "-c", SHIPPED)
     assert set(listed.split()) == studies
-    printed = done(tmp_path, program, "run", "trial/one_pin.toml", "--no-pictures")
+    printed = done(folder, program, "run", "trial/one_pin.toml", "--no-pictures")
     assert "safe" in printed
-    out = tmp_path / "out" / "one_pin"
+    out = folder / "out" / "one_pin"
     (pin,) = json.loads((out / "results.json").read_text(encoding="utf-8"))["pins"]
     assert pin["verdict"] == "converged"
     assert pin["meets_required"] is True
     assert "<title>" in (out / "report.html").read_text(encoding="utf-8")
-    again = done(tmp_path, program, "run", "trial/one_pin.toml", "--no-pictures")
+    again = done(folder, program, "run", "trial/one_pin.toml", "--no-pictures")
     assert again == printed
-    assert any((tmp_path / "cache").iterdir())
+    assert any((folder / "cache").iterdir())
 
-    fatigue = Path(here[-1]).with_name("fatigue.toml")
+    fatigue = from_wheel.shipped.with_name("fatigue.toml")
     for command in (
         ("run", fatigue, "--out", "refused"),
         ("run", "trial/one_pin.toml", "--pdf"),
         ("sweep", fatigue.with_name("lifting_arm.toml"), "--scheduler", "tcp://127.0.0.1:1"),
     ):
-        assert "pip install 'pinstress[" in done(tmp_path, program, *command, status=2)
+        assert "pip install 'pinstress[" in done(folder, program, *command, status=2)

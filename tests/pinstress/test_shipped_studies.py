@@ -7,6 +7,7 @@ import json
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from pinstress.cli.commands import run_command_line
@@ -88,19 +89,48 @@ def test_loads_alone(tmp_path: Path, study: str, capsys: pytest.CaptureFixture[s
 
 
 def test_the_leg_in_space(tmp_path: Path) -> None:
+    """Force and moment on the hinge, and what the drives do, from the momenta of leg and wheel."""
     out = tmp_path / "out"
     command = ["loads", str(STUDIES / "kuleuven2014.toml"), "--out", str(out), "--no-pictures"]
     assert run_command_line(command) == 0
-    rows = list(csv.DictReader((out / "leg.csv").read_text().splitlines()))
-    pins = list(csv.DictReader((out / "reactions.csv").read_text().splitlines()))
-    for leg, pin in zip(rows, pins, strict=True):
-        # hinge axes x = z'', y = x'', z = y''; the moment about the hinge is the actuator's
-        for ours, theirs in (("fx", "F_B_z"), ("fy", "F_B_x"), ("fz", "F_B_y")):
-            assert float(pin[ours]) == float(leg[f"{theirs} [N]"])
-        for ours, theirs in (("mx", "M_B_z"), ("my", "M_B_x")):
-            assert float(pin[ours]) == float(leg[f"{theirs} [N m]"])
-        assert float(pin["mz"]) == 0.0
-        assert float(leg["actuator [N m]"]) == -float(leg["M_B_y [N m]"])
+
+    def read(name: str, key: str, of: str, columns: str) -> np.ndarray:
+        rows = csv.DictReader((out / f"{name}.csv").read_text().splitlines())
+        return np.array([[float(r[c]) for c in columns.split()] for r in rows if r[key] == of])
+
+    slope, g, hinge = np.radians(3.0), 9.80665, np.array([0.90, 0.0, -0.30])
+    times = read("bodies", "body", "leg", "time")[:, 0]
+    heading = 0.3 * times + 0.025 * times**2
+    up = [np.sin(slope) * np.sin(heading), np.sin(slope) * np.cos(heading)]
+    weight = -g * np.stack([*up, np.full(len(times), np.cos(slope))], axis=1)
+    force, moment = np.zeros((2, len(times), 3))
+    for body, mass in (("leg", 45.0), ("wheel", 30.0)):
+        push = mass * weight - read("bodies", "body", body, "p_rate_x p_rate_y p_rate_z")
+        force += push
+        moment += np.cross(read("bodies", "body", body, "x y z") - hinge, push)
+        moment -= read("bodies", "body", body, "L_rate_x L_rate_y L_rate_z")
+    pin = read("reactions", "connection", "B", "fx fy fz mx my mz")
+    actuator = read("drive", "drive", "fold", "force")[:, 0]
+    np.testing.assert_allclose(pin[:, :3], force, atol=1e-9 * np.abs(force).max())
+    assert np.abs(pin[:, 4]).max() < 1e-9 * np.abs(moment).max()
+    pin[:, 4] -= actuator
+    np.testing.assert_allclose(pin[:, 3:], moment, atol=1e-9 * np.abs(moment).max())
+    # The closed forms of errors.csv, put right, of the wheel's centre while the leg folds.
+    beta = np.pi / 4.0 * (1.0 - np.cos(np.pi * times / 3.0))
+    rate = np.pi**2 / 12.0 * np.sin(np.pi * times / 3.0)
+    second = np.pi**3 / 36.0 * np.cos(np.pi * times / 3.0)
+    yaw, s, c = 0.3 + 0.05 * times, np.sin(beta), np.cos(beta)
+    x, z = -1.2 * s - 0.2 * c, -1.2 * c + 0.2 * s
+    a = [
+        second * z - yaw**2 * (0.9 + x) - rate**2 * x,
+        1.5 + 0.05 * (0.9 + x) + 2.0 * yaw * rate * z,
+        -second * x - rate**2 * z,
+    ]
+    ours = read("bodies", "body", "wheel", "ax ay az")
+    np.testing.assert_allclose(ours, np.stack(a, axis=1), atol=1e-9)
+    spin = read("drive", "drive", "spin", "force")[:, 0]  # about its own axis also the yaw turns
+    axial = 1.5 * (-25.0 / 3.0 - 0.05 * -s - yaw * rate * -c)
+    np.testing.assert_allclose(spin, axial, atol=1e-9)
 
 
 def test_guides_are_written_with_their_friction(tmp_path: Path) -> None:

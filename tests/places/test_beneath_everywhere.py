@@ -117,6 +117,7 @@ def test_it_counts_over_the_joint(folder: Path, capsys: pytest.CaptureFixture[st
     assert twice["beneath"] + twice["beneath_error"] > permitted
 
 
+@pytest.mark.long
 def test_a_comparison_sees_that_it_is_no_longer_safe(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -129,6 +130,7 @@ def test_a_comparison_sees_that_it_is_no_longer_safe(
     assert "depends" in capsys.readouterr().out
 
 
+@pytest.mark.long
 def test_a_sweep(folder: Path) -> None:
     """Of random strengths: safe only where what lies beneath, with its error, is too."""
     command(folder, "sweep", "random.toml", "--out", str(folder / "sweep"), "--jobs", "1")

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from assess.derivatives.derivatives import Adjoint
 from assess.derivatives.records import SolvedCase
+from benchmarks.joints.named_pins import even_pull
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
@@ -81,7 +82,7 @@ def tension(pin: Pin, clamp: str, at: float, band: str) -> dict[str, float]:
 
 
 def solved(pin: Pin, clamp: str, band: str, steel: Material, distance: float) -> Solution:
-    loads = PinLoads("t", (band,), np.array([[[0.0, 0.0, FORCE]]]))
+    loads = even_pull(band, FORCE)
     material = replace(steel, youngs_modulus=E, poisson_ratio=NU)
     return solve_pin(pin, material, (clamp,), (loads,), Requirement(distance=distance))[0]
 

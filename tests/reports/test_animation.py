@@ -19,9 +19,12 @@ from reports.animation.player_data import speeds
 from reports.animation.strip_chart import ticks
 from reports.data.mechanics import AppliedForce
 from reports.data.results import Results, Units
+from reports.data.skeleton import AppliedCouple
+from reports.format.drawing.projection import isometric, three_views
 from reports.format.drawing.svg_labels import label_offsets
 from reports.format.fixed_decimals import Fixed
 from tests.support.results.four_bar_results import COUPLER, CRANK, ROCKER, chain, four_bar, linkage
+from tests.support.results.space_results import landing_gear
 
 EVIL = "</script><i onload='x'>&quot;\"\\u003c{{ 1 }}<!--"
 
@@ -57,7 +60,7 @@ class Reader(HTMLParser):
 
 
 def render(results: Results) -> str:
-    return render_animation(results.motion[0], results)
+    return render_animation(results.skeletons[0], results)
 
 
 @pytest.fixture(scope="module")
@@ -67,7 +70,7 @@ def moving() -> Results:
 
 def test_places_are_those_of_the_closed_form(moving: Results) -> None:
     data = Reader(render(moving)).data
-    xy = np.array(data["xy"]).reshape(4, -1, 2)
+    xy = np.array(data["at"]).reshape(4, -1, 2)
     places = data["places"]
     found = (
         np.stack([(xy[..., 0] - places["left"]), (places["top"] - xy[..., 1])], axis=-1)
@@ -124,7 +127,7 @@ def test_an_applied_load_ends_before_its_point_and_says_its_size(pushed: Results
     page = Reader(render(pushed))
     (applied,) = page.data["applied"]
     load = pushed.motion[0].applied[0]
-    assert applied["xy"] == page.data["xy"][1]
+    assert applied["at"] == page.data["at"][1]
     assert np.abs(np.array(applied["fx"]) - load.force[:, 0]).max() < 0.01
     assert np.abs(np.array(applied["fy"]) - load.force[:, 1]).max() < 0.01
     (arrow,) = page.having("data-applied")
@@ -133,7 +136,7 @@ def test_an_applied_load_ends_before_its_point_and_says_its_size(pushed: Results
     (length,) = re.findall(r"translate\(([\d.]+)\)", page.tags[tag + 2][1]["transform"])
     reach = float(length) + page.data["arrow"]["gap"]
     tip = x + reach * np.cos(np.radians(angle)), y + reach * np.sin(np.radians(angle))
-    assert tip == pytest.approx(applied["xy"][:2], abs=0.05)
+    assert tip == pytest.approx(applied["at"][:2], abs=0.05)
     scale = page.data["arrow"]["longest"] / page.data["arrow"]["largest"]
     assert float(length) == pytest.approx(50.0 * scale, abs=0.01)
     fixed = page.data["fixed"]["force"]
@@ -145,7 +148,7 @@ def test_all_of_an_applied_load_is_on_the_picture(pushed: Results) -> None:
     """At every instant, with its size, also where arrows are square roots."""
     page = Reader(render(pushed))
     (applied,), arrow = page.data["applied"], page.data["arrow"]
-    at = np.array(applied["xy"]).reshape(-1, 2)
+    at = np.array(applied["at"]).reshape(-1, 2)
     force = np.stack([applied["fx"], applied["fy"]], axis=1)
     size = np.linalg.norm(force, axis=1, keepdims=True)
     reach = arrow["gap"] + arrow["longest"] * np.sqrt(size / arrow["largest"]) + 12.0
@@ -166,7 +169,7 @@ def test_the_picture_stands_without_the_script(moving: Results) -> None:
     data = page.data
     crank = page.tags[[("data-link" in a) for _, a in page.tags].index(True) + 1][1]["d"]
     ends = np.array(re.findall(r"-?[\d.]+", crank), dtype=float)
-    assert ends == pytest.approx([*data["xy"][0][:2], *data["xy"][1][:2]])
+    assert ends == pytest.approx([*data["at"][0][:2], *data["at"][1][:2]])
     assert "Scripts are disabled" in page.text
     assert [a["hidden"] for _, a in page.tags if "controls" in a.get("class", "")] == ["", ""]
 
@@ -179,7 +182,7 @@ def test_all_stays_on_the_picture() -> None:
     width, height = float(box[2]), float(box[3])
     longest, largest = data["arrow"]["longest"], data["arrow"]["largest"]
     for c in data["connections"]:
-        at = np.array(data["xy"][c["joint"]]).reshape(-1, 2)
+        at = np.array(data["at"][c["joint"]]).reshape(-1, 2)
         force = np.column_stack([c["fx"], np.negative(c["fy"])])
         size = np.linalg.norm(force, axis=1, keepdims=True)
         for tips in (
@@ -331,7 +334,7 @@ def test_many_bodies_make_a_small_file_with_the_peaks() -> None:
     assert len(data["time"]) <= MAX_FRAMES
     for c, found in enumerate(data["connections"]):
         assert max(found["f"]) == pytest.approx(table.magnitudes[:, c].max(), rel=1e-4)
-    at = frames(results.motion[0], table, [])
+    at = frames(results.skeletons[0], table, [])
     assert (at[0], at[-1]) == (0, 2000)
     assert np.diff(at).max() < 20
 
@@ -344,6 +347,64 @@ def test_the_same_bytes_twice(moving: Results, tmp_path: Path) -> None:
     (path,) = first.iterdir()
     assert path.name == "animation_turn.html"
     assert path.read_bytes() == (second / path.name).read_bytes()
+
+
+def test_a_linkage_in_space_starts_in_its_isometric_view(tmp_path: Path) -> None:
+    """Its picture stands without the script, whose places are from the middle of the motion."""
+    gear = landing_gear()
+    skeleton = gear.space[0]
+    assert "animation_retract.html" in [path.name for path in write_animations(gear, tmp_path)]
+    page = Reader((tmp_path / "animation_retract.html").read_text(encoding="utf-8"))
+    data = page.data
+    scale, middle = data["places"]["scale"], np.array(data["space"]["middle"])
+    places = np.array(data["at"]).reshape(len(skeleton.joints), -1, 3)
+    known = np.moveaxis(scale * (skeleton.position - middle), 1, 0)
+    assert np.abs(places - known).max() < 0.0051  # hundredths of a pixel
+    view = isometric(skeleton.up)
+    drawn = [
+        [float(x) for x in re.findall(r"-?[\d.]+", g["transform"])]
+        for g in page.having("data-joint")
+    ]
+    seen = view(known[:, 0]) * [1.0, -1.0] + [480.0, 280.0]
+    assert np.array(drawn) == pytest.approx(seen, abs=0.0051)
+    for c, force in enumerate(data["connections"]):
+        components = np.stack([force[key] for key in ("fx", "fy", "fz")], axis=1)
+        assert np.abs(components - gear.reactions[0].forces[:, c]).max() < 1.0
+    # The pins of the trunnions and the axle; the others are spherical.
+    assert [axis is not None for axis in data["space"]["axes"]] == [True, True, False, True, False]
+    assert len(page.having("data-axis")) == 3
+    assert all(name in page.text for name in ("Isometric", "Front", "Right side", "Top"))
+
+
+def test_a_couple_has_its_own_scale_and_unit() -> None:
+    gear = landing_gear()
+    skeleton = gear.space[0]
+    axle = skeleton.axes[:, 3]
+    size = np.linspace(100.0, 2500.0, len(axle))[:, None]
+    couple = AppliedCouple("wheel", skeleton.position[:, 3], size * axle)
+    page = Reader(render_animation(replace(skeleton, couples=(couple,)), gear))
+    (found,) = page.data["couples"]
+    assert found["at"] == page.data["at"][3]
+    components = np.stack([found[key] for key in ("fx", "fy", "fz")], axis=1)
+    assert np.abs(components - size * axle).max() < 0.1
+    assert page.data["arrow"]["couple"] == pytest.approx(2500.0)
+    assert page.data["fixed"]["couple"]["unit"] == "N·mm"
+    assert len(page.having("data-applied")) == len(page.having("data-size-of")) == 2
+
+
+def test_everything_of_a_linkage_in_space_fits_the_views_of_a_drawing() -> None:
+    """At every instant, with the arrows of its forces also as square roots."""
+    gear = landing_gear()
+    skeleton, table = gear.space[0], gear.reactions[0]
+    data = Reader(render_animation(skeleton, gear)).data
+    places = np.array(data["at"]).reshape(len(skeleton.joints), -1, 3)
+    longest, largest = data["arrow"]["longest"], data["arrow"]["largest"]
+    for view in (isometric(skeleton.up), *three_views(skeleton.up)):
+        for c, connection in enumerate(data["connections"]):
+            force = table.forces[:, c]
+            size = np.linalg.norm(force, axis=1, keepdims=True)
+            tips = places[connection["joint"]] + longest * force / np.sqrt(size * largest)
+            assert (np.abs(view(tips)) < [480.0, 280.0]).all()
 
 
 def test_names_do_not_overlap() -> None:

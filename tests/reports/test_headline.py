@@ -33,6 +33,22 @@ def test_a_row_that_was_not_solved_is_no_worse_than_one_that_fails(results: Resu
     assert order == sorted(order, key=["fails", "not decided", "safe"].index)
 
 
+def test_pins_without_load_have_no_factor_to_name(results: Results) -> None:
+    idle = with_values(
+        row(results, "A", "retract"),
+        verdict="converged",
+        max_von_mises=0.0,
+        error_estimate=0.0,
+        safety_factor=None,
+        decided=True,
+        required=2.0,
+    )
+    other = with_values(idle, pin="B")
+    both = replace(results, pins=(idle, other))
+    assert headline(both) == "All 2 pins are safe: no load stresses them."
+    assert headline(replace(results, pins=(idle,))) == "Pin A is safe: no load stresses it."
+
+
 @pytest.mark.parametrize(
     ("verdict", "factor", "meets", "required", "words"),
     [

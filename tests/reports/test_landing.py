@@ -11,7 +11,7 @@ import pytest
 from reports.data.results import PublishedValue, Results
 from reports.page.page import write_page
 from reports.plots.strength.landing import landing_plot
-from reports.tables.published import published_values_table, write_published_values
+from reports.tables.published import published_values_table, write_published
 from reports.tables.strength.landing import landing_table, landing_tables, write_landing
 from tests.support.results.made_up_run import ranged
 from tests.support.results.rows import with_landing, with_values
@@ -43,7 +43,7 @@ def test_the_page_has_the_tables(results: Results, tmp_path: Path) -> None:
 
 def test_nothing_is_written_without_ranges(results: Results, tmp_path: Path) -> None:
     write_landing(results, tmp_path)
-    write_published_values(replace(results, published=()), tmp_path)
+    write_published(replace(results, reactions=(), published=()), tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -70,7 +70,7 @@ def test_the_plot_has_a_panel_for_the_least_and_the_largest_change(results: Resu
 def test_published_values_stand_beside_ours(results: Results, tmp_path: Path) -> None:
     value = PublishedValue("snap", None, "force_x", "=F|1", 2.0, 4.0, "lbf", "a slip")
     one = replace(results, published=(value,))
-    write_published_values(one, tmp_path)
+    write_published(one, tmp_path)
     published_values_table(one).write(tmp_path)
     (row,) = csv.DictReader((tmp_path / "published.csv").read_text().splitlines())
     assert row["name"] == "'=F|1"

@@ -12,8 +12,13 @@ import pytest
 from reports.data.mechanics import AppliedForce, PitchCurve
 from reports.data.overview import pin_lines
 from reports.data.results import Results
-from reports.page.linkage_drawing import ARROW_CLEARANCE, ARROW_LENGTHS, Instant, Mark, draw_linkage
+from reports.data.skeleton import AppliedCouple, planar_skeleton
+from reports.format.drawing.projection import isometric, three_views
+from reports.page.linkage_drawing import draw_linkage
+from reports.page.linkage_panel import Instant, Mark
+from reports.page.linkage_parts import ARROW_CLEARANCE, ARROW_LENGTHS, AXIS_REACH
 from reports.page.pin_marks import governing_instant, pin_marks
+from tests.support.results.space_results import landing_gear, rssr
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -37,10 +42,10 @@ def test_pins_stand_at_their_joints(results: Results) -> None:
     at = governing_instant(results, pin_lines(results))
     assert at is not None
     assert at.table is not None
-    joints = at.motion.joints
+    joints = at.skeleton.joints
     ends = zip(at.table.connections, joints * len(at.table.connections), strict=False)
-    connected = tuple((name, at.motion.bodies[0], joint) for name, joint in ends)
-    at = replace(at, motion=replace(at.motion, connections=connected))
+    connected = tuple((name, at.skeleton.bodies[0], joint) for name, joint in ends)
+    at = replace(at, skeleton=replace(at.skeleton, connections=connected))
     marks = pin_marks(at, pin_lines(results), {p.pin: f"pin-{p.pin}" for p in results.pins})
     assert marks
     drawing = ET.fromstring(draw_linkage(at, marks, "a < b", "lbf"))
@@ -66,7 +71,7 @@ def test_arrows_are_as_long_as_their_forces(results: Results) -> None:
         AppliedForce(body, place, np.array([[0.0, -200.0]])),
         AppliedForce(body, place, np.array([[100.0, 0.0]])),
     )
-    at = Instant(replace(motion, applied=forces), 0)
+    at = Instant(planar_skeleton(replace(motion, applied=forces)), 0)
     drawing = ET.fromstring(draw_linkage(at, [Mark(motion.joints[0], "<J>")], "x", "N"))
     short, long = ARROW_LENGTHS
     x, y = centres(drawing)[0]
@@ -89,9 +94,126 @@ def test_gears_have_their_pitch_circle_to_scale(results: Results) -> None:
     motion = results.motion[0]
     ends = motion.joint_position[:, :2]
     wheel = PitchCurve(motion.bodies[0], ends, True)
-    at = Instant(replace(motion, pitch=(wheel,), applied=()), 0)
+    at = Instant(planar_skeleton(replace(motion, pitch=(wheel,), applied=())), 0)
     drawing = ET.fromstring(draw_linkage(at, [], "x", "N"))
     (circle,) = of_class(drawing, "pitch")
     first, second = centres(drawing)[:2]
     assert [float(circle.get(k, "nan")) for k in ("cx", "cy")] == pytest.approx(first)
     assert float(circle.get("r", "nan")) == pytest.approx(np.hypot(*(second - first)), abs=0.2)
+
+
+@pytest.mark.parametrize(
+    "up", [(0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (0.0, 0.0, -1.0), (-1.0, 0.0, 0.0)]
+)
+def test_an_isometric_view_shortens_all_axes_alike(up: tuple[float, float, float]) -> None:
+    """By sqrt(2/3), with the vertical upwards and the others 120 degrees away; seen from above."""
+    view = isometric(up)
+    vertical = view(np.array(up))
+    assert vertical == pytest.approx([0.0, np.sqrt(2.0 / 3.0)])
+    axes = view(np.eye(3))
+    assert np.linalg.norm(axes, axis=1) == pytest.approx(np.sqrt(2.0 / 3.0))
+    others = axes[np.abs(up) < 0.5]
+    assert np.abs(others @ vertical) == pytest.approx(1.0 / 3.0)  # 2/3 cos 60 or 120 degrees
+    assert view.depth(np.array(up)) == pytest.approx(1.0 / np.sqrt(3.0))
+
+
+def test_three_views_are_those_of_a_drawing() -> None:
+    """Point (1, 2, 3): from the front x and z, from the right y and z, from above x and y."""
+    point = np.array([1.0, 2.0, 3.0])
+    front, side, top = three_views((0.0, 0.0, 1.0))
+    assert [view(point).tolist() for view in (front, side, top)] == [[1, 3], [2, 3], [1, 2]]
+    assert [view.depth(point) for view in (front, side, top)] == [-2.0, 1.0, 3.0]
+    front, side, top = three_views((0.0, 1.0, 0.0))  # of a plane x-y that is lifted
+    assert [view(point).tolist() for view in (front, side, top)] == [[1, 2], [-3, 2], [1, -3]]
+
+
+def test_a_linkage_in_space_is_drawn_in_four_views() -> None:
+    """Its pixels are one scale times the projections, in three views the same scale."""
+    skeleton = rssr().space[0]
+    k, marks = 9, [Mark(joint, joint) for joint in skeleton.joints]
+    drawing = ET.fromstring(draw_linkage(Instant(skeleton, k), marks, "RSSR", "N"))
+    panels = [drawing, *of_class(drawing, "view")]
+    views = [isometric(skeleton.up), *three_views(skeleton.up)]
+    scales = []
+    for panel, view in zip(panels, views, strict=True):
+        rings = [e for e in panel if e.get("class") == "joint"]
+        pixels = np.array([[float(e.get(key, "nan")) for key in ("cx", "cy")] for e in rings])
+        exact = view(skeleton.position[k]) * [1.0, -1.0]
+        scale = _scale(pixels, exact)
+        shift = pixels - scale * exact
+        assert np.abs(shift - shift.mean(axis=0)).max() < 0.11  # pixels have one decimal
+        scales.append(scale)
+    assert scales[1:] == pytest.approx([scales[1]] * 3, rel=0.003)
+    titles = ["".join(e.itertext()) for e in of_class(drawing, "view-title")]
+    assert titles == ["Front (x, z)", "Right side (y, z)", "Top (x, y)"]
+    texts = ["".join(e.itertext()) for e in drawing.iter(f"{SVG}text")]
+    assert all(texts.count(joint) == 4 for joint in skeleton.joints)
+
+
+def _scale(pixels: np.ndarray, exact: np.ndarray) -> float:
+    """The factor of the best fit of a scale and a shift."""
+    a, b = pixels - pixels.mean(axis=0), exact - exact.mean(axis=0)
+    return float((a * b).sum() / (b * b).sum())
+
+
+def test_axes_of_pins_are_along_their_directions() -> None:
+    """Of the joints with an axis; one that is seen end on is its ring alone."""
+    skeleton = rssr().space[0]
+    drawing = ET.fromstring(draw_linkage(Instant(skeleton, 9), [], "RSSR", "N"))
+    view = isometric(skeleton.up)
+    lines = [numbers(e, "d") for e in drawing if e.get("class") == "axis"]
+    for found, axis in zip(lines, ([0.0, 0.0, 1.0], [1.0, 0.0, 0.0]), strict=True):
+        x1, y1, x2, y2 = found
+        along = 2.0 * AXIS_REACH * view(np.array(axis))
+        assert [x2 - x1, y1 - y2] == pytest.approx(along.tolist(), abs=0.11)
+    front, side, top = of_class(drawing, "view")
+    assert [len(of_class(panel, "axis")) for panel in (front, side, top)] == [2, 1, 1]
+
+
+def test_loads_in_space_say_their_size_once_and_point_where_they_push() -> None:
+    gear = landing_gear()
+    skeleton = gear.space[0]
+    (load,) = skeleton.applied
+    at = Instant(skeleton, 5, gear.reactions[0])
+    drawing = ET.fromstring(draw_linkage(at, [], "gear", "N"))
+    arrow = next(numbers(e, "d") for e in drawing if e.get("class") == "load")
+    seen = isometric(skeleton.up)(load.force[5])
+    direction = np.array([arrow[2] - arrow[0], arrow[1] - arrow[3]])
+    assert direction / np.hypot(*direction) == pytest.approx(seen / np.hypot(*seen), abs=0.02)
+    texts = ["".join(e.itertext()) for e in drawing.iter(f"{SVG}text")]
+    assert [text for text in texts if text.startswith(f"{load.sizes[5]:,.0f}"[:4])] != []
+    assert len(of_class(drawing, "mass")) == 4  # the wheel's, in every view
+    assert len(of_class(drawing, "ground")) == 12
+
+
+def test_a_load_along_the_view_is_a_ring() -> None:
+    """With a dot where it points at the viewer, with a cross where it points away."""
+    skeleton = landing_gear().space[0]
+    load = skeleton.applied[0]
+    for sign in (1.0, -1.0):
+        force = np.zeros_like(load.force)
+        force[:, 2] = sign * 1e3
+        at = Instant(replace(skeleton, applied=(replace(load, force=force),)), 0)
+        drawing = ET.fromstring(draw_linkage(at, [], "gear", "N"))
+        panels = of_class(drawing, "view")
+        rings = [len(list(panel.iter(f"{SVG}g"))) - 1 for panel in panels]
+        assert rings == [0, 0, 1]
+        ends = of_class(panels[2], "load end")
+        assert len(ends) == (1 if sign > 0.0 else 2)
+        assert len(of_class(panels[2], "head")) == (1 if sign > 0.0 else 0)
+
+
+def test_a_couple_has_two_heads_along_its_axis_and_its_own_unit() -> None:
+    gear = landing_gear()
+    skeleton = gear.space[0]
+    axle = skeleton.axes[:, 3]
+    couple = AppliedCouple("wheel", skeleton.position[:, 3], 2500.0 * axle)
+    at = Instant(replace(skeleton, applied=(), couples=(couple,)), 20)
+    drawing = ET.fromstring(draw_linkage(at, [], "gear", "N", "mm"))
+    x1, y1, x2, y2 = next(numbers(e, "d") for e in drawing if e.get("class") == "load")
+    seen = isometric(skeleton.up)(axle[20])
+    assert np.array([x2 - x1, y1 - y2]) / np.hypot(x2 - x1, y2 - y1) == pytest.approx(
+        seen / np.hypot(*seen), abs=0.02
+    )
+    assert len([e for e in drawing if e.get("class") == "head"]) == 2
+    assert "2,500 N·mm" in ["".join(t.itertext()) for t in drawing.iter(f"{SVG}text")]

@@ -77,7 +77,7 @@ def test_a_circle_has_one_number_in_all_cases(found: Results) -> None:
     by_case = pin_zones(found, "A")
     assert [[z.number for z in by_case[c]] for c in ("fine", "sharp")] == [[2, 1, 3]] * 2
     every = circles(z for case in by_case.values() for z in case)
-    assert [(z.number, z.found.governs) for z in every] == [(1, False), (2, True), (3, False)]
+    assert [(z.number, z.place.governs) for z in every] == [(1, False), (2, True), (3, False)]
 
 
 def test_hand_checks_agree(found: Results, written: Path) -> None:
@@ -166,7 +166,7 @@ def test_drawing_stripes_what_is_excluded_of_the_walls(found: Results) -> None:
         pytest.approx([ring] * 4, abs=0.02)
     )
     scale = float(walls[-1][1]) / found.shapes[0].segments[1][0]
-    assert float(discs[0][1]) == pytest.approx(scale * zone.found.excluded, abs=0.02)
+    assert float(discs[0][1]) == pytest.approx(scale * zone.place.excluded, abs=0.02)
 
 
 def test_the_edge_of_a_lug_is_drawn_like_the_others(found: Results) -> None:

@@ -25,22 +25,7 @@ from reports.plots.self_contained import require_no_address, require_self_contai
 from tests.support.each import each
 from tests.support.programs.command_line import run_here
 from tests.support.results.mutants import repacked
-from tests.support.results.small_folder import small_folder
-
-SECRET = b"what is outside of the folder"
-
-
-@pytest.fixture(scope="module")
-def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return small_folder(tmp_path_factory.mktemp("made") / "out")
-
-
-@pytest.fixture
-def folder(made: Path, tmp_path: Path) -> Path:
-    copy = tmp_path / "out"
-    subprocess.run(["cp", "-r", str(made), str(copy)], check=True)
-    (tmp_path / "secret").write_bytes(SECRET)
-    return copy
+from tests.support.results.small_folder import SECRET
 
 
 @pytest.fixture

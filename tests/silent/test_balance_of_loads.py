@@ -25,11 +25,11 @@ from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
-from pinstress.cli.check import describe
 from pinstress.cli.commands import run_command_line
 from pinstress.study.model.balance import given_warnings
 from pinstress.study.model.pins import pin as pin_of
 from tests.conftest import ROOT
+from tests.support.described import describe
 from tests.support.each import each
 
 CLEVIS = Pin(

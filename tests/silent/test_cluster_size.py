@@ -40,13 +40,14 @@ def test_it_is_that_of_one_process_also_where_forces_come_from_a_table(tmp_path:
         there = ["size", study, "--out", "there.toml", *cluster.options]
         sized = pinstress(*there, cwd=here)
     assert sized.returncode == 0, sized.stderr
-    alone = pinstress("size", study, "--jobs", "1", "--out", "alone.toml", cwd=here)
+    alone = run_here("size", study, "--jobs", "1", "--out", "alone.toml", cwd=here)
     assert alone.returncode == 0, alone.stderr
     assert (here / "there.toml").read_bytes() == (here / "alone.toml").read_bytes()
     assert sized.stdout == alone.stdout
     assert not (here / "there.toml.unfinished").exists()
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @linux
 def test_a_scheduler_that_is_killed_leaves_what_is_sized_to_another(tmp_path: Path) -> None:
@@ -73,7 +74,7 @@ def test_a_scheduler_that_is_killed_leaves_what_is_sized_to_another(tmp_path: Pa
             cluster.worker()
             _, said = size.communicate(timeout=300)
     assert size.returncode == 0, said
-    whole = pinstress("size", "study.toml", "--jobs", "1", "--out", "whole.toml", cwd=tmp_path)
+    whole = run_here("size", "study.toml", "--jobs", "1", "--out", "whole.toml", cwd=tmp_path)
     assert whole.returncode == 0, whole.stderr
     assert target.read_bytes() == (tmp_path / "whole.toml").read_bytes()
 

@@ -156,7 +156,8 @@ def test_many_damaged_files_are_said(name: str, folder: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("name", "seed"), sampled([(RESULTS, 500), (RESULTS, 501), (VTU, 502), (PAGE, 503)], every=2)
+    ("name", "seed"),
+    sampled([(RESULTS, 500), (RESULTS, 501), (VTU, 502), (PAGE, 503)], every=4, first=2),
 )
 def test_damaged_files_are_said_by_the_program(name: str, seed: int, folder: Path) -> None:
     """With all its engines, in a process of its own."""

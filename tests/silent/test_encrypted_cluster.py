@@ -25,14 +25,14 @@ import pytest
 from pinstress.explore.sweep.keys import KeyFiles, write_keys
 from tests.conftest import ROOT
 from tests.pinstress.explore.reliability.test_reliability import BAR
-from tests.support.programs.command_line import ONE_PIN, pinstress
-from tests.support.programs.dask_cluster import DaskCluster, dask_cluster, wait_for
+from tests.support.each import sampled
+from tests.support.programs.command_line import ONE_PIN, pinstress, run_here
+from tests.support.programs.dask_cluster import DaskCluster, dask_cluster, impatient, wait_for
 from tests.support.programs.process_group import started
-from tests.support.programs.swept import DIAMETER, FORCE, STRENGTH, varied
+from tests.support.programs.swept import FORCE, LONG_SWEEP, SHAPES, STRENGTH, varied
 
 pytestmark = [pytest.mark.slow, pytest.mark.linux]
 
-SHAPES = f'"{DIAMETER}" = {{ from = "1.5 in", to = "4.5 in" }}'
 CHEAP = (
     f'"{FORCE}" = {{ uniform = [-1000, -500] }}\n'
     f'"{STRENGTH}" = {{ uniform = ["200 ksi", "250 ksi"] }}'
@@ -68,7 +68,7 @@ def _study(folder: Path, count: int, parameters: str = CHEAP) -> None:
 
 def _alone(folder: Path) -> bytes:
     """The table that one process makes."""
-    made = pinstress("sweep", "study.toml", "--jobs", "1", "--out", "alone", cwd=folder)
+    made = run_here("sweep", "study.toml", "--jobs", "1", "--out", "alone", cwd=folder)
     assert made.returncode == 0, made.stderr
     return (folder / "alone" / "designs.parquet").read_bytes()
 
@@ -117,9 +117,9 @@ def test_a_worker_with_other_keys_is_none(tmp_path: Path) -> None:
     other = write_keys(tmp_path / "other")
     with dask_cluster(tmp_path / "cluster") as cluster:
         cluster.worker(None, *shlex.split(other.dask_options))
-        made = pinstress("sweep", "study.toml", "--out", "out", *cluster.options, cwd=tmp_path)
+        made = impatient("sweep", "study.toml", "--out", "out", *cluster.options, cwd=tmp_path)
     assert made.returncode == 2
-    assert "has had no worker for 30 s; start one with: dask worker tls://" in made.stderr
+    assert "has had no worker for 5 s; start one with: dask worker tls://" in made.stderr
     assert f"--tls-key {tmp_path / 'cluster' / 'keys' / 'key.pem'}" in made.stderr
     assert not (tmp_path / "out").exists()
 
@@ -133,11 +133,14 @@ def _begun(options: list[str], folder: Path) -> Iterator[subprocess.Popen[str]]:
         yield sweep
 
 
-def test_threads_workers_that_come_and_go_and_an_interrupt(tmp_path: Path) -> None:
+@pytest.mark.long
+def test_threads_workers_that_come_and_go_and_an_interrupt(
+    tmp_path: Path, whole_sweep: bytes
+) -> None:
     """One worker of four threads begins, a second one comes, the first is killed, Ctrl-C, resumed
     by the second: the same bytes.
     """
-    _study(tmp_path, 64, SHAPES)
+    (tmp_path / "study.toml").write_text(LONG_SWEEP, "utf-8")
     with dask_cluster(tmp_path / "cluster") as cluster:
         first = cluster.worker(None, "--nthreads", "4")
         with _begun(cluster.options, tmp_path) as sweep:
@@ -153,7 +156,7 @@ def test_threads_workers_that_come_and_go_and_an_interrupt(tmp_path: Path) -> No
         arguments = "sweep", "study.toml", "--out", "out", *cluster.options, "--resume"
         made = pinstress(*arguments, cwd=tmp_path)
     assert made.returncode == 0, made.stderr
-    assert (tmp_path / "out" / "designs.parquet").read_bytes() == _alone(tmp_path)
+    assert (tmp_path / "out" / "designs.parquet").read_bytes() == whole_sweep
 
 
 @contextmanager
@@ -173,15 +176,16 @@ def _adaptive(folder: Path) -> Iterator[list[str]]:
         cluster.wait(timeout=60)
 
 
+@pytest.mark.long
 def test_an_adaptive_cluster_begins_with_no_worker(tmp_path: Path) -> None:
-    _study(tmp_path, 24, SHAPES)
+    _study(tmp_path, 12, SHAPES)
     with _adaptive(tmp_path) as options:
         made = pinstress("sweep", "study.toml", "--out", "out", *options, cwd=tmp_path)
     assert made.returncode == 0, made.stderr
     assert (tmp_path / "out" / "designs.parquet").read_bytes() == _alone(tmp_path)
 
 
-@pytest.mark.parametrize("end", ["scheduler", "Ctrl-C"])
+@pytest.mark.parametrize("end", sampled(["scheduler", "Ctrl-C"], every=2))
 def test_reliability_that_ends_too_early_says_what_is_kept(tmp_path: Path, end: str) -> None:
     (tmp_path / "bar.toml").write_text(BAR.replace("samples = 200", "samples = 20_000", 1))
     command = [sys.executable, "-m", "pinstress", "reliability", "bar.toml", "--out", "out"]

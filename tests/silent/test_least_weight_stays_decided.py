@@ -97,6 +97,7 @@ def test_a_clamp_whose_edge_would_govern() -> None:
     assert "one, the edge of a clamp (start / segment 1)" in [name for name, _ in only.binding]
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_pin_that_fails_is_not_made_singular_either() -> None:
     """Under three times the load it fails; larger, it is safe, not merely undecided."""

@@ -214,7 +214,7 @@ def test_a_stress_field_has_the_forces_of_the_lower_bound_and_yields_nowhere(
         (0.0, 1.0, 0.0),
         pytest.param(0.5, 1.0, 0.0, marks=[pytest.mark.slow, pytest.mark.long]),
         pytest.param(0.7, 1.0, 0.0, marks=[pytest.mark.slow, pytest.mark.long]),
-        pytest.param(0.0, 0.0, 1.0, marks=pytest.mark.slow),
+        pytest.param(0.0, 0.0, 1.0, marks=[pytest.mark.slow, pytest.mark.long]),
         pytest.param(0.0, 0.3, 1.0, marks=[pytest.mark.slow, pytest.mark.long]),
         pytest.param(0.0, 1.0, 1.0, marks=[pytest.mark.slow, pytest.mark.long]),
         pytest.param(0.7, 1.0, 1.0, marks=pytest.mark.slow),

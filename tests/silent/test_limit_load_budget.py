@@ -112,6 +112,7 @@ def test_of_many_unknowns_nothing_is_begun(monkeypatch: pytest.MonkeyPatch) -> N
     assert (found.method, found.stopped) == ("none", True)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_without_a_budget_it_ends_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
     Clock(monkeypatch, 1e6)

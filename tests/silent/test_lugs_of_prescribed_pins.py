@@ -74,7 +74,7 @@ def of_lugs(found: Results, case: str) -> dict[tuple[str, str], float]:
         ("prescribed", {}),
         ("foundation", {}),
         pytest.param("prescribed", CUT, marks=pytest.mark.slow),
-        pytest.param("contact", CUT, marks=pytest.mark.slow),
+        pytest.param("contact", CUT, marks=[pytest.mark.slow, pytest.mark.long]),
     ],
 )
 def test_lugs_are_checked_with_their_own_strength(joints: str, pin: dict[str, Any]) -> None:

@@ -37,23 +37,9 @@ from reports.vtk.vtu import read_vtu
 from tests.support.programs.command_line import pinstress, run_here
 from tests.support.programs.swept import varied
 from tests.support.results.mutants import repacked, with_block
-from tests.support.results.small_folder import VTU, small_folder
+from tests.support.results.small_folder import SECRET, VTU
 
 NOBODY = 65534
-SECRET = b"what is outside of the folder"
-
-
-@pytest.fixture(scope="module")
-def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return small_folder(tmp_path_factory.mktemp("made") / "out")
-
-
-@pytest.fixture
-def folder(made: Path, tmp_path: Path) -> Path:
-    copy = tmp_path / "out"
-    subprocess.run(["cp", "-r", str(made), str(copy)], check=True)
-    (tmp_path / "secret").write_bytes(SECRET)
-    return copy
 
 
 def list_as_ours(folder: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import inspect
+import itertools
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -14,16 +15,32 @@ import pytest
 Test = Callable[..., None]
 
 
-def sampled(cases: Iterable[Any], every: int) -> list[Any]:
-    """Cases for `pytest.mark.parametrize`, of which CI runs the first and one in so many after it;
-    the others are marked `long` and run in `make test-all` only.
+def sampled(cases: Iterable[Any], every: int, first: int = 0) -> list[Any]:
+    """Cases for `pytest.mark.parametrize`, of which CI runs one in so many; the others are marked
+    `long` and run in `make test-all` only.
+
+    first: the number of the first that CI runs
     """
     return [
         case
-        if number % every == 0
+        if number % every == first % every
         else pytest.param(*(case if isinstance(case, tuple) else (case,)), marks=pytest.mark.long)
         for number, case in enumerate(cases)
     ]
+
+
+def in_turn(name: str, cases: Sequence[Any]) -> Callable[[Test], Test]:
+    """A decorator for many tests of the same cases, of which CI runs one case a test: the next one
+    in each test, so that it runs every case in some of them; the others are marked `long`.
+    """
+    turn = itertools.count()
+
+    def decorate(test: Test) -> Test:
+        mark = pytest.mark.parametrize(name, sampled(cases, every=len(cases), first=next(turn)))
+        decorated: Test = mark(test)
+        return decorated
+
+    return decorate
 
 
 def each(names: str | Sequence[str], cases: Iterable[Any]) -> Callable[[Test], Test]:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from loads import LegDynamics, leg_dynamics
+from tests.support.mechanism.leg_in_space import quantities
 from tests.support.mechanism.leg_of_particles import (
     Complex,
     Floats,
@@ -50,9 +50,9 @@ def publications_instant(seed: int) -> Particles:
 
 
 @cache
-def dynamics(seed: int) -> LegDynamics:
-    particles = publications_instant(seed)
-    return leg_dynamics(particles.leg, particles.motion(np.array([NOW])))
+def ours(seed: int) -> tuple[dict[str, Floats], Floats]:
+    """Our quantities along primed axes, and the matrix from these to the world's."""
+    return quantities(publications_instant(seed), NOW)
 
 
 @cache

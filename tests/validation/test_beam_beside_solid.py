@@ -115,7 +115,7 @@ def test_how_good_beams_are(kind: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("i", sampled([3, 21, 46, 60], every=2))
+@pytest.mark.parametrize("i", sampled([3, 21, 46, 60], every=4))
 def test_the_solid_gives_what_the_file_says(i: int) -> None:
     """The same mesh again, but gmsh's differ a little between versions: 3 %."""
     row = rows()[i]

@@ -17,6 +17,7 @@ import pytest
 from scipy.optimize import brentq
 
 from loads.landing import Drop, LinearSpring, Strut, TableTyre, land
+from tests.support.each import each
 
 FOOT, LBF = 0.3048, 4.4482216152605
 SLUG = LBF / FOOT
@@ -52,7 +53,7 @@ def test_the_energy_method_gives_the_published_numbers() -> None:
     assert TYRE.energy(np.array([tyre]))[0] / LBF / FOOT == pytest.approx(107.6, rel=2e-3)
 
 
-@pytest.mark.parametrize(("part", "within"), [(1e-2, 0.02), (1e-3, 0.013)])
+@each(("part", "within"), [(1e-2, 0.02), (1e-3, 0.013)])
 def test_the_drop_approaches_it_as_the_axle_gets_lighter(part: float, within: float) -> None:
     strut, _ = lowest_point()
     leg = Strut(LEAF, 1.0)

@@ -11,13 +11,14 @@ import pytest
 
 from benchmarks.pins.shoulders import KINDS, run, shoulder
 from geometry.mesh.section_mesh import SectionSize
+from tests.support.each import each
 
 # CalculiX 2.20, CAX6, 71,000 and 82,000 unknowns: `python -m benchmarks tension`.
 # D/d, r/d, largest principal and von Mises stress over the nominal stress
 CALCULIX = [(1.25, 0.0125, 3.9634, 3.5601), (3.0, 0.1, 2.2832, 2.0472)]
 
 
-@pytest.mark.parametrize(("ratio", "radius", "principal", "mises"), CALCULIX)
+@each(("ratio", "radius", "principal", "mises"), CALCULIX)
 def test_factors_are_those_of_calculix(
     ratio: float, radius: float, principal: float, mises: float
 ) -> None:

@@ -72,7 +72,7 @@ def lower_program(mesh: PlaneMesh, motion: Floats) -> ConeProgram:
 def upper_program(mesh: PlaneMesh, motion: Floats) -> ConeProgram:
     """The program of an upper bound; arguments as for the lower one."""
     space = QuadraticNodes(mesh)
-    x, y = space.corner_gradients()  # (M, 3 points, 6 nodes)
+    x, y = space.gradients(np.eye(3))  # (M, 3 points, 6 nodes), at the corners
     area = mesh.gradients()[1]
     weight = (area / 3.0)[:, None, None]
     free = np.full(2 * space.count, True)
@@ -133,10 +133,6 @@ class QuadraticNodes:
         ends = np.sort(edges, axis=1)
         middle = span + np.searchsorted(key, ends[:, 0] * span + ends[:, 1])
         return np.concatenate([edges, middle[:, None]], axis=1)
-
-    def corner_gradients(self) -> tuple[Floats, Floats]:
-        """The x and y derivatives (M, 3, 6) of the functions of the nodes at the corners."""
-        return self.gradients(np.eye(3))
 
     def gradients(self, places: Floats) -> tuple[Floats, Floats]:
         """The x and y derivatives (M, Q, 6) at places (Q, 3) in area coordinates."""

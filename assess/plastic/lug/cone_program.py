@@ -37,7 +37,7 @@ STEP_SHARE = 0.98  # of the step to the boundary of the cones
 # Compliance of the mean stress over the least of the shear at each point, in the linear systems;
 # chosen by judgement: smaller is worse conditioned, larger takes more steps of refinement.
 MEAN_COMPLIANCE = 1e-4
-REFINEMENTS = 4
+REFINEMENTS = 4  # of a linear solution, by what it leaves of the right-hand side
 
 Residuals = tuple[Floats, Floats, Floats, Floats]  # as of `_Solver.residuals`
 

@@ -33,7 +33,7 @@ FIRST_STEP, MAX_STEP, MIN_STEP = 0.002, 0.03, 1e-5
 STEP_GROWTH = 1.4  # after a step of few iterations
 FEW_ITERATIONS, MAX_ITERATIONS = 5, 15
 RESIDUAL_TOLERANCE = 1e-6  # over the forces of the pin
-DIVERGED = 1e4
+DIVERGED = 1e4  # the same: beyond it Newton's method is given up
 MAX_TRAVEL = 1.5  # radii
 FALL = 0.015  # of the largest load: then it has been passed
 

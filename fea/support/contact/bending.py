@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from fea.support.lugs.lug import Lug
 from fea.support.records import JointForces
 from geometry import Pin
 
+Parts = tuple[Floats, Floats]  # (Z, R): of loads per length that are even, and that rise
 STATION_COUNT = 61  # along the pin, besides the ends of rings and segments
 
 
@@ -20,56 +22,63 @@ def stations(pin: Pin) -> Floats:
     return np.union1d(np.linspace(*pin.ends, STATION_COUNT), pin.stations)
 
 
-def joint_forces(
-    pin: Pin, mass: Floats, bands: Bands, loads: PinLoads, lugs: Sequence[Lug]
-) -> JointForces:
-    """The section forces at all instants, as `bending_moment` and `shear_force`.
+@dataclass(frozen=True)
+class LoadedJoint:
+    """A pin in its lugs under the loads of a case.
 
-    lugs: one for each of the bands.
-    """
-    z, names = stations(pin), tuple(lug.connection for lug in lugs)
-    across = loads.forces[:, :, :2]
-    forces = [across[:, bands.band == b].sum(axis=1) for b in range(len(names))]
-    in_sections = (f(pin, mass, bands, loads, z) for f in (shear_force, bending_moment))
-    shear, moment = (np.linalg.norm(x, axis=2) for x in in_sections)
-    return JointForces(z, loads.times, shear, moment, names, np.stack(forces, axis=1))
-
-
-def bending_moment(pin: Pin, mass: Floats, bands: Bands, loads: PinLoads, z: Floats) -> Floats:
-    """The bending moment of the part of the pin before z (Z,) m, (T, Z, 2) N m.
-
-    It is the integral of the shear along x and along y.
+    pin: with its bands cut into rings. lugs: one for each of the bands.
+    loads: first those on the rings of `bands`, in their order; forces are even along a ring,
+    moments make loads that are linear along it.
     mass: of the pin's segments, (S,) kg/m.
-    loads: on the rings of `bands`, in their order; forces are even along a ring, moments make loads
-    that are linear along it.
     """
-    return _summed(pin, mass, bands, loads, z, _moments)
 
+    pin: Pin
+    lugs: tuple[Lug, ...]
+    bands: Bands
+    loads: PinLoads
+    mass: Floats
 
-def shear_force(pin: Pin, mass: Floats, bands: Bands, loads: PinLoads, z: Floats) -> Floats:
-    """The shear force, (T, Z, 2) N: the sum of the transverse loads on the pin before z.
+    @property
+    def line_load(self) -> Floats:
+        """The force per length of the lugs on the pin along x and y, the mean over each ring, (T,
+        R, 2) N/m.
+        """
+        forces = self.loads.forces[:, : len(self.bands.z), :2]
+        return np.asarray(forces / self.bands.length[:, None])
 
-    Arguments as in `bending_moment`.
-    """
-    return _summed(pin, mass, bands, loads, z, _forces)
+    def bending_moment(self, z: Floats) -> Floats:
+        """The bending moment of the part of the pin before z (Z,) m, (T, Z, 2) N m.
 
+        It is the integral of the shear along x and along y.
+        """
+        return self._summed(z, _moments)
 
-Parts = tuple[Floats, Floats]  # (Z, R): of loads per length that are even, and that rise
+    def shear_force(self, z: Floats) -> Floats:
+        """The shear force, (T, Z, 2) N: the sum of the transverse loads on the pin before z."""
+        return self._summed(z, _forces)
 
+    def section_forces(self) -> JointForces:
+        """The section forces at all instants."""
+        z, bands = stations(self.pin), self.bands
+        across = self.loads.forces[:, : len(bands.z), :2]
+        forces = [across[:, bands.band == b].sum(axis=1) for b in range(len(self.lugs))]
+        shear, moment = (
+            np.linalg.norm(x, axis=2) for x in (self.shear_force(z), self.bending_moment(z))
+        )
+        names = tuple(lug.connection for lug in self.lugs)
+        return JointForces(z, self.loads.times, shear, moment, names, np.stack(forces, axis=1))
 
-def _summed(
-    pin: Pin, mass: Floats, bands: Bands, loads: PinLoads, z: Floats,
-    parts: Callable[[Floats, Floats], Parts],
-) -> Floats:  # fmt: skip
-    couples = np.stack([loads.moments[:, :, 1], -loads.moments[:, :, 0]], axis=2)
-    mean = loads.forces[:, :, :2] / bands.length[:, None]
-    slope = couples * (12.0 / bands.length**3)[:, None]
-    even, rising = parts(z[:, None] - (bands.z - bands.length / 2.0), bands.length)
-    rings = np.einsum("zr,tra->tza", even, mean) + np.einsum("zr,tra->tza", rising, slope)
-    weight = loads.body[:, None, :2] * mass[:, None]
-    ends = np.array(pin.stations)
-    even, _ = parts(z[:, None] - ends[:-1], np.diff(ends))
-    return np.asarray(rings + np.einsum("zs,tsa->tza", even, weight))
+    def _summed(self, z: Floats, parts: Callable[[Floats, Floats], Parts]) -> Floats:
+        bands, loads, ends = self.bands, self.loads, np.array(self.pin.stations)
+        forces, moments = (x[:, : len(bands.z)] for x in (loads.forces, loads.moments))
+        couples = np.stack([moments[:, :, 1], -moments[:, :, 0]], axis=2)
+        mean = forces[:, :, :2] / bands.length[:, None]
+        slope = couples * (12.0 / bands.length**3)[:, None]
+        even, rising = parts(z[:, None] - (bands.z - bands.length / 2.0), bands.length)
+        rings = np.einsum("zr,tra->tza", even, mean) + np.einsum("zr,tra->tza", rising, slope)
+        weight = loads.body[:, None, :2] * self.mass[:, None]
+        even, _ = parts(z[:, None] - ends[:-1], np.diff(ends))
+        return np.asarray(rings + np.einsum("zs,tsa->tza", even, weight))
 
 
 def _moments(way: Floats, lengths: Floats) -> Parts:

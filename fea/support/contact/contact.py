@@ -9,9 +9,11 @@ beyond, under pressures that are even on every cell, and averaged over cells, so
 symmetric. A lug whose tilt is elastic adds the tilt that the pressures' couple makes. Shifts and
 turn are the multipliers of what equilibrium asks: the resultant on the bands of a link is its
 force, and the couples on the pin are in balance. It is a linear complementarity problem with a
-positive definite matrix; a primal-dual active set solves it, from any start, in few steps. As long
-as the same cells are in contact everything is linear in the loads: what a set of cells answers is
-found once and kept, so that neighbouring instants take next to nothing.
+positive definite matrix; a primal-dual active set solves it in few steps. Where it runs in circles,
+as it may where hardly more cells touch than hold the pin, descent of the energy finds the cells
+(fea.support.contact.least_energy). As long as the same cells are in contact everything is linear in
+the loads: what a set of cells answers is found once and kept, so that neighbouring instants take
+next to nothing.
 
 Sources: Hintermueller, Ito & Kunisch, SIAM J. Optim. 13 (2002) 865 (the active set); Ciavarella &
 Decuzzi, Int. J. Solids Struct. 38 (2001) 4507 (the plane problem that tests compare with).
@@ -23,23 +25,24 @@ import copy
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
 from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats
 from fea.support.bands import Bands
-from pinbase.arrays import Ints
+from fea.support.contact.least_energy import least_energy_cells
+from pinbase.arrays import Ints, Mask
 
-Mask = NDArray[np.bool_]
-
-# Limits of the iteration and of the continuation from larger loads, chosen by judgement. They
-# decide whether and how soon contact is found; the contact itself is unique.
+# Limits of the iteration and of the descent, chosen by judgement. They decide how soon contact is
+# found; the contact itself is unique.
 MAX_ACTIVE_SET_STEPS = 60
-LOAD_GROWTH, MAX_LOAD_FACTOR = 16.0, 1e12  # times the loads, where these do not settle
-LOAD_REDUCTION, MIN_LOAD_REDUCTION = 2.0, 1.01  # factors by which they become smaller again
+# Of the loads: force of the first springs when they give as much as the largest gap. Their
+# softening where they pass on too little. Of 400 random light loads in loose lugs none took more
+# than five rounds.
+SPRING_FORCE, SPRING_SOFTENING, MAX_SPRING_ROUNDS = 1e-3, 1e-3, 30
 # A cell belongs to the first guess if the cosine between its normal and the load is larger.
 FACING_COSINE = 0.3
 # Round-off of double precision, with a margin chosen by judgement.
@@ -103,6 +106,18 @@ def rotation(angle: float) -> Floats:
     return np.array([[c, -s], [s, c]])
 
 
+def wide_gap_half_angle(load: Floats, closing: Floats) -> Floats:
+    """The half angle of contact, rad, of Persson's plane contact in the limit of large gaps,
+    E* gap / load = 2 / (pi tan^2(half / 2)); too wide for small ones.
+
+    load: per length, N/m, or all along a length, N.
+    closing: E* times the gap on the radius, in the same unit; 4 R / E* is the tail of pin and lug
+    together.
+    """
+    closed = np.sqrt(np.pi * np.maximum(closing, 0.0))
+    return np.asarray(2.0 * np.arctan2(np.sqrt(2.0 * load), closed))
+
+
 @dataclass(frozen=True)
 class AdjointContact:
     """The contact of given cells and its adjoint, for a weighted sum of the cells' forces.
@@ -138,6 +153,20 @@ class _Answer:
     right: Floats
     motions: Floats
     reach: Floats
+
+    def on_springs(self, pull: Floats, stiffness: float) -> tuple[Floats, Floats]:
+        """The forces and gaps where springs, N/m of what each motion moves at most, hold the lugs
+        and the pin, and pull with given resultants as long as nothing moves.
+        """
+        springs = stiffness * self.reach**2
+        scale = np.outer(self.reach, self.reach)
+        system = (self.system + np.diag(springs)) / scale
+        motion, lost = np.zeros(len(pull)), self.right - pull
+        for _ in range(2):  # once more for round-off, as `under`
+            motion += np.linalg.solve(system, lost / self.reach) / self.reach
+            force = self.force - self.yielding @ motion
+            lost = self.motions.T @ force - pull - springs * motion
+        return force, self.gap + self.moving @ motion
 
     def motion(self, lost: Floats) -> Floats:
         """The motions (Y,) of least size that make up for lost resultants."""
@@ -205,8 +234,19 @@ class ContactProblem:
         other._fit(replace(self.bands, gap=gap), tilt)
         return other
 
+    def freed(self, bands: Mask) -> ContactProblem:
+        """The same problem with some of the lugs (B,) free to tilt, kept for further loads."""
+        key = bands.tobytes()
+        if not bands.any():
+            return self
+        if key not in self._freed:
+            tilt = [0.0 if free else k for free, k in zip(bands, self.tilt, strict=True)]
+            self._freed[key] = self.changed(self.bands.gap, tilt)
+        return self._freed[key]
+
     def _fit(self, bands: Bands, tilt: Sequence[float]) -> None:
-        self.bands = bands
+        self.bands, self.tilt = bands, tuple(tilt)
+        self._freed: dict[bytes, ContactProblem] = {}
         self._open = np.repeat(bands.gap, self.sectors) + self._beyond
         self._motions, tilts = self.rigid(bands, tilt)
         self._compliance = self._fixed + tilts @ tilts.T if tilts.size else self._fixed
@@ -271,24 +311,27 @@ class ContactProblem:
         return np.hstack(columns), np.hstack(elastic)
 
     def solve(
-        self, forces: Floats, couple: tuple[float, float] = (0.0, 0.0), start: Mask | None = None
+        self,
+        forces: Floats,
+        couple: tuple[float, float] = (0.0, 0.0),
+        start: Mask | None = None,
+        moments: Floats | None = None,
     ) -> ContactState:
         """The contact under forces (L, 2), N, of the links on the pin, along x and y.
 
-        couple: N m, along x and y, on the pin by anything but transverse forces at the bands,
-        moments of links included.
+        couple: N m, along x and y, on the pin by anything but the lugs.
         start: cells (R, M) in contact at a neighbouring instant.
+        moments: (B, 2) N m, along x and y, of the lugs that are free to tilt, on the pin.
 
         Raises: SolveError where the active set does not settle.
         """
         forces = np.asarray(forces, dtype=np.float64)
-        required = self.required_resultants(forces, couple)
-        first = self._facing(forces) if start is None else start.ravel().copy()
-        state = self._settled(required, first) or self._from_larger(required, forces)
+        required = self.required_resultants(forces, couple, moments)
+        acting = self._acting(forces, moments)
+        first = self._facing(acting) if start is None else start.ravel().copy()
+        state = self._settled(required, first) or self._by_energy(required)
         if state is None:
-            raise SolveError(
-                f"contact does not settle in {MAX_ACTIVE_SET_STEPS} steps", "contact-unsettled"
-            )
+            raise SolveError("contact does not settle", "contact-unsettled")
         return state
 
     def _settled(self, required: Floats, active: Mask) -> ContactState | None:
@@ -305,23 +348,23 @@ class ContactProblem:
             wrong_force = active & (force < -SIGN_TOLERANCE * np.abs(force).max(initial=0.0))
             wrong_gap = ~active & (gap < -SIGN_TOLERANCE * np.abs(gap).max(initial=0.0))
             if not (wrong_force | wrong_gap).any():
-                self._require_balance(force, required, answer)
-                return self._state(force, gap, motion, step)
-            # Where fewer cells touch than hold the pin, it turns far and most of the others
-            # penetrate: only the deepest of each band is then near to those that will touch.
-            loose = wrong_gap & (self._open > 0.0)
-            if np.count_nonzero(loose) > np.count_nonzero(active):
-                wrong_gap = (wrong_gap & ~loose) | self._deepest(gap, loose)
-            key = active.tobytes()
-            # A set that comes back is a cycle. Changing the first wrong cell alone, as in Murty's
-            # least-index method, leads out of it.
-            if key in seen:
-                first = int(np.flatnonzero(wrong_force | wrong_gap)[0])
-                active[first] = not active[first]
-            else:
-                active = (active & ~wrong_force) | wrong_gap
+                # Cells that press nowhere near enough, as in one of two free lugs, are no contact.
+                balanced = self._balances(force, required, answer)
+                return self._state(force, gap, motion, step) if balanced else None
+            if (key := active.tobytes()) in seen:
+                return None  # a cycle
             seen.add(key)
+            active = (active & ~wrong_force) | self._chosen(gap, wrong_gap, active)
         return None
+
+    def _chosen(self, gap: Floats, overlaps: Mask, active: Mask) -> Mask:
+        """A mask of the cells to close at once, of those that overlap."""
+        # Where fewer cells touch than hold the pin, it turns far and most of the others
+        # penetrate: only the deepest of each band is then near to those that will touch.
+        loose = overlaps & (self._open > 0.0)
+        if np.count_nonzero(loose) <= np.count_nonzero(active):
+            return overlaps
+        return np.asarray((overlaps & ~loose) | self._deepest(gap, loose))
 
     def _deepest(self, gap: Floats, among: Mask) -> Mask:
         """A mask of the cell of least gap of each band, among some."""
@@ -333,28 +376,37 @@ class ContactProblem:
             out[rows[cell // self.sectors] * self.sectors + cell % self.sectors] = True
         return out & among
 
-    def _from_larger(self, required: Floats, forces: Floats) -> ContactState | None:
-        """The contact found by continuation from larger loads, under which it settles, down to the
-        given ones.
-
-        With small loads and large gaps few cells touch, far from the first guess.
+    def _by_energy(self, required: Floats) -> ContactState | None:
+        """The contact found by descent of the energy, which finds every contact that exists; None
+        where round-off hides it.
         """
-        # Up: under a larger load gaps matter less and most facing cells touch, which the first
-        # guess has. Down: each contact is the start of the next smaller load; where that does not
-        # settle the reduction is made smaller.
-        times, state = 1.0, None
-        while state is None and times < MAX_LOAD_FACTOR:
-            times *= LOAD_GROWTH
-            state = self._settled(times * required, self._facing(times * forces))
-        factor = LOAD_REDUCTION
-        while state is not None and times > 1.0 and factor > MIN_LOAD_REDUCTION:
-            smaller = max(1.0, times / factor)
-            next_state = self._settled(smaller * required, state.active.ravel().copy())
-            if next_state is None:
-                factor = math.sqrt(factor)
-            else:
-                times, state = smaller, next_state
-        return state if times == 1.0 else None
+        from scipy.optimize import nnls  # takes long to import
+
+        # Any pressures with the resultants are a start; without any there is no contact.
+        force, lost = nnls((self._motions / self._reach).T, required / self._reach)
+        size = float(np.abs(required / self._reach).max())
+        if lost > BALANCE_TOLERANCE * size:
+            raise SolveError(
+                "the links leave a couple on the pin that no lug reacts", "couple-not-reacted"
+            )
+        # The descent holds the pin by springs, whose far ends move by the loads: by all that the
+        # springs have not passed on, until they have passed on everything (the method of
+        # multipliers). Small parts of the loads need softer springs to get as far as the gaps.
+        give = float(np.abs(self.bands.gap).max()) + size * float(np.abs(self._compliance).max())
+        spring, pull, missing = SPRING_FORCE * (size or 1.0) / give, required, required
+        for _ in range(MAX_SPRING_ROUNDS):
+            least = partial(self._on_springs, pull=pull, spring=spring)
+            cells, force = least_energy_cells(force, least, self._chosen)
+            if (state := self._settled(required, cells)) is not None:
+                return state
+            before, missing = missing, required - self._motions.T @ force
+            pull = pull + missing
+            if np.abs(missing / self._reach).max() > 0.1 * np.abs(before / self._reach).max():
+                spring *= SPRING_SOFTENING
+        return None
+
+    def _on_springs(self, active: Mask, pull: Floats, spring: float) -> tuple[Floats, Floats]:
+        return self._answer(active).on_springs(pull, spring)
 
     def _answer(self, active: Mask) -> _Answer:
         """The response of given cells in contact, kept for later instants."""
@@ -386,38 +438,43 @@ class ContactProblem:
         return _Answer(force, yielding, gap, moving, system, right, G, self._reach)
 
     def required_resultants(
-        self, forces: Floats, couple: tuple[float, float] = (0.0, 0.0)
+        self,
+        forces: Floats,
+        couple: tuple[float, float] = (0.0, 0.0),
+        moments: Floats | None = None,
     ) -> Floats:
         """The resultants (Y,) that the cells' forces must have on the rigid motions.
 
         Their sign is negative since the cells push the pin against e_r.
+        moments: of the lugs that are free to tilt, as of `solve`.
         """
         out = np.zeros(self._motions.shape[1])
         count = self._count
         out[: 2 * count] = -np.asarray(forces, dtype=float).ravel()
         mx, my = couple  # x: by forces along -y at z, y: by forces along x at z
         out[2 * count : 2 * count + 2] = my, -mx
+        if moments is not None:
+            of_free = moments[np.array(self.tilt) == 0.0]
+            out[2 * count + 2 :] = (of_free[:, ::-1] * [-1.0, 1.0]).ravel()
         return out
 
-    def _require_balance(self, force: Floats, required: Floats, answer: _Answer) -> None:
-        """Check that the cells' forces have the required resultants.
+    def _balances(self, force: Floats, required: Floats, answer: _Answer) -> bool:
+        """Whether the cells' forces have the required resultants.
 
-        Raises: SolveError where they have not.
+        Raises: SolveError where round-off hides it.
         """
         # A couple counts as the force at the far end that makes it, so that all residuals are
         # forces.
         residual = np.abs(self._motions.T @ force - required) / self._reach
         lost = residual.max(initial=0.0)
         if lost <= BALANCE_TOLERANCE * np.abs(required).max(initial=force.max(initial=0.0)):
-            return
+            return True
         if lost <= CLOSING_FORCE_ROUND_OFF * np.abs(answer.force).max():
             raise SolveError(
                 "the loads are so small for the clearance that contact is lost in round-off",
                 "loads-too-small",
             )
-        raise SolveError(
-            "the links leave a couple on the pin that no lug reacts", "couple-not-reacted"
-        )
+        return False
 
     def adjoint(self, active: Mask, wanted: Floats, required: Floats) -> AdjointContact:
         """The sensitivity of a sum of the cells' forces, weighted by `wanted` (U,), to gaps and
@@ -440,25 +497,37 @@ class ContactProblem:
             lost = G.T @ (dual[rows] - answer.yielding[rows] @ of_motion)
         return AdjointContact(force, motion, dual - answer.yielding @ of_motion, of_motion)
 
-    def _facing(self, forces: Floats) -> Mask:
-        """A mask of the cells that face the load of their band, as far around as it presses."""
-        size = np.linalg.norm(forces, axis=1)
-        towards = -np.einsum("ua,ua->u", self._e_r, forces[self._link])
-        cosine = self._contact_cosine(size)[self._link] * np.linalg.norm(self._e_r[0])
-        return np.asarray((towards > cosine * size[self._link]) & (size[self._link] > 0.0))
+    def _acting(self, forces: Floats, moments: Floats | None) -> Floats:
+        """The load of each cell's band (U, 2), N: the force of its link, and the part of a moment,
+        were it linear along the band, as an even load of the same size.
+        """
+        if moments is None or not moments.any():
+            return np.asarray(forces[self._link])
+        band, z = (np.repeat(x, self.sectors) for x in (self.bands.band, self.bands.z))
+        length = np.bincount(self.bands.band, self.bands.length)[band]
+        slope = 12.0 * (z - self.bands.middles[band]) / length**2
+        turning = np.stack([moments[:, 1], -moments[:, 0]], axis=1)[band]
+        return np.asarray(forces[self._link] + slope[:, None] * turning)
+
+    def _facing(self, acting: Floats) -> Mask:
+        """A mask of the cells that face the load of their band (U, 2), N, as far around as it
+        presses.
+        """
+        size = np.linalg.norm(acting, axis=1)
+        towards = -np.einsum("ua,ua->u", self._e_r, acting)
+        cosine = self._contact_cosine(size) * np.linalg.norm(self._e_r[0])
+        return np.asarray((towards > cosine * size) & (size > 0.0))
 
     def _contact_cosine(self, size: Floats) -> Floats:
-        """The cosine (L,) of the half angle of contact by the size (L,), N, of the links' forces,
-        if these were even along their bands: a guess.
+        """The cosine (U,) of the half angle of contact by the size (U,), N, of the load of each
+        cell's band, if that were even along it: a guess.
         """
-        # Persson's plane contact in the limit of large gaps, E* gap / Q = 2 / (pi tan^2(half / 2)),
-        # too wide for small ones; 4 R / E* is the tail of pin and lug together.
-        gap, length = np.full(len(size), np.inf), np.zeros(len(size))
+        gap, length = np.full(self._count, np.inf), np.zeros(self._count)
         link = self.bands.links[self.bands.band]
         np.minimum.at(gap, link, self.bands.gap)
         np.add.at(length, link, self.bands.length)
-        per_length = 4.0 * self.bands.radius.max() / self._tail * gap * length
-        half = 2.0 * np.arctan2(np.sqrt(2.0 * size), np.sqrt(np.pi * np.maximum(per_length, 0.0)))
+        stiffness = 4.0 * self.bands.radius.max() / self._tail
+        half = wide_gap_half_angle(size, stiffness * (gap * length)[self._link])
         nearest = math.cos(1.01 * math.pi / self.sectors)  # one cell at least
         return np.asarray(np.clip(np.cos(half), FACING_COSINE, nearest))
 

@@ -93,18 +93,6 @@ class RingBody:
         return np.stack(out)
 
 
-def pin_flexibility(
-    pin: Pin, rings: Sequence[str], material: Material, across: float, highest: int
-) -> Floats:
-    """The flexibility C_n (highest + 1, R, R), m/Pa, inwards under pressure, of rings of a pin.
-
-    across: elements over the diameter.
-
-    Raises: MeshError, SolveError.
-    """
-    return pin_rings(pin, rings, material, across).flexibility(highest)
-
-
 def pin_rings(pin: Pin, rings: Sequence[str], material: Material, across: float) -> RingBody:
     """The rings of a pin, on a mesh."""
     size = SectionSize(across)
@@ -116,16 +104,6 @@ def _grades(pin: Pin, rings: Sequence[str], growth: float) -> list[Grade]:
     """The fineness at a ring's ends, where elements are no longer than half of it."""
     bands = (pin.band(name) for name in rings)
     return [Grade(((b.radius, b.z0), (b.radius, b.z1)), b.length / 2.0, 0.0, growth) for b in bands]
-
-
-def lug_flexibility(eye: Pin, lug: Lug, across: float, highest: int) -> Floats:
-    """The flexibility C_n (highest + 1, R, R), m/Pa, outwards under pressure, of the rings of a
-    lug's bore.
-
-    eye: the lug's annulus (fea.support.lugs.rings).
-    across: elements over the bore's diameter.
-    """
-    return lug_rings(eye, lug, across).flexibility(highest)
 
 
 def lug_rings(eye: Pin, lug: Lug, across: float) -> RingBody:

@@ -143,7 +143,7 @@ def _areas(bands: Bands) -> Floats:
 def with_torques(loads: PressureLoads, torque: Floats) -> PressureLoads:
     """Loads on rings with further torques (R,) N m on them at every instant."""
     moments, acting = loads.moments.copy(), dict(loads.acting)
-    moments[:, :, 2] += torque
+    moments[:, : len(torque), 2] += torque
     for r in np.flatnonzero(torque):
         unit = UnitLoad(loads.surfaces[r], "moment", 0)
         amount = np.zeros((len(loads), 2)) + acting.get(unit, 0.0)

@@ -11,16 +11,16 @@ and are enough if they decide it with their error, also for what lies beneath th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
 import numpy as np
 
-from fea.core.equilibrium import out_of_balance
+from fea.core.equilibrium import centre_of_volume, out_of_balance
 from fea.core.linear_solver import SolveError
-from fea.core.peak import Maximum, Reason, meets_limit
+from fea.core.peak import NO_REASON, Maximum, Reason, meets_limit
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.places import CaseCrushing
 from fea.core.requirement import Requirement
@@ -36,15 +36,16 @@ from fea.support.contact.case_crushing import case_crushing, pressed_most
 from fea.support.contact.contact_place import contact_place
 from fea.support.contact.cut_in_lugs import cuts_in_lugs, error_of, with_cuts_in_lugs
 from fea.support.contact.friction import band_torques, rubs
+from fea.support.contact.joint_result import contact_result
 from fea.support.contact.pressed_cases import Candidates, Compared, PressedCases
-from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
+from fea.support.contact.solve_joint import MAX_CELLS, ContactModel, JointContact, Resolution
 from fea.support.contact.unit_pressures import unit_model, unit_patterns
 from fea.support.contact.variations import ResolutionComparison, compare, uncompared
-from fea.support.contact.what_contact_says import contact_result
 from fea.support.hardened_row import PartSearch, hardened_row, in_core
+from fea.support.lugs.axial import seats_note
 from fea.support.lugs.fit import fitted, on_structure
-from fea.support.lugs.links import link_forces
-from fea.support.lugs.rings import whole_names
+from fea.support.lugs.links import link_forces, link_moments
+from fea.support.lugs.rings import USUAL_RING_COUNT, whole_names
 from fea.support.prescribed import balanced, imbalance
 from fea.support.support import HeldPin, PinProblem, Progress, Solution, StressReading, silent
 from geometry import CutPin, Pin, PinLike
@@ -58,7 +59,6 @@ RESOLUTIONS: tuple[Resolution, ...] = (
 )
 ROUGH = Resolution(4, 24, 8)  # may decide a required factor
 Alone = Literal["unit", "alone"]
-MAX_CELLS = 6000  # a dense matrix of them takes 300 MB
 
 
 class ContactSupport:
@@ -89,19 +89,22 @@ class ContactSupport:
             refused = _refused(problem)
         left = tuple(case for case in problem.cases if case.case not in refused)
         near: Mapping[str, Candidates] = {}
+        cells, finer = self.cells, self.finer
         if isinstance(coarser, HeldContact):
             near = coarser.candidates
-        progress(f"pin {problem.pin.name}, flexibility of {self.cells.rings} rings of each lug")
+            cells = coarser.for_arcs(cells, left)
+            finer = finer and coarser.for_arcs(finer, left)
+        progress(f"pin {problem.pin.name}, flexibility of {cells.rings} rings of each lug")
         profile, cut = profile_of(problem.pin), isinstance(problem.pin, CutPin)
         of, between, also = (profile, problem.material, problem.lugs), problem.between, problem.also
         if self.alone:
             unit, memo = self.alone == "unit", problem.memo or Memo()
-            model = unit_model(*of, self.cells, memo, together=not unit)
+            model = unit_model(*of, cells, memo, together=not unit)
             model = _seeing(model, problem.pin)
             patterns = unit_patterns(model) if unit else None
             contact = PressedCases(model, left, between, {}, cut, patterns)
         else:
-            model = ContactModel(*of, self.cells, problem.memo)
+            model = ContactModel(*of, cells, problem.memo)
             model = _seeing(model, problem.pin)
             progress(f"pin {problem.pin.name}, contact")
             contact = PressedCases(model, left, between, also, cut)
@@ -110,16 +113,21 @@ class ContactSupport:
         contact.follow(near)
         compared = contact.compared(near, requirement, alone=self.alone is not None)
         # More cells than memory allows are none; and on the last ones all cases are answered.
-        finest = self.finer is None or _count(model, self.finer) > MAX_CELLS
+        finest = finer in (None, cells)
+        if finer is not None:
+            finest |= _ring_count(model, finer.rings) * finer.sectors > MAX_CELLS
         starts = {case: contact.press(links) for case, links in contact.instants.items()}
         held = HeldContact(
             problem, contact, starts, near, compared, finest, refused, alone=self.alone is not None
         )
-        if self.finer is None or self.cells is not ROUGH:  # rough ones are a trial only
+        if finer is None or self.cells is not ROUGH:  # rough ones are a trial only
             failed = {case: _failed(problem, case, why) for case, why in contact.failed.items()}
             held = replace(held, failures=held.failures | failed)
         pressed = tuple(starts.values())
         rigid, _, notes = balanced(held.pin, problem.material, pressed, "harmonic")
+        for links in left:
+            if (said := seats_note(links, problem.lugs)) is not None:
+                notes[links.case] = said + notes.get(links.case, NO_REASON)
         return replace(held, failures=held.failures | rigid, notes=notes)
 
 
@@ -147,12 +155,13 @@ def _refused(problem: PinProblem) -> dict[str, Maximum]:
     """
     pin, lugs = profile_of(problem.pin), problem.lugs
     whole = on_structure(pin, lugs)
-    fitted(whole, problem.material, lugs)
+    inside = fitted(whole, problem.material, lugs)
     structure = len(lugs) > len(pin.connections)
     mass, out = (problem.material.density or 0.0) * whole.volume, dict[str, Maximum]()
     for case in problem.cases:
         try:
-            link_forces(pin, mass, case, structure)
+            forces = link_forces(pin, mass, case, structure)
+            link_moments((pin, whole), inside, case, forces, (mass, centre_of_volume(whole)))
         except SolveError as error:
             out[case.case] = _failed(problem, case.case, str(error))
     return out
@@ -170,9 +179,9 @@ def cells_matter(peak: Maximum, limit: float) -> bool:
     return not low + peak.parts.cells <= limit < high - peak.parts.cells
 
 
-def _count(model: ContactModel, cells: Resolution) -> int:
-    """The approximate number of cells at a resolution."""
-    return len(model.rings) * cells.rings // model.cells.rings * cells.sectors
+def _ring_count(model: ContactModel, of_band: int) -> int:
+    """The approximate number of rings with so many of a band with sharp edges."""
+    return len(model.rings) * of_band // model.cells.rings
 
 
 @dataclass(frozen=True)
@@ -200,6 +209,12 @@ class HeldContact:
     def model(self) -> ContactModel:
         """The flexibilities of pin and lugs."""
         return self.contact.model
+
+    def for_arcs(self, cells: Resolution, cases: Sequence[PinLoads]) -> Resolution:
+        """The resolution that follows the pressure on the arcs of contact in some cases."""
+        arcs = [self.compared[x.case].half_angle for x in cases if x.case in self.compared]
+        usual = _ring_count(self.model, USUAL_RING_COUNT)
+        return cells.for_arcs(min(arcs, default=0.5 * np.pi), usual)
 
     @property
     def cut(self) -> CutPin | None:

@@ -76,6 +76,11 @@ class Compared:
         """The comparison at the place with the larger stress, for which the joint was varied."""
         return max(self.surface, self.section, key=lambda x: (bool(x.over), x.stress.row))
 
+    @property
+    def half_angle(self) -> float:
+        """The smaller half angle of contact of both, rad."""
+        return min(self.surface.half_angle, self.section.half_angle)
+
     def fine(self, material: Material, requirement: Requirement) -> bool:
         """Return whether finer cells would not help.
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from fea.core.pin_loads import Floats, LoadAmounts, PinLoads, UnitLoad
 from fea.core.pressed import PressedArcs
+from fea.support.lugs.rings import ringed_name
 from geometry import Pin
 
 MODE_TOLERANCE = 2e-3  # of the largest amplitude: what a pattern must add to any instant's
@@ -28,7 +29,8 @@ class PressureLoads(PinLoads):
     """Loads on the rings of a pin, made of patterns of pressure.
 
     acting: the amounts (T, 2) of every unit load, by phase.
-    forces: resultants of the pressures on the rings, and the shares of axial forces.
+    forces: resultants of the pressures on the rings, and the shares of axial forces; after the
+    rings come other surfaces that take axial forces.
     of_links: the loads of the links that the pressures carry, at the same instants.
     """
 
@@ -45,8 +47,9 @@ class PressureLoads(PinLoads):
     def on_rings(self) -> PinLoads:
         """The resultants of the pressures on the rings, and the shares of axial forces."""
         return PinLoads(
-            self.case, self.surfaces, self.forces, self.moments, body=self.body, times=self.times
-        )
+            self.case, self.surfaces, self.forces, self.moments, body=self.body,
+            times=self.times, bands=self.bands,
+        )  # fmt: skip
 
     @property
     def in_sections(self) -> LoadAmounts:
@@ -104,7 +107,7 @@ class PressureModes:
         acting.update(self.amounts(waves))
         return PressureLoads(
             links.case,
-            self.rings,
+            ring_loads.surfaces,
             ring_loads.forces,
             ring_loads.moments,
             body=links.body,
@@ -112,6 +115,7 @@ class PressureModes:
             acting=acting,
             of_links=links,
             pressed=pressed,
+            bands=ring_loads.bands,
         )
 
     def amounts(
@@ -154,7 +158,7 @@ def resultants(pin: Pin, rings: tuple[str, ...], waves: Floats, links: PinLoads)
     axial = others_along(pin, rings, links)
     area = np.array([pin.band(name).area for name in rings])
     if len(waves) > 1:
-        axial.forces[:, :, :2] = -0.5 * waves[1] * area[:, None]
+        axial.forces[:, : len(rings), :2] = -0.5 * waves[1] * area[:, None]
     return axial
 
 
@@ -225,17 +229,57 @@ def waves_of_sectors(sectors: int, highest: int, angle: float = 0.0) -> Floats:
 
 
 def others_along(pin: Pin, rings: tuple[str, ...], links: PinLoads) -> PinLoads:
-    """The axial forces and torques of the links, and the body force, on the rings."""
-    forces = np.zeros((len(links), len(rings), 3))
+    """The axial forces and torques of the links, and the body force, on the rings, and on the
+    other surfaces after these that take axial forces (PinLoads.seats).
+
+    pin: with its bands cut into rings.
+    """
+    out = _along(pin, rings, links)
+    if not links.pulls:
+        return out
+    # What acts under other loads of the problem: a unit of each force and torque.
+    units = np.zeros((3, len(links.surfaces), 3)), np.zeros((3, len(links.surfaces), 3))
+    for surface, side in links.pulls:
+        if surface in links.surfaces:
+            turns = side == 2
+            units[turns][side, links.surfaces.index(surface), 2] = (-1.0, 1.0, 1.0)[side]
+    each = _along(pin, rings, PinLoads(links.case, links.surfaces, *units, seats=links.seats))
+    return replace(out, always=tuple(each.coefficients()))
+
+
+def _along(pin: Pin, rings: tuple[str, ...], links: PinLoads) -> PinLoads:
+    """The same, at the instants of the loads alone."""
+    here = {surface: links.seats.get(surface, (surface, surface)) for surface in links.surfaces}
+    elsewhere = {x: ringed_name(pin, x) for both in here.values() for x in both if x not in here}
+    surfaces = (*rings, *elsewhere.values())
+    forces = np.zeros((len(links), len(surfaces), 3))
     moments = np.zeros_like(forces)
     share = ring_shares(pin, rings, links.surfaces)
-    forces[:, :, 2] = links.forces[:, :, 2] @ share
-    moments[:, :, 2] = links.moments[:, :, 2] @ share
-    return PinLoads(links.case, rings, forces, moments, body=links.body, times=links.times)
+    for c, surface in enumerate(links.surfaces):
+        pull = links.forces[:, c, 2]
+        both = np.minimum(pull, 0.0), np.maximum(pull, 0.0)
+        for seat, part in zip(here[surface], both, strict=True):
+            if seat in here:
+                forces[:, : len(rings), 2] += np.outer(part, share[links.surfaces.index(seat)])
+            else:
+                forces[:, surfaces.index(elsewhere[seat]), 2] += part
+    moments[:, : len(rings), 2] = links.moments[:, :, 2] @ share
+    bands = tuple(
+        tuple(name for name, x in zip(rings, on, strict=True) if x) for on in share.tolist()
+    )
+    return PinLoads(
+        links.case, surfaces, forces, moments, body=links.body, times=links.times, bands=bands
+    )
 
 
 def ring_shares(pin: Pin, rings: tuple[str, ...], bands: tuple[str, ...]) -> Floats:
-    """The share of each band's load that each ring takes by its length, (C, R)."""
+    """The share of each band's force along the axis that each ring takes, (C, R): that of the
+    parabola over the band by which it fades towards the edges.
+    """
     on_band = np.array([[name.startswith(f"{band} ring ") for name in rings] for band in bands])
-    part = on_band * np.array([pin.band(name).length for name in rings])
+    z0, z1 = np.array([(b.z0, b.z1) for b in map(pin.band, rings)]).T
+    start = np.where(on_band, z0, np.inf).min(axis=1, keepdims=True)
+    end = np.where(on_band, z1, -np.inf).max(axis=1, keepdims=True)
+    before, after = ((z - 0.5 * (start + end)) / (end - start) for z in (z0, z1))
+    part = on_band * (1.5 * (after - before) - 2.0 * (after**3 - before**3))
     return np.asarray(part / part.sum(axis=1, keepdims=True))

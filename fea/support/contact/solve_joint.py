@@ -8,6 +8,7 @@ stress, its error and verdict come from fea.solve.solve, of a pin that nothing c
 from __future__ import annotations
 
 import copy
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -21,8 +22,13 @@ from fea.core.pressed import PressedArcs, Rings
 from fea.harmonic.first_mesh import FirstMesh
 from fea.singular.lug_edge import lug_edge_exponent
 from fea.support.bands import Bands
-from fea.support.contact.bending import bending_moment, mass_per_length
-from fea.support.contact.contact import ContactProblem, ContactState, rotation
+from fea.support.contact.bending import LoadedJoint, mass_per_length
+from fea.support.contact.contact import (
+    ContactProblem,
+    ContactState,
+    rotation,
+    wide_gap_half_angle,
+)
 from fea.support.contact.flexibility import (
     RingBody,
     half_plane,
@@ -40,9 +46,16 @@ from fea.support.contact.pressure_loads import (
 from fea.support.contact.seen_cuts import SeenCuts, seen_cuts
 from fea.support.lugs.changes import with_stiffness
 from fea.support.lugs.fit import fitted, on_structure
-from fea.support.lugs.links import link_forces, link_numbers
+from fea.support.lugs.links import link_forces, link_moments, link_numbers, tilting_bands
 from fea.support.lugs.lug import Bushing, Lug
-from fea.support.lugs.rings import annulus, beside_fillets, ring_ends, ringed, rings
+from fea.support.lugs.rings import (
+    USUAL_RING_COUNT,
+    annulus,
+    beside_fillets,
+    ring_ends,
+    ringed,
+    rings,
+)
 from geometry import CutPin, Pin
 from pinbase.arrays import Ints
 from pinbase.memo import Memo
@@ -52,6 +65,11 @@ LUG_SIZE_DIGITS = 12  # digits to which lugs of the same size agree
 LARGEST_FORCE_SHARE = 1.0 - 1e-6  # of the largest: a force that is as good as it
 # Times the sectors: harmonics in which neighbouring rings feel each other
 COUPLED_HARMONICS_PER_SECTOR = 4
+# Half angle of contact times the harmonics that follow its pressure to 2 %, and sectors for each of
+# these; measured on the clevis of benchmarks/joints/narrow_arcs.py.
+HARMONICS_PER_ARC, SECTORS_PER_NARROW_HARMONIC = 8.0, 2
+MAX_SECTORS = 180  # two of the arcs in which the surface is read (fea.core.pressed) each
+MAX_CELLS = 6000  # a dense matrix of them takes 300 MB
 Alike = tuple[float, Material, Bushing | None, bytes, Material]
 
 
@@ -78,37 +96,33 @@ class Resolution:
     across: float = 10.0
     beside: float | None = None
 
+    def for_arcs(self, half_angle: float, ring_count: int) -> Resolution:
+        """The resolution with the harmonics and sectors that follow the pressure on an arc, as far
+        as the number of cells allows, and the usual rings where these are more.
+
+        half_angle: of contact, rad.
+        ring_count: number of usual rings of all lugs.
+        """
+        wanted = math.ceil(HARMONICS_PER_ARC * self.rings / USUAL_RING_COUNT / half_angle)
+        most = min(MAX_CELLS // ring_count, MAX_SECTORS)
+        highest = min(wanted, most // SECTORS_PER_NARROW_HARMONIC) // 2 * 2
+        if highest <= self.highest:
+            return self
+        sectors = SECTORS_PER_NARROW_HARMONIC * highest  # whose halves are whole, too
+        return replace(self, rings=USUAL_RING_COUNT, sectors=sectors, highest=highest)
+
 
 @dataclass(frozen=True)
-class JointContact:
+class JointContact(LoadedJoint):
     """The contact of a pin in its lugs in one case.
 
-    pin: with its bands cut into rings.
+    angles: of the cells, rad.
     contact: by instant.
-    loads: of the rings on the pin.
-    mass: of its segments, kg/m.
     """
 
-    pin: Pin
-    lugs: tuple[Lug, ...]
-    bands: Bands
+    loads: PressureLoads
     angles: Floats
     contact: tuple[ContactState, ...]
-    loads: PressureLoads
-    mass: Floats
-
-    @property
-    def line_load(self) -> Floats:
-        """Force per length of the lugs on the pin at each ring, along x and y, (T, R, 2) N/m."""
-        return np.asarray(self.loads.forces[:, :, :2] / self.bands.length[:, None])
-
-    def bending_moment(self, z: Floats) -> Floats:
-        """The bending moment by contact and body force of the part of the pin before z (Z,) m, (T,
-        Z, 2) N m.
-
-        It is the integral of the shear along x and along y.
-        """
-        return bending_moment(self.pin, self.mass, self.bands, self.loads, z)
 
     @property
     def contact_angle(self) -> Floats:
@@ -364,6 +378,20 @@ class ContactModel:
             by_lug.append(np.full(len(ends) - 1, both))
         return np.concatenate(by_lug)
 
+    def half_angle(self, contact: JointContact) -> float:
+        """The half angle of contact, rad, at the ring that is pressed most at the first instant,
+        whatever the cells: the plane contact of a wide gap, at most a right angle.
+
+        contact: of this model, or of one with other gaps.
+        """
+        # Rings under rounded edges have the gap of the others, which hold them off.
+        bands, load = self.bands, np.linalg.norm(contact.line_load[0], axis=1)
+        gap = np.full(len(self.lugs), np.inf)
+        np.minimum.at(gap, bands.band, self.gap)
+        half = wide_gap_half_angle(load, 4.0 * bands.radius / self.tail * gap[bands.band])
+        half = np.where(load > 0.0, np.minimum(half, 0.5 * np.pi), 0.5 * np.pi)
+        return float(half[(load / half).argmax()])
+
     def solve(self, loads: PinLoads) -> JointContact:
         """Solve all instants of a case.
 
@@ -404,19 +432,16 @@ class ContactModel:
             np.concatenate(edge), np.concatenate(exponent),
         )  # fmt: skip
 
-    def arcs(self, states: Sequence[ContactState], rings: Rings | None = None) -> PressedArcs:
-        """The arcs in which contact presses at some instants.
-
-        rings: of the cells, where they are not the model's.
-        """
+    def arcs(self, states: Sequence[ContactState]) -> PressedArcs:
+        """The arcs in which contact presses at some instants."""
         cells, angles = [x.pressure > 0.0 for x in states], [x.angle for x in states]
-        return PressedArcs.of(rings or self.on_shaft, cells, angles)
+        return PressedArcs.of(self.on_shaft, cells, angles)
 
     def joined(self, states: Sequence[ContactState], loads: PressureLoads) -> JointContact:
         """The contact at the instants of some loads, together with these."""
         contact, mass = self.contact, mass_per_length(self.pin, self.material.density)
         cut, angles = contact.bands, contact.angles
-        return JointContact(self.pin, self.lugs, cut, angles, tuple(states), loads, mass)
+        return JointContact(self.pin, self.lugs, cut, loads, mass, angles, tuple(states))
 
     def pressed(self, loads: PinLoads, problem: ContactProblem | None = None) -> list[ContactState]:
         """The contact at each instant of the loads, on cells that turn with the largest force of a
@@ -428,17 +453,18 @@ class ContactModel:
 
         Raises: SolveError as `solve`.
         """
-        contact = problem or self.contact
+        contact = self.freed(loads, problem)
         forces, couples = self.forces(loads), self.couples(loads)
-        cuts = self.cuts
+        moments, cuts = self.moments(loads), self.cuts
         angles = _directions(forces) if cuts is None else [cuts.angle] * len(forces)
         turns = np.stack([rotation(angle) for angle in angles])
         forces, couples = forces @ turns, np.einsum("ta,tab->tb", couples, turns)
-        sizes = np.abs(forces).max(axis=(1, 2))
+        arms, moments = couples / self.pin.length, moments @ turns
+        acting = np.concatenate([forces, moments / self.pin.length], axis=1)
+        sizes = np.abs(acting).max(axis=(1, 2))
         sizes[sizes == 0.0] = 1.0
         scale = sizes if contact.closed else np.full(len(sizes), sizes.max())
-        arm = couples / self.pin.length
-        like = np.concatenate([forces.reshape(len(forces), -1), arm], axis=1) / scale[:, None]
+        like = np.concatenate([acting.reshape(len(forces), -1), arms], axis=1) / scale[:, None]
         states: list[ContactState] = []
         for t, (force, couple) in enumerate(zip(forces, couples.tolist(), strict=True)):
             apart = np.abs(like[:t] - like[t]).max(axis=1, initial=0.0)
@@ -447,8 +473,23 @@ class ContactModel:
                 states.append(states[near].times(float(scale[t] / scale[near])))
                 continue
             start = None if near is None else states[near].active
-            states.append(contact.solve(force, (couple[0], couple[1]), start))
+            states.append(contact.solve(force, (couple[0], couple[1]), start, moments[t]))
         return [x.turned(angle) for x, angle in zip(states, angles, strict=True)]
+
+    def freed(self, loads: PinLoads, problem: ContactProblem | None = None) -> ContactProblem:
+        """The contact problem in which the lugs of links that state moments are free to tilt.
+
+        problem: with other cells than this model's.
+        """
+        return (problem or self.contact).freed(tilting_bands(self.whole, loads))
+
+    def moments(self, loads: PinLoads) -> Floats:
+        """The moments about x and y that links bring to the pin at each lug, (T, B, 2) N m.
+
+        Raises: SolveError where they are not in balance, and no lug reacts that.
+        """
+        weight, pins = (self._mass, centre_of_volume(self.whole)), (self.given, self.whole)
+        return link_moments(pins, self.lugs, loads, self.forces(loads), weight)
 
     def forces(self, loads: PinLoads) -> Floats:
         """The forces of the links along x and y, last of the structure, (T, L, 2) N."""

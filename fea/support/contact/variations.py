@@ -8,6 +8,7 @@ act on one mesh, the first: its error is in all maxima alike, so that their rati
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -37,6 +38,13 @@ CELL_ERROR_SHARE = 0.6
 # tuned on the random pins of benchmarks/joints/cells.py: the error there is 0.52, 0.66 and 0.25 at
 # most of the change by cells twice as large, where that is noticed.
 SURFACE_CELL_ORDER, SECTION_CELL_ORDER = 1.4, 2.0
+# Half angle of contact times the harmonics, below which these do not follow the pressure around the
+# pin: the error of a surface that notices them, by more than the third number, is then at least the
+# second one over the square of that product. Below the fourth the change by cells twice as large is
+# itself the error. Tuned on the clevis of benchmarks/joints/narrow_arcs.py, whose surface is 126,
+# 58, 23 and 10 % off where the product is 1, 1.6, 2.3 and 2.9.
+MIN_HARMONICS_PER_ARC, UNRESOLVED_ARC_ERROR, NOTICED_CHANGE = 6.0, 1.5, 0.01
+MIN_HARMONICS_OF_ORDER = 2.5
 # Relative, of the usual number of rings, and less of more: the stress beside the edges of lugs
 # scatters by this much with where rings happen to end, whatever two sets of cells show. With it the
 # estimate covers the error of all 24 pins of benchmarks/joints/cells.py (docs/measured/cells.md).
@@ -74,6 +82,7 @@ class ResolutionComparison:
     over: variations of the joint, with the larger of surface and section, and the stress beneath
     contact, relative to those of the joint as given.
     left_out: the variations that could not be solved, and why.
+    half_angle: of contact where a lug presses most, rad (ContactModel.half_angle).
     """
 
     stress: AtPlaces
@@ -81,14 +90,23 @@ class ResolutionComparison:
     links: PinLoads
     over: tuple[Variation, ...]
     left_out: str = ""
+    half_angle: float = 0.5 * math.pi
 
     def range(self, largest: float, below: float = 0.0) -> JointRange:
         """The range over the joint of a maximum and of the stress beneath contact, Pa."""
         over = tuple(
-            replace(x, max_von_mises=largest * x.max_von_mises, beneath=below * (x.beneath or 0.0))
+            replace(
+                x,
+                max_von_mises=largest * x.max_von_mises,
+                interval=x.interval and (largest * x.interval[0], largest * x.interval[1]),
+                beneath=below * (x.beneath or 0.0),
+            )
             for x in self.over
         )
-        ends = [largest, *(x.max_von_mises for x in over if x.what != FRICTION)]
+        ends = [largest]
+        for x in over:
+            if x.what != FRICTION:
+                ends += x.interval or (x.max_von_mises,)
         ends += [max(largest, x.max_von_mises) for x in over if x.what == FRICTION]
         return JointRange((min(ends), max(ends)), over)
 
@@ -106,10 +124,19 @@ class ResolutionComparison:
 class _Joint:
     """The contact at an instant with something changed: the harmonics of its pressures, and the
     cells.
+
+    per_arc: harmonics that the cells follow, times the half angle of contact in rad.
     """
 
     waves: Floats
     states: list[ContactState]
+    per_arc: float = math.inf
+
+    @property
+    def with_rougher(self) -> tuple[_Joint, ...]:
+        """This joint, and on narrow arcs the one from which the error of the cells follows."""
+        narrow = self.per_arc < MIN_HARMONICS_PER_ARC
+        return (self, _in_half_the_harmonics(self)) if narrow else (self,)
 
 
 def compare(
@@ -139,28 +166,63 @@ def compare(
     patterns = model.patterns(parts, known)
     out = []
     every = [
-        [_loads(model, patterns, one, contact) for one in (*both, *others)]
+        [
+            _loads(model, patterns, one, contact)
+            for one in (
+                *both,
+                _in_half_the_harmonics(both[1]),
+                *itertools.chain(*(x.with_rougher for x in others)),
+            )
+        ]
         for contact, both, others in zip(at, exact, varied, strict=True)
     ]
     stress = _at_places(model, requirement, every)
     by_friction = _by_friction(model, requirement, at, vary, patterns)
-    every_contact = zip(at, over, every, missing, by_friction, strict=True)
-    for contact, names, loads, why, more in every_contact:
-        first, twice, *others = (stress.pop(0) for _ in loads)
+    every_contact = zip(at, over, every, varied, missing, by_friction, strict=True)
+    for contact, names, loads, changed, why, more in every_contact:
+        first, twice, roughest, *others = (stress.pop(0) for _ in loads)
         like = first if few else twice  # on the same cells as the others
         ratios = tuple(
-            replace(
-                x,
-                max_von_mises=y.row / (like.row or 1.0),
-                beneath=y.beneath / (like.beneath or 1.0),
-            )
-            for x, y in zip(names, others, strict=True)
+            _ratio(x, [others.pop(0) for _ in y.with_rougher], like, model.cells.rings, y.per_arc)
+            for x, y in zip(names, changed, strict=True)
         )
-        cells = _by_cells(first, twice, model.cells.rings)
+        arc = model.half_angle(contact)
+        cells = _by_cells(first, roughest, model.cells.rings, arc * model.cells.highest)
         left_out = f"not included: {'; '.join(why)}" if why else ""
-        over_all = ratios + more
-        out.append(ResolutionComparison(first, cells, contact.loads.links, over_all, left_out))
+        links, over_all = contact.loads.links, ratios + more
+        out.append(ResolutionComparison(first, cells, links, over_all, left_out, arc))
     return tuple(out)
+
+
+def _ratio(
+    change: Variation,
+    stress: Sequence[AtPlaces],
+    like: AtPlaces,
+    rings: int,
+    per_arc: float,
+) -> Variation:
+    """The variation with its stresses relative to those of the joint as given, and with the error
+    of the cells on narrow arcs.
+
+    stress: with the variation; on narrow arcs also with half the harmonics.
+    like: of the joint as given, on the same cells.
+    rings, per_arc: as of `_by_cells`.
+    """
+    varied, *half = stress
+    row, deep, interval = varied.row, varied.beneath, None
+    if half:
+        error = _by_cells(varied, half[0], rings, per_arc)
+        above, below = 1.0 + error.surface, 1.0 + error.section
+        low = max(varied.surface / above, varied.section / below)
+        high = max(varied.surface * above, varied.section * below)
+        interval = low / (like.row or 1.0), high / (like.row or 1.0)
+        deep *= 1.0 + error.beneath
+    return replace(
+        change,
+        max_von_mises=row / (like.row or 1.0),
+        interval=interval,
+        beneath=deep / (like.beneath or 1.0),
+    )
 
 
 def _by_friction(
@@ -211,8 +273,11 @@ def uncompared(contact: JointContact) -> ResolutionComparison:
     return ResolutionComparison(NOWHERE, NOWHERE, contact.loads.links, ())
 
 
-def _by_cells(stress: AtPlaces, coarse: AtPlaces, rings: int) -> AtPlaces:
-    """The relative error of the cells, from the stress on them and on cells twice as large."""
+def _by_cells(stress: AtPlaces, coarse: AtPlaces, rings: int, per_arc: float) -> AtPlaces:
+    """The relative error of the cells, from the stress on them and on cells twice as large.
+
+    per_arc: harmonics that they follow, times the half angle of contact in rad.
+    """
     # Richardson's estimate: the error is the change over (2^q - 1), q being its order in the length
     # of cells. It has floors, since two sets of cells can agree by chance.
     agreement_floor = MIN_CELL_ERROR * (rings < USUAL_RING_COUNT)
@@ -220,13 +285,28 @@ def _by_cells(stress: AtPlaces, coarse: AtPlaces, rings: int) -> AtPlaces:
 
     def error(name: str, order: float, least: float) -> float:
         x, y = getattr(stress, name), getattr(coarse, name)
-        return max(abs(y / x - 1.0) / (2.0**order - 1.0), least) if x and y else 0.0
+        if not (x and y):
+            return 0.0
+        change = float(abs(y / x - 1.0))
+        if name != "section" and per_arc < MIN_HARMONICS_OF_ORDER:
+            order = 1.0
+        at_arc = name == "surface" and change > NOTICED_CHANGE
+        least = max(least, unresolved(per_arc) if at_arc else 0.0)
+        return float(max(change / (2.0**order - 1.0), least))
 
     return AtPlaces(
         error("surface", SURFACE_CELL_ORDER, surface_floor),
         error("section", SECTION_CELL_ORDER, agreement_floor),
         error("beneath", SURFACE_CELL_ORDER, surface_floor),
     )
+
+
+def unresolved(per_arc: float) -> float:
+    """The least relative error of a surface that an arc of contact governs, 0 where it is followed.
+
+    per_arc: harmonics that the cells follow, times the half angle of contact in rad.
+    """
+    return UNRESOLVED_ARC_ERROR / per_arc**2 if per_arc < MIN_HARMONICS_PER_ARC else 0.0
 
 
 def _loads(
@@ -272,6 +352,13 @@ def _coarse(
     return _Joint(model.waves(states), states)
 
 
+def _in_half_the_harmonics(joint: _Joint) -> _Joint:
+    """The joint with the lower half of its harmonics alone, as many as half the sectors resolve."""
+    waves = joint.waves.copy()
+    waves[(len(waves) + 1) // 2 :] = 0.0
+    return replace(joint, waves=waves)
+
+
 def _own_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
     return model.contact, np.eye(len(model.rings))
 
@@ -290,6 +377,7 @@ def _varied(
     names: list[list[Variation]] = [[] for _ in at]
     varied: list[list[_Joint]] = [[] for _ in at]
     missing: list[list[str]] = [[] for _ in at]
+    highest = model.cells.highest * (1.0 if own_cells else 0.5)
     for change in joint_variations(model.whole, model.lugs) if any(vary) else ():
         other = model.varied(change.lugs, change.softness)
         cells = _own_cells(other) if own_cells else on_coarser_cells(other)
@@ -297,7 +385,8 @@ def _varied(
             if not so:
                 continue
             try:
-                changed.append(_coarse(other, contact.loads.links, *cells))
+                joint = _coarse(other, contact.loads.links, *cells)
+                changed.append(replace(joint, per_arc=highest * other.half_angle(contact)))
             except SolveError as error:
                 why.append(f"{change.what} {change.value} ({error})")
                 continue

@@ -19,7 +19,7 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,12 +30,12 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.support.bands import Bands
-from fea.support.contact.bending import bending_moment, mass_per_length, shear_force
-from fea.support.contact.pressure_loads import ring_shares
+from fea.support.contact.bending import LoadedJoint, mass_per_length
+from fea.support.contact.pressure_loads import others_along
 from fea.support.foundation.plane_contact import plane_stiffness
 from fea.support.foundation.supported_beam import Response, SupportedBeam, refined, respond
 from fea.support.lugs.fit import fitted, on_structure
-from fea.support.lugs.links import link_forces
+from fea.support.lugs.links import link_forces, link_moments, tilting_bands
 from fea.support.lugs.lug import Lug
 from fea.support.lugs.rings import graded, ring, ringed
 from geometry import Pin, Segment
@@ -61,6 +61,7 @@ COUPLE_TOLERANCE = 1e-6  # of the largest force and the length: a couple below i
 LIMIT_ROUND_OFF = 1e-9
 
 Ints = NDArray[np.int64]
+Mask = NDArray[np.bool_]
 Stiffness = Callable[[Segment, Material, Lug], float]
 
 
@@ -74,45 +75,19 @@ def foundation_stiffness(segment: Segment, material: Material, lug: Lug) -> floa
     )
 
 
-@dataclass(frozen=True)
-class JointFoundation:
+class JointFoundation(LoadedJoint):
     """A case of a pin on foundations.
 
-    pin: with its bands cut into rings.
-    loads: of the rings on it, forces and, where the line load varies along a ring, moments.
-    mass: of its segments, kg/m.
+    Its loads are of the rings, forces and, where the line load varies along a ring, moments; then
+    the axial forces on other surfaces. Where the sign of a line load is not that of the link's
+    force the other side of the bore carries.
     """
-
-    pin: Pin
-    lugs: tuple[Lug, ...]
-    bands: Bands
-    loads: PinLoads
-    mass: Floats
-
-    @property
-    def line_load(self) -> Floats:
-        """The force per length of the lugs on the pin along x and y, the mean over each ring, (T,
-        R, 2) N/m.
-
-        Where its sign is not that of the link's force the other side of the bore carries.
-        """
-        return np.asarray(self.loads.forces[:, :, :2] / self.bands.length[:, None])
-
-    def bending_moment(self, z: Floats) -> Floats:
-        """The bending moment by the foundations and the body force of the part before z (Z,) m, (T,
-        Z, 2) N m.
-
-        It is the integral of the shear along x and along y.
-        """
-        return bending_moment(self.pin, self.mass, self.bands, self.loads, z)
-
-    def shear_force(self, z: Floats) -> Floats:
-        """The sum of the transverse loads before z (Z,) m, (T, Z, 2) N."""
-        return shear_force(self.pin, self.mass, self.bands, self.loads, z)
 
     def along(self, z: Floats) -> tuple[Floats, Floats]:
         """The axial force (T, Z) N and the torque (T, Z) N m before z (Z,) m."""
-        part = np.clip((z[:, None] - self.bands.z) / self.bands.length + 0.5, 0.0, 1.0)
+        on = [self.pin.band(name) for name in self.loads.surfaces]
+        middle, length = np.array([(band.middle, band.length) for band in on]).T
+        part = np.clip((z[:, None] - middle) / length + 0.5, 0.0, 1.0)
         ends = np.array(self.pin.stations)
         mass = np.clip(z[:, None] - ends[:-1], 0.0, np.diff(ends)) @ self.mass
         pull = self.loads.forces[:, :, 2] @ part.T + np.outer(self.loads.body[:, 2], mass)
@@ -149,7 +124,8 @@ class FoundationModel:
         self.mass = mass_per_length(self.pin, material.density)
         segments = [pin.segments[pin.labels.index(lug.connection)] for lug in self.lugs]
         soft = [stiffness(s, material, lug) for s, lug in zip(segments, self.lugs, strict=True)]
-        self._unit = self._of_rings(np.array(soft))
+        self._stiffness = np.array(soft)
+        self._responses: dict[bytes, Response] = {}
 
     def solve(self, loads: PinLoads, whole: bool = True) -> JointFoundation:
         """Solve all instants of a case.
@@ -157,23 +133,34 @@ class FoundationModel:
         loads: of links on all the lugs' bands or on some.
         whole: false for a part of loads, which need not be in balance.
 
-        Raises: SolveError where forces are not in balance, no lug reacts a couple, or links exert
-        moments across the axis.
+        Raises: SolveError where forces are not in balance, or no lug reacts a couple.
         """
+        unit = self._of_rings(tilting_bands(self.whole, loads))
         link_force = link_forces(self.given, self._weight, loads, any(self.structure), whole)
         on = np.zeros((len(loads), len(self.lugs), 2))
         on[:, np.logical_not(self.structure)] = link_force[:, : len(self.given.connections)]
-        acting = np.concatenate([on, loads.body[:, None, :2]], axis=1)
-        force = np.einsum("rp,tpa->tra", self._unit.force, acting)
-        moment = np.einsum("rp,tpa->tra", self._unit.moment, acting)
+        link_moment = self._link_moments(loads, link_force, whole)
+        couples = np.stack([link_moment[..., 1], -link_moment[..., 0]], axis=2)
+        acting = np.concatenate([on, loads.body[:, None, :2], couples], axis=1)
+        force = np.einsum("rp,tpa->tra", unit.force, acting)
+        moment = np.einsum("rp,tpa->tra", unit.moment, acting)
         if whole:
-            self._require_couples(loads.case, moment, force, link_force)
-        pull = loads.body[:, 2] * self._weight
-        forces = np.dstack([force, self._along(loads, loads.forces[:, :, 2], pull)])
-        torque = self._along(loads, loads.moments[:, :, 2], 0.0 * pull)
-        about = np.dstack([-moment[..., 1], moment[..., 0], torque])
+            self._require_couples(loads, moment, force, couples, link_force)
+        along, rings = others_along(self.pin, self.rings, loads), len(self.rings)
+        forces, about = along.forces.copy(), along.moments.copy()
+        forces[:, :rings, :2] = force
+        about[:, :rings, :2] = np.stack([-moment[..., 1], moment[..., 0]], axis=2)
+        pull = loads.forces[:, :, 2].sum(axis=1) + loads.body[:, 2] * self._weight
+        forces[:, :rings, 2] -= self._reacted(pull)
+        about[:, :rings, 2] -= self._reacted(loads.moments[:, :, 2].sum(axis=1))
         ring_loads = replace(
-            loads, surfaces=self.rings, forces=forces, moments=about, distribution="cosine"
+            loads,
+            surfaces=along.surfaces,
+            forces=forces,
+            moments=about,
+            distribution="cosine",
+            always=along.always,
+            bands=along.bands,
         )
         return JointFoundation(self.pin, self.lugs, self.bands, ring_loads, self.mass)
 
@@ -191,23 +178,36 @@ class FoundationModel:
         """Mass of the pin, kg."""
         return float(self.mass @ np.diff(self.pin.stations))
 
-    def _along(self, loads: PinLoads, amounts: Floats, body: Floats) -> Floats:
-        """The axial forces or torques (T, C) of the links as those of the rings, (T, R), even along
-        a band.
-
-        A structure reacts, evenly, the remainder of these and of the body's (T,).
+    def _reacted(self, amounts: Floats) -> Floats:
+        """The axial forces or torques (T,) as those of the rings, (T, R), that a structure reacts,
+        even along its bands; zero without one.
         """
-        out = amounts @ ring_shares(self.pin, self.rings, loads.surfaces)
         react = self.bands.length * np.array(self.structure)[self.bands.band]
-        if react.any():
-            out = out - np.outer(amounts.sum(axis=1) + body, react / react.sum())
-        return np.asarray(out)
+        return np.outer(amounts, react / (react.sum() or 1.0))
 
-    def _of_rings(self, stiffness: Floats) -> Response:
-        """The response of the rings to unit loads of the lugs."""
-        beam, number = self._beam(stiffness)
+    def _link_moments(self, loads: PinLoads, link_force: Floats, whole: bool) -> Floats:
+        """The moments about x and y that links bring to the pin at each lug, (T, B, 2) N m; of a
+        part of loads just what it states.
+        """
+        ends, masses = np.array(self.pin.stations), self.mass * np.diff(self.pin.stations)
+        centre = float(masses @ (ends[1:] + ends[:-1])) / 2.0 / (self._weight or 1.0)
+        weight, lugs = (self._weight, centre), self.lugs if whole else ()
+        return link_moments((self.given, self.whole), lugs, loads, link_force, weight)
+
+    def _of_rings(self, free: Mask) -> Response:
+        """The response of the rings to unit loads of the lugs, of which some (B,) are free to
+        tilt, kept for further loads.
+        """
+        key = free.tobytes()
+        if key not in self._responses:
+            self._responses[key] = self._respond(free)
+        return self._responses[key]
+
+    def _respond(self, free: Mask) -> Response:
+        beam, number = self._beam(self._stiffness)
         still = np.flatnonzero(self.structure).tolist() or [0]
-        response = respond(beam, self.bands.middles, [lug.tilt for lug in self.lugs], still)
+        tilt = [0.0 if f else lug.tilt for f, lug in zip(free, self.lugs, strict=True)]
+        response = respond(beam, self.bands.middles, tilt, still)
         belongs = (number == np.arange(len(self.rings))[:, None]).astype(float)
         middles = 0.5 * (beam.stations[1:] + beam.stations[:-1])
         arms = belongs * (middles - self.bands.z[:, None])
@@ -237,22 +237,25 @@ class FoundationModel:
         return SupportedBeam(z, *parts), number
 
     def _require_couples(
-        self, case: str, moment: Floats, force: Floats, link_force: Floats
+        self, loads: PinLoads, moment: Floats, force: Floats, couples: Floats, link_force: Floats
     ) -> None:
-        """Check that no couple is left on a lug that is free to tilt.
+        """Check that no couple is left on a lug that is free to tilt but what its link states.
 
         Raises: SolveError where one is.
         """
         bands = self.bands
         arm = (bands.z - bands.middles[bands.band])[:, None]
-        least = COUPLE_TOLERANCE * self.pin.length * np.abs(link_force).max(initial=0.0)
-        for b, lug in enumerate(self.lugs):
+        turning = self.pin.length * np.abs(link_force).max(initial=0.0)
+        least = COUPLE_TOLERANCE * np.abs(couples).max(initial=turning)
+        free = tilting_bands(self.whole, loads) | [lug.tilt == 0.0 for lug in self.lugs]
+        for b in np.flatnonzero(free):
             on_band = bands.band == b
-            left = np.abs((moment + arm * force)[:, on_band].sum(axis=1)).max(initial=0.0)
-            if lug.tilt == 0.0 and left > least:
+            of_lug = (moment + arm * force)[:, on_band].sum(axis=1) - couples[:, b]
+            left = np.abs(of_lug).max(initial=0.0)
+            if left > least:
                 raise SolveError(
-                    f"pin {self.whole.name}, case {case}: its links leave a couple of {left:.3g} "
-                    "N m, which no lug reacts",
+                    f"pin {self.whole.name}, case {loads.case}: its links leave a couple of "
+                    f"{left:.3g} N m, which no lug reacts",
                     "couple-not-reacted",
                 )
 

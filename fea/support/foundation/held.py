@@ -29,7 +29,7 @@ from fea.core.verdict import Evidence, judge
 from fea.section.place import FoundSection
 from fea.section.section_stress import AtSection, SectionField
 from fea.singular.singularities import find_singularities
-from fea.support.contact.bending import joint_forces, stations
+from fea.support.contact.joint_result import band_contact, joint_result
 from fea.support.foundation.bounds import PRESSURE_FACTOR, StressBounds, stress_bounds
 from fea.support.foundation.foundation_model import (
     PLAIN_MOMENT_ERROR,
@@ -39,9 +39,18 @@ from fea.support.foundation.foundation_model import (
 from fea.support.foundation.plane_contact import half_angle
 from fea.support.foundation.stress import FoundationStress
 from fea.support.foundation.variations import FoundationRange
+from fea.support.lugs.axial import seats_note
 from fea.support.lugs.fit import beyond_foundations
-from fea.support.records import BandContact, JointRange, JointResult
-from fea.support.support import HeldPin, PinProblem, Progress, Solution, StressReading, silent
+from fea.support.records import BandContact
+from fea.support.support import (
+    HeldPin,
+    PinProblem,
+    Progress,
+    Solution,
+    StressReading,
+    UnderLinkLoads,
+    silent,
+)
 from geometry import PinLike, body_of_revolution
 
 FOUNDATION_OMISSIONS = (
@@ -87,7 +96,7 @@ class FoundationSupport:
 
 
 @dataclass(frozen=True)
-class HeldFoundation:
+class HeldFoundation(UnderLinkLoads):
     """A pin on foundations (fea.support.support.HeldPin); its stress is that of their beam."""
 
     problem: PinProblem
@@ -95,29 +104,6 @@ class HeldFoundation:
     failures: Mapping[str, Maximum] = field(default_factory=dict)
     notes: Mapping[str, Reason] = field(default_factory=dict)
     clamps: tuple[str, ...] = ()
-    finest = True
-
-    @property
-    def pin(self) -> PinLike:
-        """The pin itself."""
-        return self.problem.pin
-
-    def start(self, case: str) -> PinLoads:
-        """The loads of the links."""
-        (loads,) = (loads for loads in self.problem.cases if loads.case == case)
-        return loads
-
-    def press(self, links: PinLoads) -> PinLoads:
-        """The loads of the links: the beam on foundations takes these."""
-        return links
-
-    def resolved(self, case: str, requirement: Requirement) -> bool:
-        """Return True, since nothing is discretised."""
-        return True
-
-    def of_meshes(self, requirement: Requirement) -> Requirement:
-        """The whole requirement, since there are no meshes."""
-        return requirement
 
     def finished(self, reading: StressReading, requirement: Requirement) -> Solution:
         """The solution of a beam on the loads of the links, to which a foundation adds nothing."""
@@ -145,12 +131,15 @@ class HeldFoundation:
         here = case.at(np.array([row.instant]))
         history = (Refinement(0, row.maximum, time.perf_counter() - start),)
         evidence = replace(_evidence(self.pin, case.case, row, rise), history=history)
+        if (said := seats_note(case, self.problem.lugs)) is not None:
+            evidence = replace(evidence, omissions=said + evidence.omissions)
         peak = judge(replace(evidence, governing=here), tolerance)
-        peak = replace(peak, places=places.said(peak, case, self.problem.material, tolerance))
+        peak = replace(peak, places=places.said(case, self.problem.material, tolerance))
         whole, remark = over.at(here)
-        joint = _joint(stress.model.solve(here), stress.model, whole, remark)
-        along = joint_forces(every.pin, every.mass, every.bands, every.loads, every.lugs)
-        joint = replace(joint, along=along)
+        at_row = stress.model.solve(here)
+        bands = [_band(at_row, stress.model, b) for b in range(len(at_row.lugs))]
+        joint = joint_result("foundation", at_row, bands, whole, remark)
+        joint = replace(joint, along=every.section_forces())
         return Solution(peak, answer, case, row.instant, self, joint)
 
     def bounded_everywhere(self, requirement: Requirement) -> bool:
@@ -211,22 +200,35 @@ class FoundationField:
 
 
 def _as_loads(amounts: LoadAmounts, like: PinLoads) -> PinLoads:
-    """The forces and moments of unit loads such as those of other loads."""
+    """The forces and moments of unit loads such as those of other loads; of a band's rings the
+    first has what acts along and about the axis.
+    """
     none = np.zeros((len(amounts), 2))
 
     def amount(surface: str, kind: str, n: int) -> Floats:
         return amounts.acting.get(UnitLoad(surface, kind, n), none)  # type: ignore[arg-type]
 
-    across = "force" if like.distribution == "uniform" else "pressure"
+    uniform = like.distribution == "uniform"
+    across, tilt = ("force", "moment") if uniform else ("pressure", "tilt")
+    along = {load.surfaces[0]: x[:, 0] for load, x in amounts.acting.items() if load.kind == "pull"}
+    about = {
+        load.surfaces[0]: x[:, 1] for load, x in amounts.acting.items() if load.kind == "twist"
+    }
     forces = [
-        np.column_stack([amount(s, across, 1), amount(s, "force", 0)[:, 0]]) for s in like.surfaces
+        np.column_stack(
+            [amount(s, across, 1), along.get(s, none[:, 0]) + amount(s, "force", 0)[:, 0]]
+        )
+        for s in like.surfaces
     ]
-    about = [np.column_stack([none, amount(s, "moment", 0)[:, 1]]) for s in like.surfaces]
+    moments = [
+        np.column_stack([amount(s, tilt, 1)[:, ::-1] * [-1.0, 1.0], about.get(s, none[:, 0])])
+        for s in like.surfaces
+    ]
     body = np.column_stack([amount("", "body", 1), amount("", "body", 0)[:, 0]])
     return replace(
         like,
         forces=np.stack(forces, axis=1),
-        moments=np.stack(about, axis=1),
+        moments=np.stack(moments, axis=1),
         body=body,
         times=None,
     )
@@ -266,11 +268,8 @@ class FoundPlaces:
         both = self.both
         return replace(both, maximum=at.value, place=place, theta=theta, instant=at.instant)
 
-    def said(self, peak: Maximum, case: PinLoads, material: Material, tolerance: float) -> Places:
-        """The places in the form of results.
-
-        peak: of the row.
-        """
+    def said(self, case: PinLoads, material: Material, tolerance: float) -> Places:
+        """The places in the form of results."""
         of, at, strength = self.surface, self.section, material.yield_strength
         error = of.maximum if of.error is None else of.error
         known = "converged" if error <= tolerance * of.maximum else "unconverged"
@@ -310,48 +309,13 @@ def _evidence(pin: PinLike, case: str, bounds: StressBounds, rise: float) -> Evi
     )
 
 
-def _joint(
-    joint: JointFoundation, model: FoundationModel, over: JointRange | None, remark: str
-) -> JointResult:
-    """The joint result at a single instant."""
-    z = stations(joint.pin)
-    moment = np.linalg.norm(joint.bending_moment(z)[0], axis=1)
-    return JointResult(
-        model="foundation",
-        bands=tuple(_band(joint, model, b) for b in range(len(joint.lugs))),
-        bending_moment=float(moment.max()),
-        bending_moments=tuple(zip(z.tolist(), moment.tolist(), strict=True)),
-        range=over,
-        remark=remark,
-    )
-
-
 def _band(joint: JointFoundation, model: FoundationModel, b: int) -> BandContact:
     """The contact of a band, with the angle of plane contact at the largest load per length."""
-    lug, bands = joint.lugs[b], joint.bands
-    on_band = bands.band == b
-    line, length, half = (
-        joint.line_load[0, on_band],
-        bands.length[on_band],
-        bands.length[on_band] / 2.0,
-    )
-    force = length @ line
-    size = float(np.linalg.norm(force))
-    along = force / size if size else np.array([1.0, 0.0])
-    arm = bands.z[on_band] - bands.middles[b]
-    turning = joint.loads.moments[0, on_band, :2].sum(axis=0) @ np.array([[0.0, -1.0], [1.0, 0.0]])
-    most = float(np.linalg.norm(line, axis=1).max())
-    radius = float(bands.radius[on_band][0])
+    on_band = joint.bands.band == b
+    moments = joint.loads.moments[0, : len(on_band)][on_band, :2]
+    turning = moments.sum(axis=0) @ np.array([[0.0, -1.0], [1.0, 0.0]])
+    most = float(np.linalg.norm(joint.line_load[0, on_band], axis=1).max())
     stiff = 1.0 / model.material.plane_compliance
-    gap = 0.5 * lug.clearance * stiff / most if most else 0.0
-    return BandContact(
-        name=lug.connection,
-        force=size,
-        contact_angle=math.degrees(half_angle(gap)) if most else 0.0,
-        mean_pressure=size / (2.0 * radius * float(length.sum())),
-        line_load=tuple(zip(bands.z[on_band].tolist(), (line @ along).tolist(), strict=True)),
-        couple=float(np.linalg.norm((length * arm) @ line + turning)),
-        clearance=lug.clearance,
-        outer_diameter=lug.outer_diameter,
-        ends=(*(bands.z[on_band] - half).tolist(), float((bands.z[on_band] + half)[-1])),
-    )
+    gap = 0.5 * joint.lugs[b].clearance * stiff / most if most else 0.0
+    angle = math.degrees(half_angle(gap)) if most else 0.0
+    return band_contact(joint, b, angle, turning)

@@ -55,8 +55,10 @@ class SupportedBeam:
 
 @dataclass(frozen=True)
 class Response:
-    """The reaction of the lugs on the pieces of a beam under P loads: one newton on each lug, and a
-    body force of 1 m/s^2.
+    """The reaction of the lugs on the pieces of a beam under P loads: one newton on each lug, a
+    body force of 1 m/s^2, and a couple of 1 N m on each lug.
+
+    A couple turns a force along x towards z; on a guided lug it does nothing.
 
     force: (N, P), N, and moment: (N, P), N m, about the middles of the pieces, of forces along x.
     The fixed lugs react the remainder of each load; one newton on one of them does nothing.
@@ -102,7 +104,9 @@ def respond(
         mass=beam.mass * length,
     )
     response = _System(unit, np.asarray(middles) / length, held, still).solve()
-    return Response(response.force, response.moment * length)
+    per = np.ones(response.force.shape[1])
+    per[len(middles) + 1 :] = 1.0 / length  # of 1 N m, instead of one newton times `length`
+    return Response(response.force * per, response.moment * length * per)
 
 
 class _System:
@@ -123,7 +127,7 @@ class _System:
         for i, step in enumerate(self.steps):
             rows = slice(STATE_COUNT * i, STATE_COUNT * (i + 1))
             matrix[rows] = self._against(i, 1) - step[:STATE_COUNT, :STATE_COUNT] @ self.starts[i]
-            loads[rows, -1] = step[:STATE_COUNT, UNIT_LOAD]
+            loads[rows, self._body] = step[:STATE_COUNT, UNIT_LOAD]
         last = self.motions - STATE_COUNT
         free = [M, V, last + M, last + V]  # nothing acts on the ends
         matrix[last + np.arange(STATE_COUNT), free] = 1.0
@@ -131,8 +135,13 @@ class _System:
         return self._response(np.asarray(np.linalg.solve(matrix, loads), dtype=np.float64))
 
     @property
+    def _body(self) -> int:
+        """The number of the load that is the body force; forces come before it, couples after."""
+        return len(self.middles)
+
+    @property
     def _loads(self) -> int:
-        return len(self.middles) + 1
+        return 2 * len(self.middles) + 1
 
     def _against(self, i: int, end: int) -> Floats:
         """The state at the start (0) or end (1) of a piece against its lug, (STATE_COUNT, size)."""
@@ -151,11 +160,13 @@ class _System:
             if b in self.still:
                 rows[2 * b] = np.eye(self.size)[self.motions + 2 * b]
             else:
-                rows[2 * b], loads[2 * b, -1], loads[2 * b, b] = force[:-1], -force[-1], 1.0
+                rows[2 * b], loads[2 * b, b] = force[:-1], 1.0
+                loads[2 * b, self._body] = -force[-1]
             turn = np.eye(self.size)[self.motions + 2 * b + 1]
             if np.isfinite(stiffness):  # scaled so that very stiff and very soft are harmless
                 turn = (stiffness * turn + couple[:-1]) / (1.0 + stiffness)
-                loads[2 * b + 1, -1] = -couple[-1] / (1.0 + stiffness)
+                loads[2 * b + 1, self._body] = -couple[-1] / (1.0 + stiffness)
+                loads[2 * b + 1, self._body + 1 + b] = 1.0 / (1.0 + stiffness)
             rows[2 * b + 1] = turn
 
     def _reactions(self, lug: int) -> tuple[Floats, Floats]:
@@ -179,7 +190,8 @@ class _System:
         sums = self.steps[:, [REACTION_INTEGRAL, REACTION_DOUBLE_INTEGRAL], :STATE_COUNT] @ (
             self.starts @ x
         )  # (N, 2, P)
-        sums[:, :, -1] += self.steps[:, [REACTION_INTEGRAL, REACTION_DOUBLE_INTEGRAL], UNIT_LOAD]
+        of_body = self.steps[:, [REACTION_INTEGRAL, REACTION_DOUBLE_INTEGRAL], UNIT_LOAD]
+        sums[:, :, self._body] += of_body
         half = 0.5 * self.lengths[:, None]
         return Response(-sums[:, 0], sums[:, 1] - half * sums[:, 0])
 

@@ -11,8 +11,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
@@ -106,8 +104,6 @@ def prescribed_ranges(
 
 
 def _prescribed(over: FoundationRange, loads: PinLoads) -> JointResult:
-    if np.any(loads.moments[:, :, :2]):
-        return JointResult("prescribed", remark="its links exert moments across its axis")
     try:
         joint_range, remark = over.at(loads)
     except SolveError as error:

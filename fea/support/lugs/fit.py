@@ -40,14 +40,14 @@ def on_structure(pin: Pin, lugs: Sequence[Lug]) -> Pin:
     return replace(pin, segments=segments)
 
 
-def carried(pin: PinLike, lugs: Sequence[Lug], foundations: bool = False) -> Carried:
+def carried(pin: PinLike, lugs: Sequence[Lug], tilting: Sequence[str] = ()) -> Carried:
     """The part of the links' imbalance that the lugs of a pin carry.
 
-    foundations: whether the pin is a beam on these, on which a structure carries axial loads too.
+    tilting: links that state their moments across the axis, so that their lugs react none.
     """
     structure = sum(lug.connection not in pin.connections for lug in lugs)
-    tilts = any(lug.tilt > 0.0 for lug in lugs)
-    return Carried(structure > 0, tilts or structure > 1, foundations and structure > 0, bool(lugs))
+    tilts = any(lug.tilt > 0.0 and lug.connection not in tilting for lug in lugs)
+    return Carried(structure > 0, tilts or structure > 1, structure > 0, bool(lugs), bool(tilting))
 
 
 def fitted(

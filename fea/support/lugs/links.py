@@ -3,6 +3,10 @@ body's.
 
 Lugs on bands where no link bears are those of a structure, which holds still: together they take
 the remainder of the links' loads.
+
+A link that states a moment across the axis brings exactly this one to the pin: statics of the link
+determines it, so that its lug turns until the pressure has this couple about the band's middle, and
+the stiffness of its tilt does not matter. The other lugs react what is left by their tilt.
 """
 
 from __future__ import annotations
@@ -15,6 +19,7 @@ from numpy.typing import NDArray
 from fea.core.equilibrium import MAX_IMBALANCE
 from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats, PinLoads
+from fea.support.lugs.lug import Lug
 from geometry import Pin
 
 
@@ -34,14 +39,8 @@ def link_forces(
     mass: of the pin, kg.
     whole: false for a part of loads, whose imbalance need not be small.
 
-    Raises: SolveError where it is not small, and for moments of links across the axis.
+    Raises: SolveError where it is not small.
     """
-    if np.any(loads.moments[:, :, :2]):
-        raise SolveError(
-            f"pin {pin.name}, case {loads.case}: moments of links across the axis tilt their lugs, "
-            'and contact finds them: leave them out, or take analysis.joints = "prescribed"',
-            "moment-across",
-        )
     out = np.zeros((len(loads), len(pin.connections), 2))
     for b, connection in enumerate(pin.connections):
         if connection in loads.surfaces:
@@ -58,3 +57,54 @@ def link_forces(
             "not-in-equilibrium",
         )
     return np.asarray(out - left[:, None] / out.shape[1])
+
+
+def tilting_bands(pin: Pin, loads: PinLoads) -> NDArray[np.bool_]:
+    """A mask (B,) of the bands whose links state moments across the axis."""
+    tilting = loads.tilting_links(pin.length)
+    return np.array([name in tilting for name in pin.connections])
+
+
+def link_moments(
+    pins: tuple[Pin, Pin],
+    lugs: Sequence[Lug],
+    loads: PinLoads,
+    forces: Floats,
+    weight: tuple[float, float],
+) -> Floats:
+    """The moments about x and y that the links bring to the pin at each of its bands, (T, B, 2)
+    N m, about the band's middle; zero where none is stated.
+
+    Where no other lug reacts couples, the links that state moments share a small imbalance.
+    pins: the pin, and the same with the bands of a structure.
+    lugs: in the order of the bands; none for a part of loads, whose imbalance nobody shares.
+    forces: of the links (`link_forces`).
+    weight: mass of the pin, kg, and z of its centre, m.
+
+    Raises: SolveError where the imbalance is not small.
+    """
+    given, pin = pins
+    tilting, names = tilting_bands(pin, loads), pin.connections
+    out = np.zeros((len(loads), len(names), 2))
+    for b in np.flatnonzero(tilting):
+        out[:, b] = loads.moments[:, loads.surfaces.index(names[b]), :2]
+    if not lugs or not tilting.any() or len(names) > len(given.connections) + 1:
+        return out
+    if any(lug.tilt > 0.0 and not free for lug, free in zip(lugs, tilting, strict=True)):
+        return out
+    mass, centre = weight
+    z = np.array([pin.band(name).middle for name in names])
+    at_bands = forces[:, link_numbers(names, given.connections)]
+    first = np.einsum("b,tba->ta", z, at_bands) + centre * mass * loads.body[:, :2]
+    left = out.sum(axis=1) + np.stack([-first[:, 1], first[:, 0]], axis=1)
+    largest = np.linalg.norm(left, axis=1).max(initial=0.0)
+    most = max(pin.length * np.linalg.norm(forces, axis=2).max(initial=0.0), np.abs(out).max())
+    if largest > MAX_IMBALANCE * most:
+        raise SolveError(
+            f"pin {pin.name}, case {loads.case}: the forces and moments of its links leave a "
+            f"couple of {largest:.3g} N m across the axis, which no lug reacts: correct them, or "
+            "give the lug of a link that states no moment the stiffness of its tilt",
+            "couple-not-reacted",
+        )
+    out[:, tilting] -= left[:, None] / np.count_nonzero(tilting)
+    return out

@@ -115,6 +115,8 @@ class Lug:
     bushing: the pin bears on it, if there is one.
     shank: None where only the eye is known, of which no stress is computed then.
     friction: Coulomb's coefficient between pin and bore; contact itself is solved without it.
+    axial: segments of the pin that take the link's force along the axis, towards the pin's start
+    and towards its end; None: fea.support.lugs.axial finds them.
     range: of the uncertain properties of the lug.
 
     Raises: ArgumentError for impossible values; fea.support.lugs.fit checks those that depend on
@@ -132,6 +134,7 @@ class Lug:
     shank: Shank | None = None
     growth: float = 0.0
     friction: float = 0.0
+    axial: tuple[str, str] | None = None
 
     def __post_init__(self) -> None:
         what = f"lug {self.connection}"
@@ -153,6 +156,11 @@ class Lug:
     def bearing(self) -> Material:
         """The material on which the pin bears: the bushing's or the lug's."""
         return self.material if self.bushing is None else self.bushing.material
+
+    @property
+    def materials(self) -> tuple[Material, ...]:
+        """The materials of its section, from the inside out."""
+        return (self.material,) if self.bushing is None else (self.bushing.material, self.material)
 
     def with_materials(self, change: Callable[[Material], Material]) -> Lug:
         """The same lug with its materials, and its bushing's, changed."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from fea.core.pin_loads import Floats
 from geometry import Band, Pin, Segment
+from geometry.shape.pin import SHOULDER
 
 USUAL_RING_COUNT = 8  # rings of a band with sharp edges, if it is not long
 MAX_RING_LENGTH = 0.25  # ring, of the diameter, if there are so many
@@ -160,6 +161,19 @@ def ringed(pin: Pin, ends: Mapping[str, Floats]) -> Pin:
             replace(part, connection=ring(s.connection, k)) for k, part in enumerate(parts)
         ]
     return replace(pin, segments=tuple(segments))
+
+
+def ringed_name(pin: Pin, name: str) -> str:
+    """The name in a pin cut into rings of a surface of the whole pin: the number of a segment or of
+    a shoulder changes.
+
+    pin: cut into rings.
+    """
+    kind, _, number = name.rpartition(" ")
+    if kind not in ("segment", SHOULDER.strip()):
+        return name
+    of_whole = np.cumsum([" ring " not in x or x.endswith(" ring 1") for x in pin.labels])
+    return f"{kind} {1 + int(np.flatnonzero(of_whole == int(number))[-1])}"
 
 
 def whole_names(pin: Pin, ends: Mapping[str, Floats]) -> dict[str, str]:

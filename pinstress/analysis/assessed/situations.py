@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -19,9 +20,12 @@ from assess.margin import (
     skipped,
     worst_places,
 )
+from assess.plastic.records import LimitLoad, LugCollapse
 from assess.situation import LoadFactors, Situation, SolvedRow, with_solved, with_supports
 from assess.strength.bending_arms import BendingArms, bending_arms
 from assess.strength.hand_checks import BENDING_TEXTS
+from assess.strength.model_stress import YIELD_METHOD
+from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.support.lugs.fit import on_structure
 from fea.support.records import JointResult
@@ -31,8 +35,10 @@ from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from reports.data.results import PinResult
 
+L = TypeVar("L", LimitLoad | None, LugCollapse)
 FORMULA_KINDS = "hand", "clause"
 # What checks by formula take as the yield strength of a pin with a hardened surface.
+WEAKEST_BASIS = "with the lower end of the range of the yield strength"
 CORE_BASIS, CASED_BASIS = "with the core's yield strength", "with the strengths of case and core"
 CASED_METHODS = {"plastic bending and shear", *(method for method, _ in BENDING_TEXTS.values())}
 FORCE_OF_CLAMP = (
@@ -54,18 +60,61 @@ def assessed(study: Study, task: Task, row: PinResult) -> PinResult:
     rigid = row.verdict == "rigid"
     if s.complete and rigid and not why:
         why = "supports of the pin, or loads in equilibrium"
-    margins = [_of_core(s, margin) for margin in margins_of(s)]
+    margins = [_of_core(s, margin) for margin in _with_ranges(s, margins_of(s))]
     counted = margins
     if s.complete and (rigid or not s.across.any()):
         counted = [m for m in margins if m.kind not in FORMULA_KINDS]
     return replace(
         row,
         judgement=against_yield(row.maximum, task.material.yield_strength, required),
+        strength_range=task.material.strength_range,
         margins=tuple(margins),
         worst=tuple(worst_places([*counted, *_not_made(s, why)])),
         arms=None if why else _arms(s, task, row),
         lost_fits=lost_fits(study, task, row.case),
     )
+
+
+def _with_ranges(s: Situation, margins: Sequence[Margin]) -> list[Margin]:
+    """Return margins that hold over the ranges of yield strengths: those at their lower ends.
+
+    The margin of the model against yield stays as it is, since the range is part of the outcome of
+    its row (reports.data.dependence).
+    """
+    made_of = [s.material, *(m for x in s.lugs for m in x.materials)]
+    if all(m.strength_range is None for m in made_of):
+        return list(margins)
+    weak = replace(
+        s,
+        material=s.material.weakest,
+        lugs=tuple(x.with_materials(lambda m: m.weakest) for x in s.lugs),
+        sized=tuple(x.with_materials(lambda m: m.weakest) for x in s.sized),
+        row=s.row and replace(s.row, limit_load=_weakened(s.row.limit_load, s.material)),
+        lug_collapses=tuple(
+            _weakened(limit, lug.material)
+            for limit in s.lug_collapses
+            for lug in s.lugs
+            if lug.connection == limit.connection
+        ),
+    )
+    of_row = [m for m in margins if m.method == YIELD_METHOD]
+    others = [m for m in margins_of(weak) if m.method != YIELD_METHOD]
+    return of_row + [
+        m if m in margins else replace(m, basis="; ".join(filter(None, (m.basis, WEAKEST_BASIS))))
+        for m in others
+    ]
+
+
+def _weakened(limit: L, material: Material) -> L:
+    """Return a limit load at the lower end of the yield strength, to which it is in proportion.
+
+    One with hardening follows the material's curve, which has no range.
+    """
+    if limit is None or material.strength_range is None or getattr(limit, "hardening", False):
+        return limit
+    ratio = material.strength_range[0] / (material.yield_strength or 1.0)
+    lower, upper = (None if x is None else ratio * x for x in (limit.lower, limit.upper))
+    return replace(limit, lower=lower, upper=upper)
 
 
 def _of_core(s: Situation, margin: Margin) -> Margin:

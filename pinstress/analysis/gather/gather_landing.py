@@ -1,4 +1,4 @@
-"""Results of a pin over the ranges of its landing's impulse."""
+"""Results of a pin over the ranges of its landing's impulse, and over the stiffness of links."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.impulses import ImpulseLoads
 from pinstress.study.model.tasks import Task
 from reports.data.results import Floats, LandingRange
+from reports.data.row import SharingRange
 
 
 def landing_range(
@@ -31,6 +32,23 @@ def landing_range(
     strength = solution.peak.yield_strength(task.material.yield_strength)
     nominal = range_of(solution.peak, over, maxima, strength)
     return replace(nominal, spread=_spread(solution.peak))
+
+
+def sharing_range(task: Task, solution: Solution) -> SharingRange | None:
+    """Return the range of a pin's maximum over the stiffness of the links that share its loads out
+    of the plane, by superposition; each is taken at its worst instants.
+    """
+    over, peak = task.shared.get(solution.peak.case), solution.peak.max_von_mises
+    if over is None or solution.answer is None or peak is None:
+        return None
+    stress: dict[str, float] = {}
+    for what, value in zip(over.what, _maxima(task, solution, over.loads).tolist(), strict=True):
+        stress[what] = max(stress.get(what, 0.0), value)
+    low, high = min(stress, key=stress.__getitem__), max(stress, key=stress.__getitem__)
+    ends = min(peak, stress[low]), max(peak, stress[high])
+    return SharingRange(
+        ends, low if stress[low] < peak else "", high if stress[high] > peak else ""
+    )
 
 
 def range_of(

@@ -128,7 +128,7 @@ def _with_all(
     owner = {c: t for t in of.values() for c in t.connections}
     at = [have.get(c, -1) for c in names]
     present = np.array([k >= 0 for k in at])
-    turn = None if table.turn is None else np.where(present, table.turn[:, at], 0.0)
+    turn = None if table.turn is None else _where(present, table.turn[:, at])
     of_name = {peak.connection: peak for peak in table.largest}
     return replace(
         table,
@@ -140,6 +140,13 @@ def _with_all(
         turn=turn,
         peaks=tuple(of_name.get(c, plain.PeakReaction(c, 0.0, None)) for c in names),
     )
+
+
+def _where(present: Floats, turn: Floats) -> Floats:
+    """Return the turn where the case has the connection, and none elsewhere."""
+    if turn.ndim == 2:
+        return np.where(present, turn, 0.0)
+    return np.where(present[:, None, None], turn, np.eye(3))
 
 
 def _peak(

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from geometry import Band
 from loads import Dynamics, Joint
-from loads.motion.mobility import is_particle
+from loads.motion.planar_equations import is_particle
 from pinbase.arrays import Floats
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.pins import pin as pin_of
@@ -26,14 +27,21 @@ def wear(study: Study, loads: dict[str, CaseLoads]) -> tuple[BandWear, ...]:
 
 
 def _bands(study: Study) -> dict[str, tuple[str, Band]]:
-    """Return the pin and the band of every connection of a pin with a profile."""
-    return {
-        connection: (name, shape.band(connection))
-        for name, table in study.table.pin.items()
-        if table.geometry is None
-        for shape in [pin_of(study, name)]
-        for connection in shape.connections
-    }
+    """Return the pin and the band of every connection of a pin with a profile; of a clevis a band
+    as long as the shorter of its ears twice.
+    """
+    out = {}
+    for name, table in study.table.pin.items():
+        if table.geometry is not None:
+            continue
+        shape = pin_of(study, name)
+        for connection in study.connections(name):
+            band = shape.band(connection)
+            if connection in table.ears:
+                shorter = min(band.length, shape.band(table.ears[connection]).length)
+                band = replace(band, z1=band.z0 + 2.0 * shorter)
+            out[connection] = name, band
+    return out
 
 
 def _of_case(name: str, case: CaseLoads, bands: dict[str, tuple[str, Band]]) -> Iterator[BandWear]:

@@ -29,6 +29,7 @@ FIRST_MESH_TOLERANCE = 0.04  # of the factor: what the first mesh is worth
 # Of an impulse tried at a time, each time between the last two
 IMPULSE_SHARES, SEARCH_ROUNDS = 17, 3
 SIZED_BY_COMMAND = "diameters are found by pinstress size"
+FROM_FILE = "its shape comes from a file, which has no diameters to change"
 
 
 @dataclass(frozen=True)
@@ -136,6 +137,8 @@ def _diameters(
     A pin must stay longer than wide.
     """
     pin = body_of_revolution(failing.task.pin)
+    if failing.task.pin.profile is None or failing.task.pin.source:
+        return None, FROM_FILE
     if problem is None or pin is None:
         return None, SIZED_BY_COMMAND
     try:

@@ -11,8 +11,8 @@ from assess.opinion.calculix_joint_mesh import Fineness
 from fea.core.linear_solver import SolveError
 from fea.core.mesh_history import MeshHistory
 from fea.core.peak import Maximum
-from fea.support.contact.held import MAX_CELLS
-from fea.support.contact.solve_joint import Resolution
+from fea.support.contact.solve_joint import MAX_CELLS, Resolution
+from fea.support.contact.variations import unresolved
 from fea.support.lugs.rings import ring_ends
 from fea.support.records import JointResult
 from pinstress.explore.chart.mesh_sequences import Climb
@@ -93,5 +93,6 @@ def contact_reference(climb: Climb) -> tuple[JointRung, MeshHistory, float]:
     if below and below[0]:  # of first order at least
         step = abs(results[0].maximum / below[0].maximum - 1.0)
         error = step / (cells.rings / coarser.rings - 1.0)
+        error = max(error, unresolved(cells.highest * climb.problem.half_angle))
     rung = contact_rung(cells, REFERENCE_LEVELS[-1])
     return rung, climb.seen("harmonic", tuple(results), REFERENCE_LEVELS[0]), error

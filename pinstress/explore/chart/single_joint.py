@@ -30,6 +30,7 @@ from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.section.section_stress import AtSection, SectionField
 from fea.singular.singularities import outside, singularities_of
 from fea.solve.refine import MESH_RATIO
+from fea.support.contact.held import ROUGH
 from fea.support.contact.solve_joint import ContactModel, Resolution
 from fea.support.foundation.foundation_model import FoundationModel
 from fea.support.foundation.held import FoundPlaces, point_of
@@ -56,6 +57,15 @@ class JointProblem:
     loads: PinLoads
     governing: int = 0
     distance: float = 0.1
+
+    @cached_property
+    def half_angle(self) -> float:
+        """Return the half angle of contact at the governing instant, rad, which rough cells tell.
+
+        Raises: MeshError, SolveError.
+        """
+        model = ContactModel(self.pin, self.material, self.lugs, ROUGH)
+        return model.half_angle(model.solve(self.loads.at(np.array([self.governing]))))
 
     @cached_property
     def singularities(self) -> tuple[Zone, ...]:

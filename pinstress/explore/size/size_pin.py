@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from fea.core.peak import Maximum, Verdict
 from geometry import ArgumentError
 from pinstress.analysis.plan import Plan
+from pinstress.analysis.remedies.changes import FROM_FILE
 from pinstress.analysis.remedies.secant import (
     FACTOR_TOLERANCE,
     MAX_SCALE,
@@ -323,7 +324,7 @@ def _nominal(study: Study, peak: Maximum) -> float:
 def _problem(study: Study, pin: str) -> str:
     table = study.table.pin[pin]
     if table.geometry is not None:
-        return "its shape comes from a file, which has no diameters to change"
+        return FROM_FILE
     if key := hardened_key(study, pin):
         return hardened_reason(key)
     if study.table.material[table.material].yield_strength is None:

@@ -12,7 +12,7 @@ from pathlib import Path
 from pinbase.records import pack, unpack
 from pinstress.analysis.cache import program
 from pinstress.explore.size.size_pin import SizingGoal, SizingResult
-from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.errors import InputError, cannot_write
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.inputs import inputs
 
@@ -62,7 +62,7 @@ class SizeState:
                 code="unfinished-size",
             ) from None
         except OSError as error:
-            raise self._unwritable(error) from None
+            raise cannot_write(self.path, error) from None
         self.write(())
 
     def read(self) -> tuple[SizingResult, ...]:
@@ -102,9 +102,6 @@ class SizeState:
         """Remove the file."""
         self.path.unlink(missing_ok=True)
 
-    def _unwritable(self, error: OSError) -> InputError:
-        return InputError(f"{self.path}: cannot be written ({error.strerror})", code="cannot-write")
-
 
 def replace_file(path: Path, content: bytes) -> None:
     """Write a file in one step.
@@ -117,6 +114,4 @@ def replace_file(path: Path, content: bytes) -> None:
         os.replace(partial, path)
     except OSError as error:
         partial.unlink(missing_ok=True)
-        raise InputError(
-            f"{path}: cannot be written ({error.strerror})", code="cannot-write"
-        ) from None
+        raise cannot_write(path, error) from None

@@ -18,7 +18,6 @@ from typing import Generic, TypeVar
 from assess.judgement import NOT_DECIDED
 from fea.core.peak import Maximum, Verdict
 from geometry import ArgumentError, PinLike
-from loads import Linkage
 from pinbase.memo import Memo
 from pinstress.analysis.plan import prepare, requirement_of
 from pinstress.analysis.solve import solutions
@@ -28,7 +27,7 @@ from pinstress.explore.sweep.outcomes import bare_row, judged_row, outcome_words
 from pinstress.explore.sweep.parameters import Parameter
 from pinstress.explore.sweep.superposed import PosedTask, Rows, posed_task, superposed
 from pinstress.study.model.cases import CaseLoads, case_loads
-from pinstress.study.model.mechanism.linkage import determined, linkage
+from pinstress.study.model.mechanism.linkage import AnyLinkage, any_linkage, determined
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.requirements import required_factor
 from pinstress.study.model.tasks import Task, tasks
@@ -235,13 +234,13 @@ class Evaluator:
         study: with the values (p,) of the parameters, SI.
         """
         loads: dict[str, CaseLoads | InputError] = {}
-        mechanism: Linkage | None = None
+        mechanism: AnyLinkage | None = None
         for name in self._cases:
             key = name, *(values[k] for k in self._of_loads[name])
             known = self._loads.get(key)
             if known is None:
                 if mechanism is None and study.table.mechanism:
-                    mechanism = linkage(study)
+                    mechanism = any_linkage(study)
                     determined(study, mechanism)
                 try:
                     known = case_loads(study, name, mechanism)

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.errors import InputError, cannot_write
 from pinstress.study.reading.extras import require_package
 
 if TYPE_CHECKING:
@@ -126,9 +126,7 @@ def write_keys(folder: Path) -> KeyFiles:
                 path.unlink()
         if not isinstance(error, OSError):
             raise
-        raise InputError(
-            f"{error.filename or folder}: cannot be written ({error.strerror})", code="cannot-write"
-        ) from None
+        raise cannot_write(error.filename or folder, error) from None
     return files
 
 

@@ -13,7 +13,7 @@ from assess.judgement import DEPENDS, against_yield
 from fea.core.peak import Maximum
 from fea.support.support import Solution
 from pinbase.records import in_units
-from pinstress.analysis.gather.gather_landing import landing_range
+from pinstress.analysis.gather.gather_landing import landing_range, sharing_range
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.tasks import Task
 from pinstress.study.schema.units import UnitSystem
@@ -34,13 +34,15 @@ def bare_row(task: Task, solution: Solution, loads: Mapping[str, CaseLoads]) -> 
     if places is not None and places.contact is not None:
         places = replace(places, contact=replace(places.contact, edges=(), bands=()))
     peak = replace(peak, history=(), singular_at=(), places=places)
-    return PinResult(peak, joint=joint, landing=landing_range(loads, task, solution))
+    landing, sharing = landing_range(loads, task, solution), sharing_range(task, solution)
+    return PinResult(peak, joint=joint, landing=landing, sharing=sharing)
 
 
 def judged_row(row: PinResult, task: Task, required: float | None) -> PinResult:
     """Return a row with its judgement and what that depends on."""
     strength = task.material.yield_strength
-    row = replace(row, judgement=against_yield(row.maximum, strength, required))
+    judgement = against_yield(row.maximum, strength, required)
+    row = replace(row, judgement=judgement, strength_range=task.material.strength_range)
     return replace(row, depends_on=depends_on(row))
 
 

@@ -12,7 +12,7 @@ from pinstress.explore.sweep.design_columns import DesignColumn, Designs, design
 from reports.format.numbers import DASH, short
 from reports.format.packed import packed
 from reports.format.script_json import script_json
-from reports.format.template import environment
+from reports.format.template import rendered
 from reports.format.words import VERDICT_MEANINGS
 from reports.plots.theme import style_sheet
 from reports.tables.column import Grid
@@ -33,8 +33,8 @@ def write_designs_page(table: pa.Table, path: Path) -> None:
 
 def render_designs(designs: Designs) -> str:
     """Return the page as text."""
-    template = environment().get_template("designs/page.html.j2")
-    return template.render(
+    return rendered(
+        "designs/page.html.j2",
         study=designs.study,
         summary=summary(designs),
         columns=column_grid(designs),

@@ -126,10 +126,10 @@ def solve_on(
             return
         time.sleep(BATCH_POLL_INTERVAL)
         cluster.look()
-        for future in [one for one in running if one.status not in WAITING_STATES]:
+        for future in list(running):
             outcome = _outcome(cluster, future)
             if outcome is None:
-                continue  # its worker has gone with it: it is solved again
+                continue
             item = running.pop(future)
             if isinstance(outcome, KilledWorker):
                 work.died(item)
@@ -198,14 +198,19 @@ def hash_of(contents: Contents) -> str:
 
 
 def _outcome(cluster: Cluster, future: Future[WorkerAnswer]) -> WorkerAnswer | KilledWorker | None:
-    """Return the answer for a batch that is done; None where its rows were lost with their worker.
+    """Return the answer for a batch; None while it is not done, or where its worker has gone with
+    it, so that it is solved again.
 
     Raises: InputError where the connection is lost, or a worker cannot do it.
     """
-    if future.status == "finished":
+    # Read once: Dask changes it in another thread, to a state of waiting where a worker dies now.
+    status = future.status
+    if status in WAITING_STATES:
+        return None
+    if status == "finished":
         answer: WorkerAnswer | None = cluster.rows(future)
         return answer
-    if future.status != "error":  # cancelled: the scheduler has ended
+    if status != "error":  # cancelled: the scheduler has ended
         raise cluster.lost()
     error: Any = future.exception(timeout=cluster.patience)
     if isinstance(error, KilledWorker):

@@ -53,7 +53,7 @@ def posed_task(
     factors = required_factors(study, task.pin.name, (x.case for x in task.loads))
     # Impulses of other ranges may have the same forces.
     ranges = [loads[x.case].range for x in task.loads]
-    key = digest((alike, task.clamps, task.loads, task.ranges, ranges, factors))
+    key = digest((alike, task.clamps, task.loads, task.also, task.shared, ranges, factors))
     return PosedTask(study, task, requirement, loads, alike, key)
 
 
@@ -65,7 +65,7 @@ def superposed(posed: Iterable[PosedTask], memo: Memo) -> dict[str, Rows]:
     """
     groups: dict[tuple[object, ...], dict[str, PosedTask]] = {}
     for one in posed:
-        if len(one.task.loads) == 1 and not (one.task.lugs or one.task.ranges or one.task.between):
+        if len(one.task.loads) == 1 and not (one.task.lugs or one.task.also or one.task.between):
             (loads,) = one.task.loads
             bands = one.task.clamps, loads.case, loads.surfaces, loads.distribution, len(loads)
             groups.setdefault((one.alike, *bands), {})[one.key] = one

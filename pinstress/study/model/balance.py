@@ -95,10 +95,11 @@ def _quietly(warnings: Callable[[], list[str]]) -> list[str]:
 def _balances(study: Study, task: Task) -> list[tuple[PinLoads, Balance]]:
     if task.clamps:
         return []
-    beam = study.table.analysis.joints == "foundation"
-    held = carried(task.pin, task.lugs, beam)
-    density = task.material.density
-    return [(case, out_of_balance(task.pin, case, density, held)) for case in task.loads]
+    density, out = task.material.density, []
+    for case in task.loads:
+        held = carried(task.pin, task.lugs, case.tilting_links(task.pin.length))
+        out.append((case, out_of_balance(task.pin, case, density, held)))
+    return out
 
 
 def _shared(study: Study, task: Task, case: PinLoads, balance: Balance) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -12,7 +12,7 @@ import numpy as np
 from loads import (
     Course,
     Dynamics,
-    LegDynamics,
+    Law,
     Linkage,
     LinkageError,
     Load,
@@ -26,40 +26,37 @@ from loads import (
     motion_reactions,
     move,
     over_time,
-    peak_forces,
     require_possible,
 )
-from loads.landing import GROUND_RULES, Landing, at_deflection, pushes
+from loads.landing import Landing, pushes
 from loads.landing import laws as landing_laws
+from loads.space.linkage import SpaceLinkage
 from pinbase.arrays import Floats
 from pinstress.study.model.given import given_forces
+from pinstress.study.model.ground import Grounded, grounded
 from pinstress.study.model.impulses import (
     ImpulseLoads,
     ImpulseShare,
     applied_loads,
     over_range,
+    side_loads,
     with_impulse,
+    with_size,
 )
-from pinstress.study.model.landing import (
-    drop,
-    drop_note,
-    fallen,
-    ground_load,
-    ground_note,
-    place,
-    still,
-)
+from pinstress.study.model.landing import drop, drop_note, fallen, still
 from pinstress.study.model.mechanism.drives import laws, span, state
 from pinstress.study.model.mechanism.forces import springs
-from pinstress.study.model.mechanism.spatial_leg import (
-    LEG_AXES,
-    dynamics,
-    hinge_reactions,
-    instants,
-)
+from pinstress.study.model.mechanism.linkage import AnyLinkage
+from pinstress.study.model.mechanism.sideways import Sideways, sideways
 from pinstress.study.model.moving_loads import Acting, MovingLoads, acting
+from pinstress.study.model.space_cases import (
+    InSpace,
+    at_rest_in_space,
+    motion_in_space,
+    moving_in_space,
+)
 from pinstress.study.reading.file import Study
-from pinstress.study.schema.cases import GivenCase, InstantCase, LegCase, MotionCase, StaticCase
+from pinstress.study.schema.cases import GivenCase, InstantCase, MotionCase, StaticCase
 from pinstress.study.schema.landing import DropCase, GroundCase
 
 
@@ -71,13 +68,16 @@ class CaseLoads:
     at: reactions at other times (T,) s of the same motion.
     range: reactions over the ranges of an impulse.
     impulse: reactions of the only impulse in the case.
-    leg: dynamics of a spatial leg.
+    space: dynamics of a linkage in space.
     solve: dynamics at other times (T,) s.
     peaks: the largest forces over the time.
     over: other results of the whole motion.
     frictionless: the same without friction, where there is any.
     moving: the loads on the pins at any time.
     landing: course of a drop.
+    shared: the same with other stiffness of the links that share loads out of the plane, each after
+    what is different.
+    ground: the forces of the ground by a rule.
     """
 
     reactions: Reactions
@@ -86,13 +86,23 @@ class CaseLoads:
     at: Callable[[Floats], Reactions] | None = None
     range: ImpulseLoads | None = None
     impulse: ImpulseShare | None = None
-    leg: LegDynamics | None = None
+    space: InSpace | None = None
     solve: Callable[[Floats], Dynamics] | None = None
     peaks: PeakForces | None = None
     over: OverTime | None = None
     frictionless: OverTime | None = None
     moving: MovingLoads | None = None
     landing: Landing | None = None
+    ground: Grounded | None = None
+    shared: tuple[tuple[str, CaseLoads], ...] = ()
+
+    @property
+    def knows_moments(self) -> bool:
+        """Whether the moments of links across their pins are known, also where they are zero: in
+        space, and of a planar linkage with loads out of its plane.
+        """
+        sideways = self.dynamics is not None and bool(self.reactions.moments[..., :2].any())
+        return self.space is not None or sideways
 
 
 def at_time(case: CaseLoads, time: float) -> CaseLoads | None:
@@ -123,7 +133,7 @@ def at_time(case: CaseLoads, time: float) -> CaseLoads | None:
 
 
 def case_loads(
-    study: Study, name: str, mechanism: Linkage | None, extremes: bool = True
+    study: Study, name: str, mechanism: AnyLinkage | None, extremes: bool = True
 ) -> CaseLoads:
     """Return the reactions of a case.
 
@@ -135,9 +145,10 @@ def case_loads(
     try:
         if isinstance(case, GivenCase):
             return CaseLoads(given_forces(study, name, case))
-        if isinstance(case, LegCase):
-            return _leg(study, name, case)
         assert mechanism is not None
+        if isinstance(mechanism, SpaceLinkage):
+            assert isinstance(case, MotionCase | StaticCase | InstantCase)
+            return _in_space(study, name, case, mechanism, extremes)
         if isinstance(case, MotionCase):
             return _motion(study, name, case, mechanism, extremes)
         if isinstance(case, DropCase):
@@ -164,24 +175,6 @@ def _shown(study: Study) -> Callable[[float, bool], str]:
     return show
 
 
-def _leg(study: Study, name: str, case: LegCase) -> CaseLoads:
-    at = partial(_hinge, study, name)
-    times = instants(study, case)
-    note = f"Axes of the hinge: {LEG_AXES}. The moment about z is the actuator's, not the pin's."
-    leg = dynamics(study, times)
-    peaks = peak_forces(times, at)
-    moving = MovingLoads(partial(_without_joints, at), times)
-    return CaseLoads(at(times), note=note, at=at, leg=leg, peaks=peaks, moving=moving)
-
-
-def _hinge(study: Study, name: str, times: Floats) -> Reactions:
-    return hinge_reactions(study, name, times, dynamics(study, times))
-
-
-def _without_joints(at: Callable[[Floats], Reactions], times: Floats) -> Acting:
-    return at(times), np.zeros((len(times), 0, 2))
-
-
 @dataclass(frozen=True)
 class _Moved:
     """A case's dynamics at any times (T,) s of its motion.
@@ -192,12 +185,18 @@ class _Moved:
     name: str
     course: Course
     applied: tuple[Load, ...]
-
+    side: Sideways | None = None
     friction: bool = True
 
     def solve(self, times: Floats) -> Dynamics:
         at = self.course.at(times)
-        return motion_reactions(self.name, at, self.applied, friction=self.friction)
+        solved = motion_reactions(self.name, at, self.applied, friction=self.friction)
+        return solved if self.side is None else self.side.completed(solved)
+
+    def each_sharing(self, times: Floats) -> tuple[Dynamics, Mapping[str, Dynamics]]:
+        """Return the same, and for other stiffness of links by what is different."""
+        solved = self.solve(times)
+        return solved, {} if self.side is None else self.side.others(solved)
 
     def reactions(self, times: Floats) -> Reactions:
         return self.solve(times).reactions
@@ -209,15 +208,13 @@ class _Moved:
 def _motion(
     study: Study, name: str, case: MotionCase, mechanism: Linkage, extremes: bool
 ) -> CaseLoads:
-    if not mechanism.driven:
-        raise LinkageError(
-            'kind = "motion" needs a [mechanism.drive]; for loads at rest write kind = "static"',
-            "motion-without-drive",
-        )
+    _require_drives(mechanism)
     end = span(study)
     course = Course(mechanism, laws(study), 0.0, end)
     applied, note = applied_loads(study, name, case, mechanism)
-    moved = _Moved(name, course, applied)
+    side = sideways(study, case, mechanism, side_loads(study, name, case, mechanism))
+    note = side.noted(note) if side else note
+    moved = _Moved(name, course, applied, side)
     if not extremes:
         solved = moved.solve(np.linspace(0.0, end, case.samples))
         require_possible(course, moved.solve, solved)
@@ -228,7 +225,7 @@ def _motion(
 def _over_time(moved: _Moved, samples: int, note: str) -> CaseLoads:
     """Return the loads of a case with their extremes."""
     course = moved.course
-    solved = moved.solve(np.linspace(course.first, course.last, samples))
+    solved, others = moved.each_sharing(np.linspace(course.first, course.last, samples))
     over = over_time(course, moved.solve, solved)
     free = None
     if course.loops.linkage.rubs:
@@ -244,7 +241,12 @@ def _over_time(moved: _Moved, samples: int, note: str) -> CaseLoads:
         over=over,
         frictionless=free,
         moving=MovingLoads(moved.acting, solved.motion.times, over.corners),
+        shared=_each(others),
     )
+
+
+def _each(others: Mapping[str, Dynamics]) -> tuple[tuple[str, CaseLoads], ...]:
+    return tuple((what, CaseLoads(x.reactions, x)) for what, x in others.items())
 
 
 def _drop(study: Study, name: str, case: DropCase, mechanism: Linkage, extremes: bool) -> CaseLoads:
@@ -255,49 +257,98 @@ def _drop(study: Study, name: str, case: DropCase, mechanism: Linkage, extremes:
     landing = fallen(study, name, leg)
     course = Course(mechanism, landing_laws(landing, where), 0.0, leg.duration)
     loads: list[Load] = [*springs(study, mechanism), *pushes(mechanism, landing, where)]
-    moved = _Moved(name, course, tuple(loads))
+    moved = _Moved(name, course, tuple(loads), sideways(study, case, mechanism, ()))
     return replace(_over_time(moved, case.samples, drop_note(case, leg)), landing=landing)
 
 
 def _on_ground(
     study: Study, name: str, case: GroundCase, mechanism: Linkage, extremes: bool
 ) -> CaseLoads:
-    """Return a rule's load on the leg at rest; that of a drop needs the drop, which `check`
-    leaves out.
-    """
-    where, note = place(study, name, case, mechanism), ""
-    drives, reference = still(where), case.reference or 0.0
-    if case.drop is not None and extremes:
-        of = study.table.case[case.drop]
-        assert isinstance(of, DropCase)
-        leg, where = drop(study, case.drop, of, mechanism)
-        landing = fallen(study, case.drop, leg)
-        peak = landing.peaks["vertical"]
-        reference, part = peak.value, GROUND_RULES[case.rule].deflection
-        drives = list(at_deflection(landing, where, peak.time, part))
-        where = place(study, name, case, mechanism)
-    applied = ground_load(where, GROUND_RULES[case.rule], reference, mechanism)
-    note = ground_note(study, case, reference) if reference else ""
-    loads: list[Load] = [*springs(study, mechanism), applied]
-    solved = motion_reactions(name, move(mechanism, drives, np.zeros(1)), loads, timed=False)
-    return CaseLoads(solved.reactions, solved, note)
+    """Return the leg at rest under the forces of the ground by a rule."""
+    ground = grounded(study, name, case, mechanism, extremes)
+    acting = ground.loads(study, case, mechanism)
+    loads: list[Load] = [*springs(study, mechanism), *(load.planar for load in acting)]
+    drives, hold = ground.drives, case.hold or ()
+    if hold and not mechanism.driven:
+        mechanism, drives = _locked(mechanism, hold)
+    motion = move(mechanism, drives, np.zeros(1))
+    solved = motion_reactions(name, motion, loads, timed=False, hold=hold)
+    note, others = ground.note(study), dict[str, Dynamics]()
+    if side := sideways(study, case, mechanism, acting):
+        note, others = side.noted(note), side.others(solved)
+        solved = side.completed(solved)
+    return CaseLoads(solved.reactions, solved, note, ground=ground, shared=_each(others))
+
+
+def _locked(mechanism: Linkage, hold: Sequence[str]) -> tuple[Linkage, tuple[Law, ...]]:
+    """Return a mechanism without drives as its locks hold it, and their laws."""
+    held = locked(mechanism, hold)
+    return held, tuple(StateDrive(lock.drawn) for lock in held.drives)
+
+
+def _in_space(
+    study: Study,
+    name: str,
+    case: MotionCase | StaticCase | InstantCase,
+    mechanism: SpaceLinkage,
+    extremes: bool,
+) -> CaseLoads:
+    if not isinstance(case, MotionCase):
+        states = state(study, name, case, mechanism)
+        solve = at_rest_in_space(study, name, case, mechanism, states)
+        solved = solve()
+        return CaseLoads(
+            solved.reactions,
+            note=solved.note,
+            space=solved,
+            range=over_range(study, name, case, lambda which, size: solve(which, size).reactions),
+            impulse=with_impulse(case, lambda which, size: solve(which, size).reactions),
+        )
+    _require_drives(mechanism)
+    moved = motion_in_space(study, name, case, mechanism, laws(study), span(study))
+    solved = moved.solved(case.samples, extremes)
+    if not extremes:
+        return CaseLoads(solved.reactions, note=solved.note, space=solved)
+    moving = moving_in_space(moved, solved)
+    return CaseLoads(
+        solved.reactions,
+        note=solved.note,
+        at=moved.reactions,
+        space=solved,
+        peaks=solved.peaks,
+        moving=moving,
+    )
+
+
+def _require_drives(mechanism: AnyLinkage) -> None:
+    """Raise LinkageError where nothing drives a motion."""
+    if not mechanism.driven:
+        raise LinkageError(
+            'kind = "motion" needs a [mechanism.drive]; for loads at rest write kind = "static"',
+            "motion-without-drive",
+        )
 
 
 def _at_instant(
     study: Study, name: str, case: StaticCase | InstantCase, mechanism: Linkage
 ) -> CaseLoads:
+    drives: Sequence[Law]
     drives = [StateDrive(*values) for values in state(study, name, case, mechanism)]
     hold = (case.hold or ()) if isinstance(case, StaticCase) else ()
     if hold and not mechanism.driven:
-        mechanism = locked(mechanism, hold)
-        drives = [StateDrive(lock.drawn) for lock in mechanism.drives]
+        mechanism, drives = _locked(mechanism, hold)
     applied, note = applied_loads(study, name, case, mechanism)
     motion = move(mechanism, drives, np.zeros(1))
     solved = motion_reactions(name, motion, applied, timed=False, hold=hold)
+    others: Mapping[str, Dynamics] = {}
+    if side := sideways(study, case, mechanism, side_loads(study, name, case, mechanism)):
+        note = side.noted(note)
+        solved, others = side.completed(solved), side.others(solved)
     return CaseLoads(
         solved.reactions,
         solved,
         note,
-        range=over_range(study, name, case, motion),
-        impulse=with_impulse(study, name, case, motion),
+        range=over_range(study, name, case, partial(with_size, study, name, motion)),
+        impulse=with_impulse(case, partial(with_size, study, name, motion)),
+        shared=_each(others),
     )

@@ -19,7 +19,7 @@ def pin_material(study: Study, pin: PinLike) -> Material:
     """Return the material of a pin with the hardened stretches of its surface.
 
     Raises: InputError for a case that is as deep as the wall, for a pin that is no body of
-    revolution, and where what is not hardened has no strength.
+    revolution, and where what is not hardened has no strength, or a range of it.
     """
     name = study.table.pin[pin.name].material
     made_of, key = material(study, name), hardened_key(study, pin.name)
@@ -48,10 +48,18 @@ def pin_material(study: Study, pin: PinLike) -> Material:
             at=f"pin.{pin.name}",
             code="hardened-in-part",
         )
+    if bare and made_of.strength_range is not None:
+        raise study.error(
+            f"material.{name}.range.yield_strength: pin {pin.name} is hardened in part, and a "
+            "range is of the yield strength of a whole pin; give the lower end as yield_strength",
+            at=f"material.{name}.range",
+            code="hardened-in-part",
+        )
     weakest = min([case.core for case in hardened] + ([unhardened] if bare and unhardened else []))
     return replace(
         made_of, yield_strength=weakest, hardened=tuple(hardened),
         unhardened=unhardened if bare else None,
+        strength_range=None,  # that of the material, which counts nowhere on the pin
     )  # fmt: skip
 
 

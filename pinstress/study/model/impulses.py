@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from itertools import chain
 
 import numpy as np
 
-from loads import Applied, Linkage, Load, Motion, Reactions, impulse_force, motion_reactions
+from loads import Linkage, Load, Motion, Reactions, impulse_force, motion_reactions
+from loads.space.out_of_plane import SideLoad
 from pinbase.arrays import Floats
 from pinstress.study.model.mechanism.forces import load, springs
+from pinstress.study.model.mechanism.sideways import sideways
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import (
     ApplyTable,
@@ -54,10 +57,33 @@ def applied_loads(
     study: Study, name: str, case: MechanismCase, mechanism: Linkage
 ) -> tuple[tuple[Load, ...], str]:
     """Return the loads of a case with the mechanism's springs, and a note on its impulses."""
-    applied = (_load(study, name, case, k, mechanism) for k in range(len(case.apply)))
-    loads: list[Load] = [*springs(study, mechanism), *chain.from_iterable(applied)]
-    notes = [_impulse_note(study, x) for x in case.apply if x.impulse is not None]
-    return tuple(loads), " ".join(notes)
+    planar = (one.planar for one in side_loads(study, name, case, mechanism))
+    loads: list[Load] = [*springs(study, mechanism), *planar]
+    return tuple(loads), impulse_notes(study, case)
+
+
+def impulse_notes(study: Study, case: MechanismCase) -> str:
+    """Return sentences on the impulses of a case."""
+    return " ".join(_impulse_note(study, x) for x in case.apply if x.impulse is not None)
+
+
+def side_loads(
+    study: Study,
+    name: str,
+    case: MechanismCase,
+    mechanism: Linkage,
+    impulse: tuple[int, float] | None = None,
+) -> tuple[SideLoad, ...]:
+    """Return the loads of a case, with what they have out of the plane.
+
+    impulse: number of a load, and size of its impulse, N, by default all as stated.
+    """
+    sizes = dict([impulse]) if impulse else {}
+    return tuple(
+        one
+        for k in range(len(case.apply))
+        for one in _load(study, name, case, k, mechanism, sizes.get(k))
+    )
 
 
 def _load(
@@ -67,19 +93,24 @@ def _load(
     which: int,
     mechanism: Linkage,
     size: float | None = None,
-) -> tuple[Applied, ...]:
+) -> tuple[SideLoad, ...]:
     """Return one of the loads.
 
     size: of its impulse, N, by default as stated.
     """
     table = case.apply[which]
-    force = table.force or (0.0, 0.0)
+    force: Sequence[float] = table.force or (0.0, 0.0)
     if (impulse := table.impulse) is not None:
-        nominal = _size(impulse, impulse.velocity_change, impulse.impulse_time)
+        nominal = nominal_size(impulse)
         force = _directed(impulse.direction, nominal if size is None else size)
     elif table.direction is not None:
         force = _directed(table.direction, 1.0)
     return load(study, f"case.{name}.apply[{which + 1}]", table, force, mechanism)
+
+
+def nominal_size(impulse: ImpulseTable) -> float:
+    """Return the force of an impulse as stated, N."""
+    return _size(impulse, impulse.velocity_change, impulse.impulse_time)
 
 
 def _size(impulse: ImpulseTable, velocity: float, time: float, pulse: str = "") -> float:
@@ -89,15 +120,15 @@ def _size(impulse: ImpulseTable, velocity: float, time: float, pulse: str = "") 
     return impulse_force(mass, velocity, time, pulse or impulse.pulse)
 
 
-def _directed(direction: tuple[float, float], size: float) -> tuple[float, float]:
-    x, y = np.array(direction) / np.hypot(*direction)
-    return float(size * x), float(size * y)
+def _directed(direction: Sequence[float], size: float) -> tuple[float, ...]:
+    along = np.array(direction) / math.hypot(*direction)
+    return tuple((size * along).tolist())
 
 
 def _impulse_note(study: Study, load: ApplyTable) -> str:
     impulse = load.impulse
     assert impulse is not None
-    size = _size(impulse, impulse.velocity_change, impulse.impulse_time)
+    size = nominal_size(impulse)
     unit, factor = study.system.force, study.system.factor("force")
     mean = "the mean force" if impulse.pulse == "rectangular" else f"the peak of a {impulse.pulse}"
     return (
@@ -106,8 +137,12 @@ def _impulse_note(study: Study, load: ApplyTable) -> str:
     )
 
 
+# Reactions of a case whose load of a number, from 0, has an impulse of a size, N
+OfSize = Callable[[int, float], Reactions]
+
+
 def over_range(
-    study: Study, name: str, case: StaticCase | InstantCase, motion: Motion
+    study: Study, name: str, case: StaticCase | InstantCase, of_size: OfSize
 ) -> ImpulseLoads | None:
     """Return the reactions to every combination in the ranges of the case's impulse, if it has any.
 
@@ -136,44 +171,42 @@ def over_range(
         np.array([v for _, v, _ in points]),
         tuple(pulse for *_, pulse in points),
         sizes,
-        _of_sizes(study, name, motion, ranged[0], sizes),
+        _of_sizes(of_size, ranged[0], sizes),
         (impulse.impulse_time, impulse.velocity_change),
         impulse.pulse,
-        _size(impulse, impulse.velocity_change, impulse.impulse_time),
+        nominal_size(impulse),
     )
 
 
-def with_impulse(
-    study: Study, name: str, case: StaticCase | InstantCase, motion: Motion
-) -> ImpulseShare | None:
+def with_impulse(case: StaticCase | InstantCase, of_size: OfSize) -> ImpulseShare | None:
     """Return the reactions of the case without its impulse and with it, if it has one."""
     which = [k for k, load in enumerate(case.apply) if load.impulse]
     if len(which) != 1 or (impulse := case.apply[which[0]].impulse) is None:
         return None
-    sizes = np.array([0.0, _size(impulse, impulse.velocity_change, impulse.impulse_time)])
-    return ImpulseShare(impulse.impulse_time, _of_sizes(study, name, motion, which[0], sizes))
+    sizes = np.array([0.0, nominal_size(impulse)])
+    return ImpulseShare(impulse.impulse_time, _of_sizes(of_size, which[0], sizes))
 
 
-def _of_sizes(study: Study, name: str, motion: Motion, which: int, sizes: Floats) -> Reactions:
+def _of_sizes(of_size: OfSize, which: int, sizes: Floats) -> Reactions:
     """Return the reactions to an impulse of these sizes (P,) N, an instant each."""
-    case, mechanism = study.table.case[name], motion.linkage
-    assert isinstance(case, MechanismCase)
-    hold = (case.hold or ()) if isinstance(case, StaticCase) else ()
-    others: list[Load] = [*springs(study, mechanism)]
-    for k in range(len(case.apply)):
-        others += _load(study, name, case, k, mechanism) if k != which else ()
-    reactions = [
-        motion_reactions(
-            name,
-            motion,
-            [*others, *_load(study, name, case, which, mechanism, size)],
-            timed=False,
-            hold=hold,
-        ).reactions
-        for size in sizes.tolist()
-    ]
+    reactions = [of_size(which, size) for size in sizes.tolist()]
     forces, moments, turn = (
         np.concatenate([getattr(r, key) for r in reactions])
         for key in ("forces", "moments", "turn")
     )
     return replace(reactions[0], forces=forces, moments=moments, turn=turn)
+
+
+def with_size(study: Study, name: str, motion: Motion, which: int, size: float) -> Reactions:
+    """Return the reactions of a planar case whose load number `which` has an impulse of a size, N.
+
+    motion: of its one instant.
+    """
+    case, mechanism = study.table.case[name], motion.linkage
+    assert isinstance(case, MechanismCase)
+    hold = (case.hold or ()) if isinstance(case, StaticCase) else ()
+    applied = side_loads(study, name, case, mechanism, (which, size))
+    planar: list[Load] = [*springs(study, mechanism), *(one.planar for one in applied)]
+    solved = motion_reactions(name, motion, planar, timed=False, hold=hold)
+    side = sideways(study, case, mechanism, applied)
+    return (solved if side is None else side.completed(solved)).reactions

@@ -88,7 +88,7 @@ class Fit:
 
     @property
     def kind(self) -> str:
-        """What the fit is: "clearance", "interference", or "transition" between the two."""
+        """The kind of the fit: "clearance", "interference", or "transition" between the two."""
         least, largest = self.clearance
         if least >= 0.0:
             return "clearance"

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from loads import Applied, Law, Linkage, LinkageError, StateDrive
+from loads import Law, Linkage, LinkageError, StateDrive
 from loads.landing import (
     DROP_RULES,
-    GROUND_RULES,
     Drop,
     GasSpring,
     Landing,
@@ -25,13 +24,13 @@ from loads.landing import (
     required_velocity,
     travel,
 )
-from loads.landing.requirements import GroundRule
 from pinbase.errors import ArgumentError
 from pinstress.study.model.mechanism.drives import state
-from pinstress.study.model.mechanism.linkage import STANDARD_GRAVITY, linkage
+from pinstress.study.model.mechanism.linkage import linkage
+from pinstress.study.model.mechanism.masses import STANDARD_GRAVITY
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
-from pinstress.study.schema.landing import AtWheel, DropCase, GroundCase, StrutTable, TyreTable
+from pinstress.study.schema.landing import AtWheel, DropCase, StrutTable, TyreTable
 
 # Of the mechanism's unsprung mass, which changes by as much along a stroke
 UNSPRUNG_MASS_TOLERANCE = 0.1
@@ -205,32 +204,3 @@ def drop_note(case: DropCase, leg: Drop) -> str:
 def still(where: Touchdown) -> list[Law]:
     """Return laws that keep all drives as with the strut extended."""
     return [StateDrive(value) for value in where.extended]
-
-
-def ground_load(
-    where: Touchdown, rule: GroundRule, reference: float, mechanism: Linkage
-) -> Applied:
-    """Return the load of the ground on the wheel in the plane of the mechanism, by a rule."""
-    x, y = (
-        reference * (rule.vertical * u + rule.drag * a)
-        for u, a in zip(where.up, where.aft, strict=True)
-    )
-    return Applied(where.body, mechanism.joint(where.joint).at, (x, y))
-
-
-def ground_note(study: Study, case: GroundCase, reference: float) -> str:
-    """Return the clause and the components of a rule's load."""
-    rule, force = GROUND_RULES[case.rule], study.system.factor("force")
-    parts = {
-        "vertical": rule.vertical,
-        "aft" if rule.drag >= 0.0 else "forward": abs(rule.drag),
-        "side": rule.side,
-    }
-    shown = ", ".join(
-        f"{name} {part * reference / force:,.1f} {study.system.force}"
-        for name, part in parts.items()
-        if part
-    )
-    side = " The side load is not in the plane of the mechanism and is not applied: bring its "
-    side += "effect on the pins in by a case of kind given."
-    return f"{rule.clause}: {shown}.{side if rule.side else ''}"

@@ -8,6 +8,7 @@ from functools import partial
 
 from fea.core.material import Material
 from fea.cut.inside import crosses_end
+from fea.support.lugs.axial import axial_seats
 from fea.support.lugs.fit import beyond_foundations, fitted, on_structure
 from fea.support.lugs.lug import Bushing, Lug, LugRange, Shank
 from fea.support.lugs.thermal import at_temperature
@@ -40,6 +41,13 @@ def lugs(
         return ()
     at = f"pin.{pin.name}" + ".lug" * bool(table.lug)
     instead = 'or set analysis.joints = "prescribed"'
+    if pin.cuts and (stated := [name for name, lug in table.lug.items() if lug.axial is not None]):
+        raise study.error(
+            f"pin {pin.name} has cuts, and its forces along the axis act evenly on the bands of "
+            "its links: remove axial",
+            f"{at}.{stated[0]}.axial",
+            "axial-of-cut-pin",
+        )
     pin = _in_contact(study, pin, f"remove its lugs, {instead}")
     if clamps:
         raise study.error(
@@ -114,6 +122,7 @@ def _require_fit(
     try:
         for tried in (lugs, *_ends_of_clearance(lugs)):
             fitted(on_structure(pin, tried), made_of, tried, in_contact)
+        axial_seats(pin, lugs)
     except ArgumentError as error:
         raise study.error(f"{when}{error}", at, error.code) from None
 
@@ -278,6 +287,7 @@ def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Mater
         _range(given.range, fit),
         None if given.shank is None else _shank(given.shank, outer),
         given.friction,
+        axial=(given.axial, given.axial) if isinstance(given.axial, str) else given.axial,
     )
 
 

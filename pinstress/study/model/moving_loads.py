@@ -14,7 +14,8 @@ import numpy as np
 from loads import Dynamics, Reactions, Resolved, resolved
 from pinbase.arrays import Floats
 
-Acting = tuple[Reactions, Floats]  # with the accelerations (T, J, 2) m/s^2 of the joints
+# With the accelerations (T, J, 2) m/s^2 of the joints, or (T, C, 3) of the pins in space
+Acting = tuple[Reactions, Floats]
 
 
 def acting(dynamics: Dynamics) -> Acting:
@@ -50,8 +51,8 @@ class MovingLoads:
         return resolved(self._times, values, self._corners)
 
     @cached_property
-    def _first(self) -> Reactions:
-        return self._solve(self._times[:1])[0]
+    def _first(self) -> Acting:
+        return self._solve(self._times[:1])
 
     @cached_property
     def instants(self) -> Floats:
@@ -60,9 +61,12 @@ class MovingLoads:
 
     def at(self, times: Floats) -> Acting:
         """Return the loads at times (T,) s, by the polynomials."""
-        r = self._first
-        count, values = len(r.connections), self._resolved.interpolate(times)
-        forces, moments, turn, joints = np.split(values, np.cumsum([3, 3, 1]) * count, axis=1)
-        forces, moments = (x.reshape(len(times), count, 3) for x in (forces, moments))
+        r, joints = self._first
+        like = (r.forces, r.moments, r.turn, joints)
+        values = self._resolved.interpolate(times)
+        columns = np.split(values, np.cumsum([x.size for x in like[:-1]]), axis=1)
+        forces, moments, turn, joints = (
+            x.reshape(len(times), *shape.shape[1:]) for x, shape in zip(columns, like, strict=True)
+        )
         reactions = Reactions(r.case, times, r.connections, r.bodies, forces, moments, turn)
-        return reactions, joints.reshape(len(times), -1, 2)
+        return reactions, joints

@@ -43,6 +43,7 @@ def material(study: Study, name: str) -> Material:
         m.ultimate_strain,
         failure_strain=m.failure_strain,
         thermal_expansion=m.thermal_expansion,
+        strength_range=m.range.yield_strength,
     )
 
 
@@ -203,8 +204,8 @@ def _by_segments(name: str, p: PinTable) -> Pin:
         Segment(
             s.length,
             s.diameters[0],
-            name=s.name,
-            connection=s.connection,
+            name=None if s.ear_of else s.name,
+            connection=s.name if s.ear_of else s.connection,
             fillet=s.fillet,
             edge_radii=_at_ends(s.edge_radius),
             bore_radii=_at_ends(s.bore_radius),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -15,10 +15,12 @@ from fea.core.pin_loads import Distribution, Floats, PinLoads
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, PinLike
 from loads import Reactions
+from pinbase.arrays import Ints
 from pinstress.study.model.cases import CaseLoads
+from pinstress.study.model.clevis import Ears, on_ears
 from pinstress.study.model.hardened import pin_material
 from pinstress.study.model.lugs import AssumedLugs, assumed_lugs, given_lugs, known_lugs, lugs
-from pinstress.study.model.moving_loads import MovingLoads
+from pinstress.study.model.moving_loads import MovingLoads, acting
 from pinstress.study.model.temperature import rise_of
 from pinstress.study.reading.errors import Errors
 from pinstress.study.reading.file import Study
@@ -40,6 +42,18 @@ class PinImpulse:
 
 
 @dataclass(frozen=True)
+class SharedLoads:
+    """Loads on a pin with other stiffness of the links that share them.
+
+    what: what is different at each instant of the loads, which are those at which the force or the
+    moment of one of its links is largest.
+    """
+
+    what: tuple[str, ...]
+    loads: PinLoads
+
+
+@dataclass(frozen=True)
 class Task:
     """One pin of a material, clamped in one way, in lugs of one temperature, with its loads in all
     cases of that kind.
@@ -53,6 +67,7 @@ class Task:
     impulses: by case that has an impulse.
     given: the lugs that the study gives, whether they support the pin or not.
     shanks: by case and connection, the angles of the shanks of lugs.
+    shared: by case, the loads with other stiffness of links.
     rise: of the temperature of its cases above that of the study's dimensions, K, which has changed
     the fit of its lugs; 0 where it has not.
     """
@@ -70,6 +85,12 @@ class Task:
     given: tuple[Lug, ...] = ()
     shanks: dict[str, dict[str, ShankAngle]] = field(default_factory=dict)
     rise: float = 0.0
+    shared: dict[str, SharedLoads] = field(default_factory=dict)
+
+    @property
+    def also(self) -> dict[str, PinLoads]:
+        """The loads under which stress is needed besides those of the case itself, by case."""
+        return {case: x.loads for case, x in self.shared.items()} | self.ranges
 
 
 def tasks(study: Study, pins: list[PinLike], loads: dict[str, CaseLoads]) -> list[Task]:
@@ -133,6 +154,7 @@ def _task(
     ranges: dict[str, PinLoads] = {}
     between: dict[str, Between] = {}
     impulses: dict[str, PinImpulse] = {}
+    shared: dict[str, SharedLoads] = {}
     for case, given in loads.items():
         here = [c for c in pin.connections if c in given.reactions.connections]
         if not here:
@@ -147,7 +169,8 @@ def _task(
         left_out[case] = tuple(c for c in here if c in constrained)
         spread = study.table.case[case].distribution
         heavy = not clamps and bool(made_of.density)
-        build = partial(_pin_loads, case, given, applied, spread, heavy)
+        ears = _ears(study, pin, constrained, applied)
+        build = partial(_pin_loads, case, given, applied, spread, heavy, ears)
         if given.moving is None:
             cases.append(build(given.reactions))
         else:
@@ -155,6 +178,8 @@ def _task(
             cases.append(between[case](given.moving.instants))
         if given.range is not None:
             ranges[case] = build(given.range.reactions)
+        if given.shared:
+            shared[case] = _shared(given, applied, build)
         if given.impulse is not None:
             impulses[case] = PinImpulse(given.impulse.time, build(given.impulse.reactions))
     hot = cases[0].case if cases and rise else None
@@ -163,8 +188,35 @@ def _task(
     given_ones = given_lugs(study, pin, in_lugs, hot) if cases else ()
     return Task(
         pin, made_of, clamps, tuple(cases), left_out, ranges, between, in_lugs, around, impulses,
-        given_ones, _shanks(study, pin, loads, cases, in_lugs), rise,
+        given_ones, _shanks(study, pin, loads, cases, in_lugs), rise, shared,
     )  # fmt: skip
+
+
+def _shared(given: CaseLoads, applied: list[str], build: Callable[..., PinLoads]) -> SharedLoads:
+    """Return the loads on a pin with other stiffness of links, at its worst instants."""
+    parts: list[PinLoads] = []
+    what: list[str] = []
+    for text, other in given.shared:
+        assert other.dynamics is not None
+        reactions, accelerations = acting(other.dynamics)
+        which = [reactions.connections.index(c) for c in applied]
+        sizes = [np.linalg.norm(x[:, which], axis=2) for x in (reactions.forces, reactions.moments)]
+        rows = np.unique(np.concatenate([size.argmax(axis=0) for size in sizes]))
+        parts.append(build(_rows(reactions, rows), accelerations[rows]))
+        what += [text] * len(rows)
+    forces, moments, body = (
+        np.concatenate([getattr(part, key) for part in parts])
+        for key in ("forces", "moments", "body")
+    )
+    loads = replace(parts[0], forces=forces, moments=moments, body=body, times=None)
+    return SharedLoads(tuple(what), loads)
+
+
+def _rows(reactions: Reactions, rows: Ints) -> Reactions:
+    """Return reactions at some instants."""
+    times = None if reactions.times is None else reactions.times[rows]
+    forces, moments, turn = (x[rows] for x in (reactions.forces, reactions.moments, reactions.turn))
+    return replace(reactions, times=times, forces=forces, moments=moments, turn=turn)
 
 
 def _shanks(
@@ -244,20 +296,42 @@ def _pin_loads(
     applied: list[str],
     distribution: Distribution,
     heavy: bool,
+    ears: dict[str, Ears],
     reactions: Reactions,
     accelerations: Floats | None = None,
 ) -> PinLoads:
     """Return the loads on a pin at some connections.
 
     heavy: whether its own weight acts.
+    ears: of the links that are clevises, by connection.
     accelerations: (T, J, 2) m/s^2 of the joints, by default those of the case's instants.
     """
     body = _own_weight(given, applied[0], reactions, accelerations) if heavy else np.zeros(3)
     forces = np.stack([reactions.in_pin_axes(c) for c in applied], axis=1)
     moments = np.stack([reactions.moment_in_pin_axes(c) for c in applied], axis=1)
+    surfaces, forces, moments = on_ears(applied, forces, moments, ears)
     return PinLoads(
-        case, tuple(applied), forces, moments, distribution, body, times=reactions.times
-    )
+        case, surfaces, forces, moments, distribution, body, times=reactions.times,
+        tilting=surfaces if given.knows_moments else None,
+    )  # fmt: skip
+
+
+def _ears(study: Study, pin: PinLike, constrained: set[str], applied: list[str]) -> dict[str, Ears]:
+    """Return the ears of a pin's clevises that bear loads.
+
+    Raises: InputError for a clamped one.
+    """
+    out = {}
+    for connection, other in study.table.pin[pin.name].ears.items():
+        if other in constrained:
+            raise study.error(
+                f"pin {pin.name}: the ear {other} of {connection} is clamped, and so takes an "
+                "unknown part of its link's load: clamp another surface, or give the pin lugs",
+                code="clamped-ear",
+            )
+        if connection in applied:
+            out[connection] = Ears(other, *(pin.band(x).middle for x in (connection, other)))
+    return out
 
 
 def _own_weight(
@@ -268,6 +342,12 @@ def _own_weight(
 
     A clamped pin's weight goes into its clamp, as the loads there do.
     """
+    if case.space is not None:
+        known = case.space.accelerations if accelerations is None else accelerations
+        at = known[:, reactions.connections.index(connection)]
+        if len(at) != len(reactions):  # an impulse's range, at the case's one instant
+            at = np.broadcast_to(at, (len(reactions), 3))
+        return reactions.to_pin_axes(case.space.gravity - at, connection)
     if case.dynamics is None:
         return np.zeros(3)
     motion = case.dynamics.motion

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from pinstress.study.model.mechanism.linkage import STANDARD_GRAVITY
+from pinstress.study.model.mechanism.masses import STANDARD_GRAVITY
 from pinstress.study.model.pins import pin, weight
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study

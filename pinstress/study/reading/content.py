@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -11,6 +11,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from loads import TableError, table_cases
+from loads.landing import GROUND_RULES
 from pinstress.study.reading.case_tables import layout_of
 from pinstress.study.reading.damage import Damage, place_of
 from pinstress.study.reading.errors import InputError, Wrong
@@ -18,8 +19,9 @@ from pinstress.study.reading.limits import too_many
 from pinstress.study.reading.references import cross_references
 from pinstress.study.reading.validation import remove_wrong
 from pinstress.study.schema.cases import GivenCase
+from pinstress.study.schema.landing import GroundCase, Side
 from pinstress.study.schema.shown import nearest
-from pinstress.study.schema.tables import StudyTable
+from pinstress.study.schema.tables import AnyCase, StudyTable
 from pinstress.study.schema.types import ANY_CASE, usable_name
 from pinstress.study.schema.units import UNIT_SYSTEMS, UnitSystem
 
@@ -51,11 +53,11 @@ def table_of(
         except ValidationError as error:
             wrong += remove_wrong(error, tree, damage)
         else:
-            table = _with_cases_of_tables(table, path.parent, wrong)
+            table, sections = _expanded(table, path.parent, wrong)
             if not counted:
                 wrong += [Wrong(text, code="too-large") for text in too_many(table)]
                 counted = True
-            references = list(cross_references(table))
+            references = _of_sections(cross_references(table), sections)
             wrong += _remove_references(references, tree, damage)
             if len(damage.places) == removed:
                 return table if not references else None
@@ -97,37 +99,51 @@ def _hint(wrong: Wrong, removed: set[str]) -> str:
     return f"did you mean {name!r}?" if name else hint
 
 
-def _with_cases_of_tables(table: StudyTable, folder: Path, wrong: list[Wrong]) -> StudyTable:
-    """Return the study with the cases of tables: sections whose name has a *.
+def _expanded(
+    table: StudyTable, folder: Path, wrong: list[Wrong]
+) -> tuple[StudyTable, dict[str, str]]:
+    """Return the study with the cases of sections whose name has a *, and the section of each case.
 
-    Such a section gives a case for every name in the column `case` of its table, which replaces the
-    *.
+    Of kind "given" such a section gives a case for every name in the column `case` of its table, of
+    kind "ground" one for every load; that name replaces the *.
 
     folder: of the tables.
     wrong: receives the errors.
 
     Raises: InputError for an unusable table.
     """
-    if not any(ANY_CASE in name for name in table.case):
-        return table
     cases = {name: case for name, case in table.case.items() if ANY_CASE not in name}
+    if len(cases) == len(table.case):
+        return table, {}
+    sections: dict[str, str] = {}
     for section, case in table.case.items():
         if ANY_CASE not in section:
             continue
         key = f"case.{section}"
-        assert isinstance(case, GivenCase)
         if section.count(ANY_CASE) > 1:
             wrong.append(Wrong(f"{key}: a name needs no second *", code="unusable-name"))
-        elif case.table_case is not None:
-            text = f"{key}.table_case: the name with a * already stands for every case of the table"
-            wrong.append(Wrong(text, code="give-one"))
-        else:
-            file = case.tables[0].file
-            for name in _table_case_names(folder / file, case):
-                ours = section.replace(ANY_CASE, name)
-                wrong += _table_case_mistakes(key, ours, file, ours in cases)
-                cases[ours] = case.model_copy(update={"table_case": name})
-    return table.model_copy(update={"case": cases})
+            continue
+        for name, one in _cases_of(key, case, folder, wrong):
+            full = section.replace(ANY_CASE, name)
+            wrong += _name_mistakes(key, full, full in cases)
+            cases[full], sections[full] = one, section
+    return table.model_copy(update={"case": cases}), sections
+
+
+def _cases_of(
+    key: str, case: AnyCase, folder: Path, wrong: list[Wrong]
+) -> Iterator[tuple[str, AnyCase]]:
+    """Yield the cases of a section, each with what replaces the * in its name."""
+    if isinstance(case, GroundCase):
+        yield from ground_cases(case)
+        return
+    assert isinstance(case, GivenCase)
+    if case.table_case is not None:
+        text = f"{key}.table_case: the name with a * already stands for every case of the table"
+        wrong.append(Wrong(text, code="give-one"))
+        return
+    for name in _table_case_names(folder / case.tables[0].file, case):
+        yield name, case.model_copy(update={"table_case": name})
 
 
 def _table_case_names(path: Path, case: GivenCase) -> list[str]:
@@ -137,11 +153,51 @@ def _table_case_names(path: Path, case: GivenCase) -> list[str]:
         raise InputError(str(error), code=error.code) from None
 
 
-def _table_case_mistakes(key: str, name: str, table: str, known: bool) -> Iterator[Wrong]:
+def _name_mistakes(key: str, name: str, known: bool) -> Iterator[Wrong]:
     if known:
-        text = f"{key}: case {name!r} of {table} exists already; rename one, or this section"
+        text = f"{key}: case {name!r} exists already; rename one, or this section"
         yield Wrong(text, code="duplicate-case")
     try:
         usable_name(name)
     except ValueError as error:
-        yield Wrong(f"{key}: case {name!r} of {table}: {error}", code=getattr(error, "code", ""))
+        yield Wrong(f"{key}: case {name!r}: {error}", code=getattr(error, "code", ""))
+
+
+def _of_sections(references: Iterable[Wrong], sections: Mapping[str, str]) -> list[Wrong]:
+    """Return errors of cases that a section stands for as errors of the section, each once."""
+    named: dict[str, Wrong] = {}
+    for wrong in references:
+        for name, section in sections.items():
+            here = f"case.{name}"
+            if wrong.message.startswith((f"{here}.", f"{here}:")):
+                message = f"case.{section}{wrong.message.removeprefix(here)}"
+                wrong = replace(wrong, message=message)
+                break
+        named.setdefault(wrong.message, wrong)
+    return list(named.values())
+
+
+def ground_cases(case: GroundCase) -> Iterator[tuple[str, GroundCase]]:
+    """Yield the single cases of a section with their names.
+
+    A side load gives two, one to each side, unless `toward` states one.
+    """
+    sides: tuple[Side, Side] = (
+        ("left", "right") if case.stands == "nose" else ("inboard", "outboard")
+    )
+    for rule in case.rules:
+        one = case.model_copy(update={"part": None, "rule": rule, "factors": []})
+        yield from _to_sides(rule, one, GROUND_RULES[rule].side, sides)
+    for row in case.factors:
+        update = {"part": None, "factors": [row], "toward": row.toward or case.toward}
+        yield from _to_sides(row.name, case.model_copy(update=update), row.side, sides)
+
+
+def _to_sides(
+    name: str, case: GroundCase, side: float, sides: tuple[Side, Side]
+) -> Iterator[tuple[str, GroundCase]]:
+    if not side or case.toward is not None:
+        yield name, case
+        return
+    for toward in sides:
+        yield f"{name}-{toward}", case.model_copy(update={"toward": toward})

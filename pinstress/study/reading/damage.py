@@ -30,7 +30,6 @@ STAND_INS: Mapping[Place, Any] = {
 # Parts of a study whose removal may be the only cause of an error, by its code
 CAUSES: Mapping[str, Collection[Place]] = {
     "no-mechanism": (("mechanism",),),
-    "no-leg": (("spatial_leg",),),
     "bearing-strength-without-lug": (("pin",),),
     "no-fatigue-data": (("material",), ("pin",)),
     "drive-without-motion": (("mechanism", "drive"),),
@@ -82,6 +81,18 @@ class Damage:
     def children(self, place: Place) -> list[str | int]:
         """The removed keys or elements of a table or list."""
         return [p[-1] for p in self.places if p[:-1] == place]
+
+    def shortened(self, place: Place) -> list[str | int]:
+        """The keys of a table whose lists have lost elements."""
+        depth = len(place)
+        lost = (p for p in self.places if p[:depth] == place and len(p) == depth + 2)
+        return [p[depth] for p in lost if isinstance(p[-1], int)]
+
+    def emptied(self, place: Place) -> list[str]:
+        """The keys of a table whose own tables or lists have lost all that was in them."""
+        table = self.part(place)
+        inner = table.items() if isinstance(table, dict) else ()
+        return [k for k, v in inner if v and self._without(v, (*place, k)) in ({}, [])]
 
     def remainder(self) -> Any:
         """The study without the removed parts."""

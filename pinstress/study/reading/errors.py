@@ -41,6 +41,18 @@ class InputError(Exception):
         return self.codes[0]
 
 
+def cannot_write(path: object, error: OSError) -> InputError:
+    """Return the error that a file cannot be written."""
+    return InputError(f"{path}: cannot be written ({error.strerror})", code="cannot-write")
+
+
+def cannot_write_out(directory: Path, error: OSError) -> InputError:
+    """Return the error that the folder of --out cannot be written to."""
+    why = "it is a file, no folder" if directory.is_file() else error.strerror
+    text = f"--out: cannot write to {directory} ({why})"
+    return InputError(text, code="cannot-write")
+
+
 def clipped(line: str) -> str:
     """Return the beginning of a line, which has the key, and its end, which has the remedy."""
     if len(line) <= MAX_LINE_LENGTH:

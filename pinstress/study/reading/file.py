@@ -29,6 +29,8 @@ from pinstress.study.schema.units import UNIT_SYSTEMS, UnitSystem
 
 MAX_STUDY_SIZE = 16 * MB
 MAX_PATH_LENGTH = 4096  # as Linux has it
+# Errors of a file (loads.read_regular) that say nothing of a line in it
+UNREADABLE_FILE_CODES = "no-such-file", "folder", "not-regular", "too-large"
 MAX_LIST_ITEMS = 200_000  # of a list
 MAX_KEY_LENGTH = 200  # characters; no name is longer, and messages have it in full
 
@@ -48,7 +50,7 @@ class Sourced:
 
 @dataclass(frozen=True)
 class Remainder:
-    """What is valid of a study with errors, and what was removed from it."""
+    """The valid parts of a study with errors, and what was removed from it."""
 
     study: Study
     damage: Damage
@@ -132,10 +134,10 @@ class Study:
         return study_error(self.path, self._lines, wrong)
 
     def table_error(self, key: str, error: TableError) -> InputError:
-        """Return the error of a table that is named at `key`; a missing table gets the line of
-        this key.
+        """Return the error of a table that is named at `key`, with the line of this key where the
+        table cannot be read at all.
         """
-        if error.code == "no-such-file":
+        if error.code in UNREADABLE_FILE_CODES:
             return self.error(f"{key}: {error}", code=error.code)
         return InputError(str(error), code=error.code)
 

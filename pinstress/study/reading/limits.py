@@ -84,5 +84,5 @@ def _counted(table: StudyTable) -> Iterator[tuple[str, str, Sized, int]]:
     if (mechanism := table.mechanism) is not None:
         yield "mechanism.joint", "joints", mechanism.joint, MAX_BODIES
         yield "mechanism.body", "bodies", mechanism.body, MAX_BODIES
-        yield "mechanism.slider", "sliders", mechanism.slider, MAX_BODIES
+        yield "mechanism.slider", "sliders", getattr(mechanism, "slider", ()), MAX_BODIES
         yield "mechanism.drive", "drives", mechanism.drive, MAX_BODIES

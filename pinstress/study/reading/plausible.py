@@ -100,17 +100,14 @@ def _numbers(table: StudyTable, raw: Any) -> Iterator[StatedValue]:
         yield from _of_pin(f"pin.{name}", pin, raw["pin"][name])
     if table.mechanism is not None:
         if gravity := raw["mechanism"].get("gravity"):
-            x, y = table.mechanism.gravity
-            written = gravity[abs(y) >= abs(x)]
-            yield StatedValue("gravity", "mechanism.gravity", math.hypot(x, y), written)
+            components = table.mechanism.gravity
+            written = gravity[max(range(len(components)), key=lambda k: (abs(components[k]), k))]
+            yield StatedValue("gravity", "mechanism.gravity", math.hypot(*components), written)
         for name, body in table.mechanism.body.items():
             if body.bar is not None:
                 written = raw["mechanism"]["body"][name]["bar"]["density"]
                 key = f"mechanism.body.{name}.bar.density"
                 yield StatedValue("density", key, body.bar.density, written)
-    if table.spatial_leg is not None and "gravity" in raw["spatial_leg"]:
-        written = raw["spatial_leg"]["gravity"]
-        yield StatedValue("gravity", "spatial_leg.gravity", table.spatial_leg.gravity, written)
 
 
 def _of_material(key: str, material: MaterialTable, raw: dict[str, Any]) -> Iterator[StatedValue]:

@@ -42,6 +42,7 @@ MISTAKE_MESSAGES = {
     "union_tag_not_found": ("missing-key", 'is missing; write for instance kind = "given"'),
     "union_tag_invalid": ("not-a-choice", "must be one of {expected_tags}"),
 }
+DIMENSION: Place = ("mechanism", "dimension")
 OTHER_MISTAKE = ("not-valid", "cannot have this value")
 
 
@@ -95,8 +96,12 @@ def _follows(item: dict[str, Any], place: Place, damage: Damage) -> bool:
 
     place: of the error, in the study.
     """
+    if damage.touches(DIMENSION) and place[:1] == DIMENSION[:1]:
+        return True  # which of a plane or of space the linkage is read as
     table = place[:-1] if item["type"] == "missing" else place
-    removed = damage.children(table)
+    removed = [*damage.children(table), *damage.emptied(table)]
+    if item["type"] == "value_error":
+        removed += damage.shortened(table)
     if place in damage.places or any(isinstance(child, int) for child in removed):
         return True
     if not removed:

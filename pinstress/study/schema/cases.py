@@ -11,10 +11,12 @@ from pinstress.study.schema.types import (
     NOT_NEGATIVE,
     POSITIVE,
     Acceleration,
+    AngularAcceleration,
+    AngularVelocity,
     Coordinate,
     Duration,
     Force,
-    JointOrPoint,
+    JointOrPlace,
     Mass,
     Moment,
     Number,
@@ -109,6 +111,7 @@ class GivenCase(CaseTable):
         return self
 
 
+Direction = Annotated[list[Number], Field(min_length=2, max_length=3)]
 Pulse = Literal["rectangular", "half-sine", "triangular"]
 
 
@@ -144,8 +147,9 @@ class ImpulseTable(StrictTable):
     """Duration of the impulse."""
     pulse: Pulse = "rectangular"
     """Shape of the pulse; its ratio of peak to mean is 1, pi/2 or 2."""
-    direction: tuple[Number, Number]
-    """Direction of the force in world axes; a vector of any length except 0."""
+    direction: Direction
+    """Direction of the force in world axes, [x, y] or [x, y, z]; a vector of any length except
+    0."""
     range: ImpulseRange | None = None
     """Range of values; for one impulse per case."""
 
@@ -158,28 +162,37 @@ class ImpulseTable(StrictTable):
         return self
 
 
+Couple = Annotated[
+    Annotated[Moment, Tag("<about z>")]
+    | Annotated[tuple[Moment, Moment, Moment], Tag("<components>")],
+    Discriminator(lambda value: "<components>" if isinstance(value, list | tuple) else "<about z>"),
+]
+
+
 class ApplyTable(StrictTable):
     """A load on a body: a force or an impulse, a couple, or both."""
 
     body: str
     """Name of a body of the mechanism."""
-    at: JointOrPoint | None = None
-    """Point of application: a joint, or [x, y] in the drawn position. Default: the centre of
-    mass."""
-    force: tuple[Force, Force] | None = None
-    """Force in world axes, in the drawn position."""
+    at: JointOrPlace | None = None
+    """Point of application in the drawn position: a joint or [x, y], in the plane of the body, or
+    [x, y, z], where pins have a `z`. Default: the centre of mass."""
+    force: Annotated[list[Force], Field(min_length=2, max_length=3)] | None = None
+    """Force [fx, fy] or [fx, fy, fz] in world axes, in the drawn position; z is along the pins."""
     force_law: ForceLawTable | None = None
     """Force along `direction` by a table, instead of `force`."""
-    direction: tuple[Number, Number] | None = None
-    """Direction of the force of `force_law` in the drawn position; a vector of any length except
-    0."""
-    couple: Moment = 0.0
-    """Couple, positive counter-clockwise."""
+    direction: Direction | None = None
+    """Direction [x, y] or [x, y, z] of the force of `force_law` in the drawn position; a vector of
+    any length except 0."""
+    couple: Couple = 0.0
+    """Couple about z, positive counter-clockwise, or [mx, my, mz]."""
     couple_law: ForceLawTable | None = None
-    """Couple by a table, instead of `couple`."""
+    """Couple by a table, instead of `couple`; of a linkage in space about `couple_axis`."""
+    couple_axis: Annotated[list[Number], Field(min_length=3, max_length=3)] | None = None
+    """Axis [x, y, z] of the couple of `couple_law`, of a linkage in space."""
     follows: Switch = False
-    """Whether the force rotates with the body; otherwise its direction is constant in world
-    axes."""
+    """Whether the force, of a linkage in space also the couple, rotates with the body; otherwise
+    its direction is constant in world axes."""
     impulse: ImpulseTable | None = None
     """A force estimated from an impulse, instead of `force`."""
     begin: Annotated[Time, NOT_NEGATIVE] | None = None
@@ -190,19 +203,67 @@ class ApplyTable(StrictTable):
     @model_validator(mode="after")
     def _one_force(self) -> "ApplyTable":
         forces = sum(x is not None for x in (self.force, self.impulse, self.force_law))
-        couples = bool(self.couple) + (self.couple_law is not None)
+        couples = any(self.moments) + (self.couple_law is not None)
         if forces > 1 or couples > 1 or not forces + couples:
             raise ArgumentError(
                 "give one of force = [fx, fy], impulse = { ... } and force_law = { ... }, or one "
                 "of couple and couple_law = { ... }, or one of each",
                 "give-one",
             )
-        if (self.force_law is None) != (self.direction is None) or self.direction == (0.0, 0.0):
+        directed = self.direction is not None and any(self.direction)
+        if (self.force_law is not None) != directed:
             raise ArgumentError(
                 "force_law and direction = [x, y], not zero, must be given together", "give-both"
             )
+        if self.couple_axis is not None and (self.couple_law is None or not any(self.couple_axis)):
+            raise ArgumentError(
+                "couple_axis = [x, y, z], not zero, is the axis of couple_law", "give-both"
+            )
         if self.end is not None and self.end <= (self.begin or 0.0):
             raise ArgumentError("end must be later than begin", "out-of-range")
+        return self
+
+    @property
+    def moments(self) -> tuple[float, float, float]:
+        """The couple about x, y and z, N m."""
+        return self.couple if isinstance(self.couple, tuple) else (0.0, 0.0, self.couple)
+
+    @property
+    def out_of_plane(self) -> bool:
+        """Whether it acts out of the plane: along z, about x or y, or at a stated z."""
+        impulse = None if self.impulse is None else self.impulse.direction
+        along_z = any(any((d or [])[2:]) for d in (self.force, self.direction, impulse))
+        return along_z or self.at_height or any(self.moments[:2])
+
+    @property
+    def at_height(self) -> bool:
+        """Whether the z of its point is stated."""
+        return self.at is not None and not isinstance(self.at, str) and len(self.at) > 2
+
+
+class GroundMotionTable(StrictTable):
+    """A motion of the ground on which a linkage in space stands: an aircraft that turns, a vehicle.
+    Components are along the mechanism's axes, which move with it, as does gravity's direction.
+    """
+
+    velocity: tuple[Velocity, Velocity, Velocity] = (0.0, 0.0, 0.0)
+    """Velocity [vx, vy, vz] of the origin at the start."""
+    acceleration: tuple[Acceleration, Acceleration, Acceleration] = (0.0, 0.0, 0.0)
+    """Constant rate of these components."""
+    axis: tuple[Number, Number, Number] = (0.0, 0.0, 1.0)
+    """Direction about which the ground turns."""
+    rate: AngularVelocity = 0.0
+    """Rate of turn about it at the start, right-handed."""
+    rate_change: AngularAcceleration = 0.0
+    """Constant change of this rate."""
+    path: Literal["turns", "straight"] = "turns"
+    """Whether the velocity turns with the ground, as that of wheels that do not slip, or is of
+    constant direction at every instant, a skid."""
+
+    @model_validator(mode="after")
+    def _about_a_direction(self) -> "GroundMotionTable":
+        if not any(self.axis):
+            raise ArgumentError("axis must not be zero", "no-direction")
         return self
 
 
@@ -211,6 +272,8 @@ class MechanismCase(CaseTable):
 
     apply: list[ApplyTable] = []
     """Loads on the bodies."""
+    ground_motion: GroundMotionTable | None = None
+    """A motion of the ground, of a linkage in space. A case at one instant has it at the start."""
 
 
 class MotionCase(MechanismCase):
@@ -253,12 +316,3 @@ class InstantCase(MechanismCase):
     """Velocity of the drive, or a table by drive."""
     acceleration: Coordinates = 0.0
     """Acceleration of the drive, or a table by drive."""
-
-
-class LegCase(CaseTable):
-    """The leg in space while it folds."""
-
-    kind: Literal["spatial_leg"]
-    """Kind of case."""
-    samples: Annotated[Whole, Field(ge=2, le=100_001)] = 201
-    """Number of equally spaced instants."""

@@ -26,6 +26,12 @@ def require_one(what: str, *given: Any) -> None:
         raise ArgumentError(f"give {what}", "give-one")
 
 
+def require_both(what: str, one: Any, other: Any) -> None:
+    """Raise ArgumentError unless both are given or neither."""
+    if (one is None) != (other is None):
+        raise ArgumentError(f"{what} must be given together", "give-both")
+
+
 class CurveTable(StrictTable):
     """A function by its rows."""
 
@@ -63,18 +69,9 @@ class ForceLawTable(CurveTable):
         return self
 
 
-class LineSpringTable(StrictTable):
-    """A spring, damper or gas spring along a slider, or between two points. Its force, positive
-    where it pushes them apart, is preload - stiffness (length - reference) - damping velocity, and
-    what the tables add.
-    """
+class LineLawTable(StrictTable):
+    """Keys of all springs of a length."""
 
-    slider: str | None = None
-    """The slider along which it acts. Give either `slider`, or `bodies` and `joints`."""
-    bodies: tuple[str, str] | None = None
-    """The two bodies between which it acts; one may be "ground"."""
-    joints: tuple[JointOrPoint, JointOrPoint] | None = None
-    """A point of each, a joint or [x, y]; pins are not loaded at these joints."""
     stiffness: Stiffness = 0.0
     """Stiffness."""
     reference: Length | None = None
@@ -88,22 +85,30 @@ class LineSpringTable(StrictTable):
     damper: CurveTable | None = None
     """Force by a table of the velocity, the rate of the length."""
 
+
+class LineSpringTable(LineLawTable):
+    """A spring, damper or gas spring along a slider, or between two points. Its force, positive
+    where it pushes them apart, is preload - stiffness (length - reference) - damping velocity, and
+    what the tables add.
+    """
+
+    slider: str | None = None
+    """The slider along which it acts. Give either `slider`, or `bodies` and `joints`."""
+    bodies: tuple[str, str] | None = None
+    """The two bodies between which it acts; one may be "ground"."""
+    joints: tuple[JointOrPoint, JointOrPoint] | None = None
+    """A point of each, a joint or [x, y]; pins are not loaded at these joints."""
+
     @model_validator(mode="after")
     def _between(self) -> "LineSpringTable":
         require_one("either slider, or bodies and joints", self.slider, self.bodies)
-        if (self.bodies is None) != (self.joints is None):
-            raise ArgumentError("bodies and joints must be given together", "give-both")
+        require_both("bodies and joints", self.bodies, self.joints)
         return self
 
 
-class TorsionSpringTable(StrictTable):
-    """A spring or damper that turns a body against another. Its couple on the second, positive
-    counter-clockwise, is preload - stiffness (angle - reference) - damping angular velocity, and
-    what the tables add; the angle is zero as drawn.
-    """
+class TorsionLawTable(StrictTable):
+    """Keys of all springs of an angle."""
 
-    bodies: tuple[str, str]
-    """[base, body]; the base may be "ground"."""
     stiffness: TorsionalStiffness = 0.0
     """Stiffness."""
     reference: Angle = 0.0
@@ -116,3 +121,13 @@ class TorsionSpringTable(StrictTable):
     """Couple by a table of the angle."""
     damper: CurveTable | None = None
     """Couple by a table of the angular velocity."""
+
+
+class TorsionSpringTable(TorsionLawTable):
+    """A spring or damper that turns a body against another. Its couple on the second, positive
+    counter-clockwise, is preload - stiffness (angle - reference) - damping angular velocity, and
+    what the tables add; the angle is zero as drawn.
+    """
+
+    bodies: tuple[str, str]
+    """[base, body]; the base may be "ground"."""

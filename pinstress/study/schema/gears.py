@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import AfterValidator, Field, model_validator
 
 from pinbase.errors import ArgumentError
-from pinstress.study.schema.forces import require_one
+from pinstress.study.schema.forces import require_both, require_one
 from pinstress.study.schema.types import Angle, PositiveLength, Side, StrictTable, Switch, Whole
 
 Count = Annotated[Whole, Field(ge=1, le=100_000)]  # of teeth
@@ -30,7 +30,7 @@ class GearTable(StrictTable):
     """
 
     bodies: tuple[str, str]
-    """The two that mesh; one may be "ground", a ring that stands."""
+    """The two that mesh; one may be "ground", a fixed ring."""
     joints: tuple[str, str]
     """The joint at the centre of each. What is on both joints is the carrier: the ground, or the
     arm of a planetary train."""
@@ -79,6 +79,5 @@ class RackTable(StrictTable):
     @model_validator(mode="after")
     def _one_size(self) -> "RackTable":
         require_one("either radius, or teeth and module", self.radius, self.teeth)
-        if (self.teeth is None) != (self.module is None):
-            raise ArgumentError("teeth and module must be given together", "give-both")
+        require_both("teeth and module", self.teeth, self.module)
         return self

@@ -2,8 +2,9 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
+from loads.landing.requirements import RULES_OF_PART
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.cases import CaseTable, Coordinates
 from pinstress.study.schema.types import (
@@ -19,9 +20,11 @@ from pinstress.study.schema.types import (
     Quantity,
     Stress,
     StrictTable,
+    Switch,
     Velocity,
     Weight,
     Whole,
+    one_or_several,
 )
 
 Positive = Annotated[Length, POSITIVE]
@@ -202,34 +205,152 @@ class DropCase(AtWheel):
         return self
 
 
+Side = Literal["left", "right", "inboard", "outboard"]
+
+
+class FactorTable(StrictTable):
+    """A load on a wheel as parts of a reference load, by the user."""
+
+    name: str = ""
+    """What replaces the * in the case's name; not needed for a single load."""
+    clause: Annotated[str, Field(max_length=300)]
+    """The paragraph or the report that demands it, cited with the results."""
+    vertical: Annotated[Number, Field(ge=0.0)]
+    """Upward force over the reference load."""
+    drag: Number = 0.0
+    """Force aft over the reference load; negative: forward."""
+    side: Annotated[Number, Field(ge=0.0)] = 0.0
+    """Force across the mechanism over the reference load."""
+    toward: Side | None = None
+    """The side to which the side load acts. Default: that of the case; with a * in the case's name
+    a case for each side."""
+    reference: Annotated[Force, POSITIVE] | None = None
+    """Reference load. Default: that of the case."""
+    deflection: Annotated[Number, Field(ge=0.0, le=1.0)] = 1.0
+    """With `drop`: stroke of the strut over that at the largest vertical reaction."""
+    braked: Switch = False
+    """Whether the wheel cannot turn, so that drag acts at the ground contact; it needs `radius` of
+    the case."""
+
+    @field_validator("clause")
+    @classmethod
+    def _cited(cls, value: str) -> str:
+        if not value.strip():
+            raise ArgumentError("is empty; name the paragraph or report of this load", "empty")
+        return value
+
+
+class SpinUpTable(StrictTable):
+    """What the spin-up drag of appendix D to part 23 depends on."""
+
+    inertia: Annotated[Inertia, POSITIVE]
+    """Moment of inertia of the wheel about the axle."""
+    radius: Positive
+    """Rolling radius of the loaded tyre."""
+    speed: Annotated[Velocity, POSITIVE]
+    """Speed over ground, less that of the tyre by pre-rotation."""
+    time: Annotated[Duration, POSITIVE]
+    """Time from touch-down to the largest vertical reaction."""
+
+
 class GroundCase(AtWheel):
-    """Loads on a wheel that 14 CFR prescribes as parts of a reference load; the leg at rest."""
+    """Loads on a wheel as parts of a reference load, by 14 CFR or by the user; the leg at rest."""
 
     kind: Literal["ground"]
     """Kind of case."""
-    rule: Literal[
-        "25.479-drag",
-        "25.479-drift",
-        "23.479-drag",
-        "23.499-aft",
-        "23.499-forward",
-        "23.499-side",
-    ]
-    """Section of 14 CFR."""
+    rule: (
+        Literal[
+            "25.473-spin-up",
+            "25.473-spring-back",
+            "25.479-drag",
+            "25.479-drift",
+            "23.D-spin-up",
+            "23.D-spring-back",
+            "23.479-drag",
+            "23.499-aft",
+            "23.499-forward",
+            "23.499-side",
+        ]
+        | None
+    ) = None
+    """Section of 14 CFR, for a single case."""
+    part: Literal["23", "25"] | None = None
+    """Part of 14 CFR: one case for each of its rules above, side loads to both sides. The case's
+    name has a *, which the names of the rules replace."""
+    factors: Annotated[list[FactorTable], Field(max_length=100)] = []
+    """Other loads: one table, or several `[[case."NAME *".factors]]` with names."""
     reference: Annotated[Force, POSITIVE] | None = None
-    """The largest vertical reaction (25.479, 23.479), or the static load (23.499). Give
-    either `reference` or, for the former, `drop`."""
+    """The largest vertical reaction (25.473, 25.479, 23.479), the static load (23.499), or that to
+    which `factors` refer. Give either `reference` or, unless it is a static load, `drop`."""
     drop: str | None = None
     """A case of kind "drop", whose largest vertical reaction is the reference, with its strut as at
     that instant; for 25.479-drift at 75 % of its stroke then."""
+    leg: Literal["left", "right", "nose"] | None = None
+    """Where the leg is on the aircraft, which tells inboard from outboard. Default: left; nose for
+    23.499."""
+    toward: Side | None = None
+    """The side to which a side load acts. Default: inboard; left for a nose wheel."""
+    radius: Positive | None = None
+    """Radius of the loaded tyre: side loads, and drag of a braked wheel, act at the ground, this
+    far beneath the axle. Default: at the axle."""
+    hold: Annotated[list[str], Field(min_length=1)] | None = None
+    """Names of the drives, sliders and stops that hold the leg. Default: the drives."""
+    spin_up: SpinUpTable | None = None
+    """For the drag of spin-up and spring-back. Default: the wheel of the drop; without either, the
+    most that is required, 0.8 of the vertical reaction."""
+
+    _listed = field_validator("factors", mode="before")(one_or_several)
+
+    @property
+    def stands(self) -> Literal["left", "right", "nose"]:
+        """Where the leg is on the aircraft."""
+        return self.leg or ("nose" if (self.rule or "").startswith("23.499") else "left")
+
+    @property
+    def rules(self) -> tuple[str, ...]:
+        """The built-in rules of the case or, with a part, of its cases."""
+        if self.part is not None:
+            return RULES_OF_PART[self.part, "nose" if self.stands == "nose" else "main"]
+        return (self.rule,) if self.rule is not None else ()
+
+    @model_validator(mode="after")
+    def _what_acts(self) -> "GroundCase":
+        if not (self.rule or self.part or self.factors) or (
+            self.rule and (self.part or self.factors)
+        ):
+            raise ArgumentError(
+                "give rule, or part for all rules of a part of 14 CFR, or factors of your own; "
+                "part and factors may stand together",
+                "give-one",
+            )
+        if self.part is not None and not self.rules:
+            raise ArgumentError(
+                f"of part {self.part} no load of a nose wheel is built in: state its factors",
+                "no-rule",
+            )
+        if (self.part or len(self.factors) > 1) and not all(row.name for row in self.factors):
+            raise ArgumentError("give each of the factors a name", "missing-key")
+        for side in (self.toward, *(row.toward for row in self.factors)):
+            if self.stands == "nose" and side in ("inboard", "outboard"):
+                raise ArgumentError(
+                    "toward: a nose wheel has no inboard side; use left or right", "no-inboard"
+                )
+        if self.radius is None and any(row.braked for row in self.factors):
+            raise ArgumentError(
+                "give radius: the drag of a braked wheel acts at the ground", "no-radius"
+            )
+        return self
 
     @model_validator(mode="after")
     def _one_reference(self) -> "GroundCase":
-        if (self.reference is None) == (self.drop is None):
+        given = (self.reference is not None) + (self.drop is not None)
+        needed = bool(self.rules) or any(row.reference is None for row in self.factors)
+        if given > 1 or given < needed:
             raise ArgumentError("give either reference or drop", "give-one")
-        if self.drop is not None and self.rule.startswith("23.499"):
+        static = next((rule for rule in self.rules if rule.startswith("23.499")), None)
+        if self.drop is not None and static is not None:
             raise ArgumentError(
-                f"rule {self.rule} refers to the static load on the wheel: give reference",
+                f"rule {static} refers to the static load on the wheel: give reference",
                 "key-not-applicable",
             )
         return self

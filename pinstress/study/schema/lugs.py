@@ -119,6 +119,10 @@ class LugTable(StrictTable):
     friction: Friction = 0.0
     """Coefficient of Coulomb friction between pin and bore, for bounds of the torque and of the
     stress. It does not act on the mechanism, as `friction` of a joint does."""
+    axial: str | tuple[str, str] | None = None
+    """Segment of the pin, by its name, that takes the link's force along the axis both ways; or
+    two: [towards the start of the pin, towards its end], as a head and a nut. Default: the next
+    shoulder on that side, if no other lug is between, else the band itself."""
     shank: ShankTable | None = None
     """The outline of the lug in its plane, which its own stress requires."""
     factors: LugFactorsTable = LugFactorsTable()

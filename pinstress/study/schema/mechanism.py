@@ -1,12 +1,17 @@
 """The study file's form: the mechanism."""
 
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from pinbase.errors import ArgumentError
-from pinstress.study.schema.forces import LineSpringTable, TorsionSpringTable, require_one
+from pinstress.study.schema.forces import (
+    LineSpringTable,
+    TorsionSpringTable,
+    require_both,
+    require_one,
+)
 from pinstress.study.schema.gears import GearTable, RackTable
 from pinstress.study.schema.types import (
     NOT_NEGATIVE,
@@ -23,9 +28,12 @@ from pinstress.study.schema.types import (
     Point,
     PositiveLength,
     Side,
+    Stress,
     StrictTable,
+    Switch,
     Time,
     Weight,
+    one_or_several,
 )
 
 
@@ -67,6 +75,9 @@ Place = Annotated[
 ]
 
 
+SPACE_KEYS = ("kind", "axis", "second_axis", "pin_axis")  # of joints
+
+
 class JointTable(StrictTable):
     """A pin of the mechanism as drawn, and the body on each of its connections."""
 
@@ -85,11 +96,29 @@ class JointTable(StrictTable):
     `diameter` and `fixed_in`."""
     diameter: PositiveLength | None = None
     """Diameter of the pin, for friction."""
+    z: Length | None = None
+    """Position along z of the start of the pin's profile: links lie at the middles of their bands,
+    and at `z` where the pin has none. It matters in cases with loads out of the plane, and in all
+    once it is stated. Default: such that links are straight."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _in_a_plane(cls, data: Any) -> Any:
+        for key in SPACE_KEYS if isinstance(data, dict) else ():
+            if key in data:
+                text = f"{key} is for linkages in space; for one write mechanism.dimension = 3"
+                raise ArgumentError(text, "wrong-dimension")
+        if isinstance(data, dict) and isinstance(at := data.get("at"), list) and len(at) == 3:
+            raise ArgumentError(
+                "at has three numbers, but the linkage is in a plane: give at = [x, y], or write "
+                "mechanism.dimension = 3",
+                "wrong-dimension",
+            )
+        return data
 
     @model_validator(mode="after")
     def _with_diameter(self) -> "JointTable":
-        if (self.friction is None) != (self.diameter is None):
-            raise ArgumentError("friction and diameter must be given together", "give-both")
+        require_both("friction and diameter", self.friction, self.diameter)
         return self
 
     @property
@@ -119,6 +148,17 @@ class BarTable(StrictTable):
         return self
 
 
+def require_one_mass(mass: object, weight: object, bar: object, centre: object) -> None:
+    """Raise ArgumentError unless one thing gives the mass of a body, and one its centre."""
+    require_one("one of weight, mass or bar", mass, weight, bar)
+    if bar is not None and centre is not None:
+        raise ArgumentError(
+            "centre cannot be used with bar, whose centre is its middle; give mass or weight "
+            "instead",
+            "key-not-applicable",
+        )
+
+
 class BodyTable(StrictTable):
     """A rigid body."""
 
@@ -139,14 +179,7 @@ class BodyTable(StrictTable):
 
     @model_validator(mode="after")
     def _one_mass(self) -> "BodyTable":
-        if sum(x is not None for x in (self.mass, self.weight, self.bar)) != 1:
-            raise ArgumentError("give one of weight, mass or bar", "give-one")
-        if self.bar is not None and self.centre is not None:
-            raise ArgumentError(
-                "centre cannot be used with bar, whose centre is its middle; give mass or weight "
-                "instead",
-                "key-not-applicable",
-            )
+        require_one_mass(self.mass, self.weight, self.bar, self.centre)
         return self
 
 
@@ -179,6 +212,8 @@ class LawTable(StrictTable):
     """Keys of all laws of motion: from start to end in `duration`, or a table. Without either the
     drive can only be used by cases that give its position.
     """
+
+    slides: ClassVar[bool]  # whether it has a length, instead of an angle
 
     name: str | None = None
     """Name of the drive. Default: the name of its slider or body."""
@@ -226,8 +261,16 @@ class SliderDrive(LawTable):
     position_offset: Length = 0.0
     """Offset that plots subtract from the length."""
 
+    slides: ClassVar[bool] = True
+
 
 MAX_TURNS = 1000  # each is followed in steps of 0.25 rad
+
+
+def require_few_turns(start: float | None, end: float | None) -> None:
+    """Raise ArgumentError for a drive that turns too often. start, end: rad."""
+    if abs((end or 0.0) - (start or 0.0)) > MAX_TURNS * 2.0 * math.pi:
+        raise ArgumentError(f"start and end are more than {MAX_TURNS} turns apart", "out-of-range")
 
 
 class RotaryDrive(LawTable):
@@ -250,6 +293,8 @@ class RotaryDrive(LawTable):
     end: Angle | None = None
     """Angle at the end."""
 
+    slides: ClassVar[bool] = False
+
     @model_validator(mode="after")
     def _both(self) -> "RotaryDrive":
         if (self.against == "ground" or self.line is None) != (self.against_line is None):
@@ -258,10 +303,7 @@ class RotaryDrive(LawTable):
                 "together; without one, give no against_line",
                 "give-both",
             )
-        if abs((self.end or 0.0) - (self.start or 0.0)) > MAX_TURNS * 2.0 * math.pi:
-            raise ArgumentError(
-                f"start and end are more than {MAX_TURNS} turns apart", "out-of-range"
-            )
+        require_few_turns(self.start, self.end)
         return self
 
 
@@ -271,9 +313,14 @@ AnyDrive = Annotated[
 ]
 
 
-def drive_name(drive: SliderDrive | RotaryDrive) -> str:
-    """Return the name of a drive: its slider, or its own name or that of the body it turns."""
-    return drive.slider if isinstance(drive, SliderDrive) else drive.name or drive.body
+def drive_name(drive: LawTable) -> str:
+    """Return the name of a drive: its slider, or its own name, or that of the body that it turns
+    or of the joint that it moves.
+    """
+    if isinstance(drive, SliderDrive):
+        return drive.slider
+    moved = (getattr(drive, key, None) for key in ("body", "joint", "slide"))
+    return drive.name or next(filter(None, moved))
 
 
 Ratios = Annotated[list[Annotated[Number, Field(ge=1e-18, le=1e18)]], Field(min_length=1)]
@@ -327,9 +374,38 @@ class StopTable(StrictTable):
     sign for a stop, which opens under the other."""
 
 
+class LinkStiffnessTable(StrictTable):
+    """The section of a link, for its stiffness where links share loads out of the plane; of a `bar`
+    it is that of the bar.
+    """
+
+    diameter: PositiveLength | None = None
+    """Diameter of a round link. Give one of `diameter`, `section` or `rigid`."""
+    bore: Annotated[Length, NOT_NEGATIVE] = 0.0
+    """Bore of a tube."""
+    section: tuple[PositiveLength, PositiveLength] | None = None
+    """Section of a rectangular link: [depth in the plane, width across it]."""
+    youngs_modulus: Stress = 210e9
+    """Young's modulus; only ratios between links matter."""
+    rigid: Switch = False
+    """Whether it does not yield beside the other links."""
+
+    @model_validator(mode="after")
+    def _one_section(self) -> "LinkStiffnessTable":
+        if (self.diameter is not None) + (self.section is not None) + self.rigid != 1:
+            raise ArgumentError(
+                "give one of diameter, section = [depth, width] or rigid = true", "give-one"
+            )
+        if self.bore and (self.diameter is None or self.bore >= self.diameter):
+            raise ArgumentError("bore must be less than the diameter", "out-of-range")
+        return self
+
+
 class MechanismTable(StrictTable):
     """A planar linkage, drawn in one position, with one or several drives, or a structure."""
 
+    dimension: Literal[2] = 2
+    """A linkage in a plane; 3 for one in space."""
     gravity: Annotated[
         tuple[Acceleration, Acceleration],
         Field(json_schema_extra={"default": ["0 m/s^2", "-9.80665 m/s^2"]}),
@@ -358,8 +434,8 @@ class MechanismTable(StrictTable):
     """Torsion springs and dampers by name; they act in all cases."""
     sharing: list[SharingTable] = []
     """Redundant connections, and how they share their load."""
+    link_stiffness: dict[str, LinkStiffnessTable] = {}
+    """Sections of links, by body, by which they share loads out of the plane. Rows of a case with
+    such loads have a range over the stiffness of those of which none is stated."""
 
-    @field_validator("drive", mode="before")
-    @classmethod
-    def _one_or_several(cls, value: Any) -> Any:
-        return [value] if isinstance(value, dict) else value
+    _listed = field_validator("drive", mode="before")(one_or_several)

@@ -46,6 +46,14 @@ class HardenedTable(StrictTable):
         return self
 
 
+class MaterialRangeTable(StrictTable):
+    """Between what values a strength may lie: [lower, upper]."""
+
+    yield_strength: tuple[Stress, Stress] | None = None
+    """The outcome of each pin in yield is decided over it; limit loads and checks by formula take
+    the lower end. Default: the `yield_strength` alone."""
+
+
 class MaterialTable(StrictTable):
     """An isotropic linear-elastic material."""
 
@@ -82,6 +90,20 @@ class MaterialTable(StrictTable):
     hardening: list[tuple[Annotated[Number, Field(gt=0.0)], Stress]] = []
     """Pairs of equivalent plastic strain and true stress past yield, in rising order, for limit
     loads; the stress stays constant after the last. Default: perfectly plastic."""
+
+    range: MaterialRangeTable = MaterialRangeTable()
+    """What is not known of the material."""
+
+    @model_validator(mode="after")
+    def _within_range(self) -> "MaterialTable":
+        ends, strength = self.range.yield_strength, self.yield_strength
+        if ends is not None and (strength is None or not ends[0] <= strength <= ends[1]):
+            raise ArgumentError(
+                "range.yield_strength needs a yield_strength, which lies between its lower and its "
+                "upper end",
+                "strengths-out-of-order",
+            )
+        return self
 
     @model_validator(mode="after")
     def _in_order(self) -> "MaterialTable":
@@ -138,6 +160,9 @@ class SegmentTable(StrictTable):
     """Name of the outer surface, for `clamp`. Default: its connection."""
     connection: str | None = None
     """Connection of the link that bears on the outer surface; also the name of the surface."""
+    ear_of: str | None = None
+    """Connection of the pin whose link bears here, too, with the other ear of a clevis. The segment
+    needs a `name`, which is that of the ear's lug."""
     fillet: NotNegativeLength | None = None
     """Fillet radius at the inner corner at the far end; overrides the pin's `fillet`."""
     edge_radius: NotNegativeAtEnds = 0.0
@@ -147,6 +172,16 @@ class SegmentTable(StrictTable):
     """The same of the corners of the bore, inner ones too."""
     hardened: HardenedTable | None = None
     """Hardened outer surface of this segment. Default: that of the pin or its material."""
+
+    @model_validator(mode="after")
+    def _is_named_ear(self) -> "SegmentTable":
+        if self.ear_of is not None and (self.name is None or self.connection is not None):
+            raise ArgumentError(
+                "ear_of is for a segment with a name, by which the lug of this ear is called, and "
+                "without a connection of its own",
+                "ear-without-name",
+            )
+        return self
 
     @property
     def diameters(self) -> tuple[float, float]:
@@ -366,3 +401,15 @@ class PinTable(StrictTable):
             named = enumerate(self.profile, 1)
             return [(f"profile[{i}].connection", s.connection) for i, s in named if s.connection]
         return [(f"band.{name}", name) for name, band in self.band.items() if band.connection]
+
+    @model_validator(mode="after")
+    def _ears_alike(self) -> "PinTable":
+        for connection, ear in self.ears.items():
+            if connection in self.lug:
+                self.lug.setdefault(ear, self.lug[connection])
+        return self
+
+    @property
+    def ears(self) -> dict[str, str]:
+        """The name of the other ear, by connection, of links that are clevises."""
+        return {s.ear_of: s.name for s in self.profile or () if s.ear_of and s.name}

@@ -3,14 +3,21 @@
 import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError, ValidationInfo, field_validator, model_validator
+from pydantic import (
+    Discriminator,
+    Field,
+    Tag,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 
 from assess.codes import Code
 from pinbase.errors import ArgumentError
-from pinstress.study.schema.cases import GivenCase, InstantCase, LegCase, MotionCase, StaticCase
+from pinstress.study.schema.cases import GivenCase, InstantCase, MotionCase, StaticCase
 from pinstress.study.schema.fatigue import FatigueTable
 from pinstress.study.schema.landing import DropCase, GroundCase
-from pinstress.study.schema.leg import SpatialLegTable
 from pinstress.study.schema.lugs import LugTable, with_lug_defaults
 from pinstress.study.schema.mechanism import MechanismTable
 from pinstress.study.schema.pins import MaterialTable, PinTable
@@ -18,6 +25,7 @@ from pinstress.study.schema.require import RequireTable
 from pinstress.study.schema.sequence import SequenceTable
 from pinstress.study.schema.shown import as_text
 from pinstress.study.schema.size import SizeTable
+from pinstress.study.schema.space import SpaceMechanismTable
 from pinstress.study.schema.types import (
     ANY_CASE,
     CaseName,
@@ -29,6 +37,25 @@ from pinstress.study.schema.types import (
     Temperature,
 )
 from pinstress.study.schema.vary import ReliabilityTable, VaryTable
+
+
+def _plane_or_space(value: object) -> str:
+    """The tag of a mechanism by its dimension; where that is neither 2 nor 3, by its points."""
+    dimension = value.get("dimension", 2) if isinstance(value, dict) else 2
+    if not isinstance(value, dict) or dimension in (2, 3):
+        return "<space>" if dimension == 3 else "<plane>"
+    joints = value.get("joint")
+    tables = joints.values() if isinstance(joints, dict) else ()
+    points = [table.get("at") for table in tables if isinstance(table, dict)]
+    in_space = any(isinstance(at, list) and len(at) == 3 for at in points)
+    return "<space>" if in_space else "<plane>"
+
+
+AnyMechanism = Annotated[
+    Annotated[MechanismTable, Tag("<plane>")] | Annotated[SpaceMechanismTable, Tag("<space>")],
+    Discriminator(_plane_or_space),
+]
+AnyCase = GivenCase | MotionCase | StaticCase | InstantCase | DropCase | GroundCase
 
 
 class AnalysisTable(StrictTable):
@@ -179,21 +206,18 @@ class StudyTable(StrictTable):
     case: Annotated[
         dict[
             CaseName,
-            Annotated[
-                GivenCase | MotionCase | StaticCase | InstantCase | LegCase | DropCase | GroundCase,
-                Field(discriminator="kind"),
-            ],
+            Annotated[AnyCase, Field(discriminator="kind")],
         ],
         Field(min_length=1),
     ]
-    """Load cases by name; each is run for the pins that it loads. A name with a *, of kind "given",
-    stands for every name in the column `case` of its table, which replaces the *."""
+    """Load cases by name; each is run for the pins that it loads. A name with a * stands for
+    several, whose names replace the *: of kind "given" those in the column `case` of its table, of
+    kind "ground" the rules of its `part` and its `factors`."""
     sequence: dict[Name, SequenceTable] = {}
     """Duty cycles by name: cases one after the other."""
-    mechanism: MechanismTable | None = None
-    """The linkage, for cases of kind "motion", "static", "instant", "drop" and "ground"."""
-    spatial_leg: SpatialLegTable | None = None
-    """The leg, for cases of kind "spatial_leg"."""
+    mechanism: AnyMechanism | None = None
+    """The linkage, for cases of kind "motion", "static", "instant", and in a plane "drop" and
+    "ground"."""
     analysis: AnalysisTable = AnalysisTable()
     """Requirements on the analysis."""
     require: list[RequireTable] = []
@@ -232,12 +256,22 @@ class StudyTable(StrictTable):
     @classmethod
     def _tables_of_cases(cls, value: Any) -> Any:
         for name, case in value.items() if isinstance(value, dict) else ():
-            given = isinstance(case, dict) and case.get("kind") == "given" and "table" in case
-            if ANY_CASE in str(name) and not given:
+            content: dict[str, Any] = case if isinstance(case, dict) else {}
+            several = content.get("kind") == "given" and "table" in content
+            factors = content.get("factors", [])
+            loads = isinstance(factors, list) and len(factors) > 1
+            if content.get("kind") == "ground":
+                several = "factors" in content or "part" in content
+                if ("part" in content or loads) and ANY_CASE not in str(name):
+                    raise ArgumentError(
+                        f"{as_text(name)}: several cases; put a * into the name, which theirs "
+                        f'replace: [case."{name} *"]',
+                        "unusable-name",
+                    )
+            if ANY_CASE in str(name) and not several:
                 raise ArgumentError(
-                    f"{as_text(name)}: a name with a * stands for every case of a table; give "
-                    f"kind = "
-                    '"given" and table = "file.csv"',
+                    f"{as_text(name)}: a name with a * stands for several cases; give kind = "
+                    '"given" and table = "file.csv", or kind = "ground" and part or factors',
                     "unusable-name",
                 )
         return value

@@ -7,6 +7,7 @@ For editors and for the reference in the documentation the JSON Schema gives of 
 import ast
 import inspect
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 from textwrap import dedent
 from typing import Annotated, Any, Literal
@@ -256,6 +257,12 @@ JointOrPoint = Annotated[
     Discriminator(lambda value: "<joint>" if isinstance(value, str) else "<point>"),
 ]
 
+Place3 = Annotated[list[Length], Field(min_length=2, max_length=3)]
+JointOrPlace = Annotated[
+    Annotated[str, Tag("<joint>")] | Annotated[Place3, Tag("<point>")],
+    Discriminator(lambda value: "<joint>" if isinstance(value, str) else "<point>"),
+]
+
 LimitLoads = Annotated[
     Annotated[Literal["auto", "always", "never"], Tag("<way>")]
     | Annotated[list[Name], Tag("<pins>")],
@@ -281,6 +288,11 @@ Tilt = Annotated[
 ]
 
 
+def one_or_several(value: Any) -> Any:
+    """Return a list of tables, of which the study may give a single one."""
+    return [value] if isinstance(value, dict) else value
+
+
 class StrictTable(BaseModel):
     """A table of the study file: unknown keys are errors.
 
@@ -294,12 +306,18 @@ class StrictTable(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _known_keys(cls, data: Any) -> Any:
-        known = [field.alias or name for name, field in cls.model_fields.items()]
+        known = _keys(cls)
         unknown = data.keys() - known if isinstance(data, dict) else ()
         if unknown:
             wrong = [unknown_key(key, known) for key in data if key in unknown]
             raise ValidationError.from_exception_data(cls.__name__, wrong)
         return data
+
+
+@cache
+def _keys(table: type[StrictTable]) -> list[str]:
+    """Return the keys of a table, found once: a study is read again for every design."""
+    return [field.alias or name for name, field in table.model_fields.items()]
 
 
 def unknown_key(key: object, known: list[str]) -> InitErrorDetails:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -78,8 +78,15 @@ class UnitSystem:
 
     def factor(self, dimension: str) -> float:
         """SI value of this system's unit of a dimension."""
-        exponents, _ = DIMENSION_EXPONENTS[dimension]
-        return math.prod(f**e for f, e in zip(self.in_si, exponents, strict=True))
+        return self._factors[dimension]
+
+    @cached_property
+    def _factors(self) -> dict[str, float]:
+        """SI values of the units by dimension: a study is read again for every design."""
+        return {
+            dimension: math.prod(f**e for f, e in zip(self.in_si, exponents, strict=True))
+            for dimension, (exponents, _) in DIMENSION_EXPONENTS.items()
+        }
 
     def unit(self, dimension: str) -> str:
         """Name of this system's unit of a dimension, or of what is a product of some."""

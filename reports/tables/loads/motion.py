@@ -1,4 +1,4 @@
-"""Tables of reactions and drives along a motion, of the leg in space, and of the checks."""
+"""Tables of reactions and drives along a motion, of bodies in space, and of the checks."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import numpy as np
 
 from reports.data.results import (
     BeamCheck,
+    BodyMotion,
     DriveTable,
     Floats,
-    LegTable,
     MotionCheck,
     ReactionTable,
     Results,
@@ -53,6 +53,20 @@ MOTION_CHECK_COLUMNS: list[Column[MotionCheck]] = [
     *fields("closed_form_acceleration", "acceleration"),
 ]
 
+# Vectors of a body in space: what their columns begin with -> attribute and dimension
+BODY_VECTORS = {
+    "": ("centre", "length"),
+    "v": ("velocity", "velocity"),
+    "a": ("acceleration", "acceleration"),
+    "coriolis_": ("coriolis", "acceleration"),
+    "omega_": ("spin", "rate of turn"),
+    "alpha_": ("spin_rate", "rate of rate of turn"),
+    "p": ("momentum", "momentum"),
+    "p_rate_": ("momentum_rate", "force"),
+    "L": ("angular_momentum", "angular momentum"),
+    "L_rate_": ("angular_momentum_rate", "moment"),
+}
+
 
 def reactions_table(results: Results) -> Table[ReactionTable]:
     """Return forces and moments on the pins, world axes: a line per instant and connection."""
@@ -70,6 +84,8 @@ def reactions_pin_axes_table(results: Results) -> Table[ReactionTable]:
 
 def _in_pin_axes(table: ReactionTable, vectors: Floats) -> Floats:
     turn = np.zeros(vectors.shape[:2]) if table.turn is None else table.turn
+    if turn.ndim > 2:
+        return np.asarray((vectors[:, :, None, :] @ turn)[:, :, 0])
     c, s = np.cos(turn), np.sin(turn)
     x, y, z = np.moveaxis(vectors, 2, 0)
     return np.stack([c * x + s * y, c * y - s * x, z], axis=2)
@@ -112,27 +128,21 @@ def motion_check_table(check: MotionCheck) -> Table[MotionCheck]:
     return ArrayTable("motion_check", MOTION_CHECK_COLUMNS, [check])
 
 
-def leg_table(tables: tuple[LegTable, ...]) -> Table[LegTable]:
-    """Return the dynamics of a spatial leg: a line per instant, a column per component, all cases.
+def bodies_table(results: Results) -> Table[BodyMotion]:
+    """Return motion and momenta of bodies in space: a line per instant and body."""
 
-    The columns carry their units; vectors end in _x, _y, _z (primed axes).
-    """
+    def component(name: str, k: int) -> Callable[[BodyMotion], Floats]:
+        return lambda table: getattr(table, name)[:, k]
 
-    def scalar(name: str) -> Callable[[LegTable], Floats]:
-        return lambda table: table.scalars[name].values
-
-    def component(name: str, k: int) -> Callable[[LegTable], Floats]:
-        return lambda table: table.vectors[name].values[:, k]
-
-    first = tables[0]
-    columns = [
+    columns: list[Column[BodyMotion]] = [
         *fields("case"),
         *fields("time", "time"),
-        *(Column(f"{name} [{q.unit}]", scalar(name)) for name, q in first.scalars.items()),
+        *fields("body"),
         *(
-            Column(f"{name}_{x} [{q.unit}]", component(name, k))
-            for name, q in first.vectors.items()
-            for k, x in enumerate("xyz")
+            Column(f"{key}{axis}", component(name, k), dimension)
+            for key, (name, dimension) in BODY_VECTORS.items()
+            for k, axis in enumerate("xyz")
         ),
+        *fields("kinetic_energy", "moment"),
     ]
-    return ArrayTable("leg", columns, tables)
+    return ArrayTable("bodies", columns, results.bodies)

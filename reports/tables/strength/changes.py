@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from fea.core.peak import SingularZone
-from reports.data.changes import Remedy
+from pinbase.grouped import grouped
+from reports.data.changes import Remedy, unsized
 from reports.data.results import Results
 from reports.format.numbers import DASH, engineering, short
 from reports.tables.column import Column, Table, read_only, texts
@@ -46,16 +47,34 @@ def changes_table(results: Results) -> Table[Remedy]:
 
 def change_notes(results: Results) -> list[str]:
     """Return the notes on the rows, a sentence or two each."""
-    pins: dict[str, list[str]] = {}
-    for change in results.changes:
-        if change.diameter_note:
-            pins.setdefault(change.diameter_note, []).append(change.pin)
-    notes = [f"{'Pins' if pin[1:] else 'Pin'} {', '.join(pin)}: {n}." for n, pin in pins.items()]
+    left_out = unsized(results.changes)
+    sized = (change for change in results.changes if change not in left_out)
+    notes = notes_of_pins((change.diameter_note, change.pin) for change in sized)
+    notes += unsized_notes(results)
     notes += [CONTACT_NOTE] * any(not c.proportional for c in results.changes)
     by_contact = [c.pin for c in results.changes if _by_contact(results, c)]
     notes += [BENEATH_NOTE.format(", ".join(by_contact))] * bool(by_contact)
     remedies = _remedies(results)
     return notes + [SINGULAR_ROWS_NOTE.format("; ".join(remedies))] * bool(remedies)
+
+
+def unsized_notes(results: Results) -> list[str]:
+    """Return a sentence on the pins that no diameter brings to their factor, and why the worst of
+    them; nothing without any.
+    """
+    if not (left_out := unsized(results.changes)):
+        return []
+    worst, pins = left_out[0], [change.pin for change in left_out]
+    sized = len(pins) < len(results.changes)
+    reason = f"{worst.pin}: {worst.diameter_note}" if pins[1:] else worst.diameter_note
+    out = ", so the command leaves them out" if sized else ""
+    return [f"Larger diameters are no remedy for {', '.join(pins)}{out} ({reason})."]
+
+
+def notes_of_pins(notes: Iterable[tuple[str, str]]) -> list[str]:
+    """Return the notes, each with the pins that have it. notes: each with a pin; some empty."""
+    pins = grouped(pair for pair in notes if pair[0])
+    return [f"{'Pins' if of[1:] else 'Pin'} {', '.join(of)}: {note}." for note, of in pins.items()]
 
 
 def _by_contact(results: Results, change: Remedy) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import inf
 
@@ -11,6 +11,8 @@ from reports.data.results import PeakReaction, Results, Units
 from reports.format.numbers import DASH
 from reports.tables.column import Column, Table, fields, unit_columns
 
+MAX_CASES_IN_SENTENCES = 4  # of more, the terminal has the matrix of the worst
+MAX_SHOWN_CASES, MAX_SHOWN_PINS = 4, 10  # of the matrix on the terminal
 FULL_COLOUR_UTILISATION = 1.0  # utilisation at which a cell has its full colour
 ENVELOPE_NOTE = (
     "Utilisation of each pin in each case: required over actual factor of safety (1 where none is "
@@ -54,6 +56,24 @@ def envelope_table(results: Results) -> Table[EnvelopeRow]:
 
 
 @dataclass(frozen=True)
+class CaseRow:
+    """A case, or several, with the cells of its pins by name."""
+
+    case: str
+    cells: dict[str, EnvelopeCell]
+
+    @property
+    def governs(self) -> bool:
+        """Whether the case is the worst of a pin."""
+        return any(cell.governs for cell in self.cells.values())
+
+    @property
+    def used(self) -> float:
+        """The largest utilisation."""
+        return max((cell.used or 0.0 for cell in self.cells.values()), default=0.0)
+
+
+@dataclass(frozen=True)
 class Matrix:
     """A matrix of cases and pins.
 
@@ -75,6 +95,46 @@ def matrix(results: Results) -> Matrix | None:
     pins = list(dict.fromkeys(pin for pin, _ in cells))
     rows = [(case, [cells.get((pin, case)) for pin in pins]) for case in cases]
     return Matrix(pins, rows, omitted_note(results))
+
+
+def worst_cases(results: Results, pins: Sequence[str]) -> Table[CaseRow] | None:
+    """Return the matrix of the worst cases, the others in one row; None for few cases.
+
+    Cases that are the worst of a pin come first, then those with the largest utilisation.
+
+    pins: that have a column, in this order; of many the first.
+    """
+    every = matrix(results)
+    if every is None or len(every.rows) <= MAX_CASES_IN_SENTENCES:
+        return None
+    by_case = [
+        CaseRow(case, {cell.result.pin: cell for cell in cells if cell is not None})
+        for case, cells in every.rows
+    ]
+    by_case.sort(key=lambda row: (row.governs, row.used), reverse=True)
+    rows, rest = by_case[:MAX_SHOWN_CASES], by_case[MAX_SHOWN_CASES:]
+    if rest:
+        worst: dict[str, EnvelopeCell] = {}
+        for cell in (cell for row in reversed(rest) for cell in row.cells.values()):
+            known = worst.get(cell.result.pin)
+            if known is None or (cell.used or 0.0) >= (known.used or 0.0):
+                worst[cell.result.pin] = cell
+        rows.append(CaseRow(f"{len(rest)} others", worst))
+    columns = [
+        Column("case", lambda row: row.case, "", "utilisation, * largest", numeric=False),
+        *map(_of_pin, pins[:MAX_SHOWN_PINS]),
+    ]
+    return Table("worst_cases", columns, rows)
+
+
+def _of_pin(pin: str) -> Column[CaseRow]:
+    """Return the column of a pin; the cell of its governing case has a star."""
+
+    def text(row: CaseRow) -> str:
+        cell = row.cells.get(pin)
+        return "" if cell is None else f"{cell_text(cell)}{'*' if cell.governs else ' '}"
+
+    return Column(pin, text, "", f"{pin} ")
 
 
 def heat(cell: EnvelopeCell) -> float:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from assess.margin import RATIO_DIMENSION, Margin, PinMargin
 from assess.strength.bending_arms import BendingArms
 from reports.data.governing import governing, skipped
+from reports.data.requirements import keys_in
 from reports.data.results import PinResult, Results, Units
 from reports.format.numbers import DASH, engineering, short
 from reports.format.units import unit_name
@@ -163,7 +164,7 @@ def not_made_briefly(results: Results) -> str:
     lugs: dict[str, dict[tuple[str, str], None]] = {}
     others: list[str] = []
     for needs, margins in skipped(results).items():
-        keys = needs.split(", ")
+        keys = keys_in(needs)
         if not all(key.startswith(("material.", "lug.")) for key in keys):
             others.append(needs)
             continue

@@ -13,18 +13,21 @@ from reports.data.decision import common_factor, limit, worst_first
 from reports.data.dependence import BENEATH_CONTACT
 from reports.data.envelope import detailed_rows, omitted_note
 from reports.data.results import PinResult, Results, Units
+from reports.data.row import SharingRange
 from reports.format.files import markdown
 from reports.format.numbers import finite, ratio, short
 from reports.format.ranges import (
     error_range,
     factor_range,
     joint_range,
+    sharing_range,
     utilisation_range,
 )
 from reports.format.words import (
     BENEATH_CONTACT_NOTE,
     JOINT_RANGE_NOTE,
     RESULT_ROWS_NOTE,
+    SHARING_NOTE,
     VERDICT_MEANINGS,
     depends_words,
     headline,
@@ -38,7 +41,16 @@ from reports.tables.stress.places import governing_words
 
 FACTOR_COLUMN_ORDER = (  # for people; columns that are not named here come last
     *("pin", "case", "outcome", "safety_factor", "utilisation", "max_von_mises"),
-    *("error_estimate", "governs", "joint_high", BENEATH_CONTACT, "time", "verdict", "model"),
+    *(
+        "error_estimate",
+        "governs",
+        "sharing_high",
+        "joint_high",
+        BENEATH_CONTACT,
+        "time",
+        "verdict",
+        "model",
+    ),
 )
 
 
@@ -62,6 +74,11 @@ class FactorRow:
     def joint(self) -> JointRange | None:
         """The range over the unknowns of the joint."""
         return self.pin.joint.range if self.pin.joint else None
+
+    @property
+    def sharing(self) -> SharingRange | None:
+        """The range over the stiffness of links."""
+        return self.pin.sharing
 
     @property
     def used(self) -> float | None:
@@ -126,6 +143,9 @@ COLUMNS: tuple[Column[FactorRow], ...] = (
     Column("safety_factor_low", _end("safety_factor_interval", 0)),
     Column("safety_factor_high", _end("safety_factor_interval", 1)),
     *(_error(part) for part in ("mesh", "time", "series", "model", "cells")),
+    Column("sharing_low", lambda row: row.sharing and row.sharing.max_von_mises[0], "stress"),
+    Column("sharing_high", lambda row: row.sharing and row.sharing.max_von_mises[1], "stress",
+           "links", lambda row: sharing_range(row.pin), rank=4, drop_if_empty=True),
     Column("joint_low", lambda row: row.joint and row.joint.max_von_mises[0], "stress"),
     Column("joint_high", lambda row: row.joint and row.joint.max_von_mises[1], "stress", "joint",
            lambda row: joint_range(row.pin), rank=4, drop_if_empty=True),
@@ -208,6 +228,7 @@ def reading(table: Table[FactorRow]) -> list[str]:
     names = table.keys
     return [
         RESULT_ROWS_NOTE,
+        *[SHARING_NOTE] * ("sharing_high" in names),
         *[JOINT_RANGE_NOTE] * ("joint_high" in names),
         *[BENEATH_CONTACT_NOTE] * (BENEATH_CONTACT in names),
     ]

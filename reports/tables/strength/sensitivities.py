@@ -9,6 +9,7 @@ from reports.data.results import PinSensitivities, Results, Sensitivity, Units
 from reports.format.numbers import DASH, engineering, short
 from reports.format.units import unit_name
 from reports.tables.column import Column, Table, fields, in_order, json_of, read_only, texts
+from reports.tables.strength.changes import notes_of_pins
 
 PARAMETER_KEYS = (  # of results.json
     *("key", "unit", "value", "stress_per_unit", "factor_per_unit", "step", "factor_with_step"),
@@ -145,10 +146,4 @@ def sensitivity_notes(results: Results) -> list[str]:
     rows = {(effects.pin, effects.case) for effects in results.sensitivities if _shown(effects)}
     if any((p.pin, p.case) in rows and p.verdict == "singular" for p in results.pins):
         notes.append(SINGULAR_SENSITIVITIES_NOTE)
-    without: dict[str, list[str]] = {}
-    for effects in results.sensitivities:
-        if effects.note:
-            without.setdefault(effects.note, []).append(effects.pin)
-    for note, pins in without.items():
-        notes.append(f"{'Pins' if pins[1:] else 'Pin'} {', '.join(pins)}: {note}.")
-    return notes
+    return notes + notes_of_pins((effects.note, effects.pin) for effects in results.sensitivities)

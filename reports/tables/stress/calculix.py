@@ -84,7 +84,6 @@ CONTACT = fields(
     "bending_moment=our_moment bending_moment_calculix=moment load_elsewhere=elsewhere "
     "mesh_change=stress_change bands"
 )
-LIMIT = fields("unknowns factor_same_mesh=ours factor_calculix=theirs")
 
 
 def over_answer(opinion: Opinion) -> float | None:

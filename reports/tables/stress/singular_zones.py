@@ -25,32 +25,32 @@ class ShownZone:
     """A zone with its number on the pin; a circle has the same number in all cases."""
 
     number: int
-    found: SingularZone
+    place: SingularZone
 
     @property
     def z(self) -> float:
-        return self.found.location[2]
+        return self.place.location[2]
 
     @property
     def r(self) -> float:
-        return hypot(*self.found.location[:2])
+        return hypot(*self.place.location[:2])
 
     @property
     def between(self) -> str:
-        return " / ".join(self.found.between)
+        return " / ".join(self.place.between)
 
     @property
     def exponents(self) -> str:
         """The measured and the theoretical exponent; at a load's edge theory is logarithmic."""
-        theory = self.found.exponent_theory
+        theory = self.place.exponent_theory
         known = "logarithm" if theory == 0.0 else engineering(theory, 3)
-        return f"{engineering(self.found.exponent, 3)} / {known}"
+        return f"{engineering(self.place.exponent, 3)} / {known}"
 
     @property
     def short_kind(self) -> str:
         """The kind without its article, for a drawing."""
-        head, _, rest = self.found.kind.partition(" ")
-        return rest if rest and head in ("a", "an", "the") else self.found.kind
+        head, _, rest = self.place.kind.partition(" ")
+        return rest if rest and head in ("a", "an", "the") else self.place.kind
 
 
 def pin_zones(results: Results, pin: str) -> dict[str, list[ShownZone]]:
@@ -67,7 +67,7 @@ def circles(zones: Iterable[ShownZone]) -> list[ShownZone]:
     """Return one zone per number, preferably from a case in which it governs."""
     by_number: dict[int, ShownZone] = {}
     for zone in zones:
-        if zone.number not in by_number or zone.found.governs:
+        if zone.number not in by_number or zone.place.governs:
             by_number[zone.number] = zone
     return [by_number[number] for number in sorted(by_number)]
 
@@ -88,11 +88,11 @@ class ZoneRow:
 
 def _intensity(name: str) -> Callable[[ZoneRow], float | None]:
     """Return a function that gives a strength of the singular field, where it was measured."""
-    return lambda row: getattr(row.zone.found.strength, name, None)
+    return lambda row: getattr(row.zone.place.strength, name, None)
 
 
 def _at(k: int) -> Callable[[ZoneRow], float]:
-    return lambda row: row.zone.found.location[k]
+    return lambda row: row.zone.place.location[k]
 
 
 COLUMNS: list[Column[ZoneRow]] = [
@@ -104,14 +104,14 @@ COLUMNS: list[Column[ZoneRow]] = [
     Column("y", _at(1), "length"),
     Column("between", lambda row: row.zone.between, "", "between",
            lambda row: row.zone.between or DASH, numeric=False),
-    *texts("zone.found.kind"),
-    Column("exponent", lambda row: row.zone.found.exponent, "", "exponent",
+    *texts("zone.place.kind"),
+    Column("exponent", lambda row: row.zone.place.exponent, "", "exponent",
            lambda row: row.zone.exponents),
-    *fields("zone.found.exponent_theory"),
-    Column("excluded_radius", lambda row: row.zone.found.excluded, "length", "excluded distance"),
-    *texts("zone.found.governs"),
-    Column("max_von_mises", lambda row: row.zone.found.max_von_mises, "stress", "maximum inside"),
-    Column("advice", lambda row: row.zone.found.advice, heading="remedy", numeric=False),
+    *fields("zone.place.exponent_theory"),
+    Column("excluded_radius", lambda row: row.zone.place.excluded, "length", "excluded distance"),
+    *texts("zone.place.governs"),
+    Column("max_von_mises", lambda row: row.zone.place.max_von_mises, "stress", "maximum inside"),
+    Column("advice", lambda row: row.zone.place.advice, heading="remedy", numeric=False),
     *fields("pin.verdict"),
     *unit_columns("length stress"),
     Column("strength", _intensity("along"), "stress"),

@@ -18,7 +18,6 @@ from assess.checks import margins_of
 from assess.clauses.affdl_lugs import ULTIMATE_OVER_YIELD
 from assess.clauses.eye import PlateEye
 from assess.clauses.melcon_hoblit import (
-    average_area,
     oblique_ratio,
     transverse_load,
     yield_load,
@@ -48,10 +47,7 @@ def test_axial_yield() -> None:
 
 
 def test_transverse() -> None:
-    """A_av 0.24 in2, 0.74 of the bearing area; 8.9 kips with a margin of 0.2."""
-    area = average_area((0.26, 0.26), (0.21, 0.21))
-    assert area == pytest.approx(0.24, abs=3e-3)
-    assert area / 0.325 == pytest.approx(0.74, abs=5e-3)
+    """8.9 kips with a margin of 0.2."""
     ultimate = transverse_load(0.51, 74 * KSI, LUG).result.value / KIP
     assert ultimate / (FITTING * 1.2) == pytest.approx(8.9, abs=0.02)
 

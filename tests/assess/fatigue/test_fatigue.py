@@ -57,7 +57,7 @@ def test_pure_shear_of_either_direction_is_positive() -> None:
     assert signed_von_mises(shear) == pytest.approx(np.sqrt([3.0, 3.0]))
 
 
-@pytest.mark.parametrize("cylindrical", [False, True])
+@each("cylindrical", [False, True])
 def test_the_normal_of_the_plane_is_in_the_axes_of_the_pin(cylindrical: bool) -> None:
     """Alternating tension along the tangent at 90 degrees from x, which is -x: without mean stress
     the plane of largest shear is at 45 degrees to it.
@@ -104,7 +104,7 @@ def test_cases_that_are_rare_come_in_every_so_many_units() -> None:
     assert flight([2.0, 0.25]) == Flight((0, 0, 0, 0, 0, 0, 0, 0, 1), 4)
 
 
-@pytest.mark.parametrize(
+@each(
     ("often", "code"),
     [([1.0, 0.0123456], "not-a-fraction"), ([50_000.0], "too-many-occurrences")],
 )

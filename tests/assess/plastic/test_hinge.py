@@ -29,13 +29,6 @@ def test_pure_bending_is_the_plastic_moment(bore: float, shape: float) -> None:
     assert found.upper[0] == pytest.approx(shape * elastic_moment(bore), rel=1e-5)
 
 
-def test_torsion_is_the_plastic_torque() -> None:
-    found = beam_bounds(bar(), STEEL, (), couples(2))
-    exact = math.pi / 12.0 * YIELD / math.sqrt(3.0) * D**3
-    assert found.lower[0] == pytest.approx(exact, rel=1e-9)
-    assert found.upper[0] == pytest.approx(exact, rel=1e-9)
-
-
 def test_a_long_cantilever_bends_and_a_short_one_slips() -> None:
     pin, loads = _pushed(9.75, 0.5)
     long = beam_bounds(pin, STEEL, ("start",), loads)

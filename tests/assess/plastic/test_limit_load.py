@@ -10,7 +10,7 @@ from assess.plastic.body import FlowingBody, untied
 from assess.plastic.flow import FlowRule
 from assess.plastic.limit_load import bracket, limit_on_mesh
 from assess.plastic.mechanism import isochoric, upper_bound, work_of_flow
-from assess.plastic.pin_body import acting_at, hexahedral, pin_body, plane_of, refine
+from assess.plastic.pin_body import acting_at, hexahedral, nodal_forces, pin_body, plane_of, refine
 from assess.plastic.solve import TETRAHEDRA_NOTE, body_on, flow_field, limit_load
 from fea.core.material import Material
 from fea.core.pin_loads import LoadAmounts, PinLoads, UnitLoad
@@ -42,6 +42,16 @@ def test_a_mesh_fills_the_pin() -> None:
         volume = hexahedral(mesh.nodes, mesh.elements, 3).weights
         assert volume.min() > 0.0
         assert volume.sum() == pytest.approx(quarters / 4 * pin.volume, rel=2e-4)
+
+
+def test_the_face_of_a_shoulder_has_its_whole_force() -> None:
+    pin = Pin("p", (Segment(1.0, 2.0), Segment(2.0, 3.0), Segment(1.0, 2.0)))
+    for name, force in (("shoulder 1", 7.0), ("shoulder 2", -4.0)):
+        loads = PinLoads("axial", (name,), np.array([[[0.0, 0.0, force]]]))
+        mesh = hexahedra(pin, FINE, 4)
+        elements = hexahedral(mesh.nodes, mesh.elements)
+        total = nodal_forces(pin, RULE, mesh, elements, acting_at(loads, 0)).sum(axis=0)
+        assert total == pytest.approx([0.0, 0.0, force], rel=1e-3, abs=1e-9)
 
 
 def test_a_mesh_has_the_fillets() -> None:
@@ -179,6 +189,7 @@ def test_part_of_a_turn_stands_for_the_whole() -> None:
     assert found[3] == pytest.approx(found[2], rel=1e-4)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_finer_meshes_stay_within_the_bracket() -> None:
     pin, loads = _cantilever()

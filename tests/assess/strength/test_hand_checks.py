@@ -15,6 +15,7 @@ from assess.situation import Situation
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from geometry import Pin, Segment
+from tests.support.each import each
 from tests.support.pins.plain_pins import double_shear
 
 d, F = 0.02, 12_000.0
@@ -75,7 +76,7 @@ def test_strengths(steel: Material) -> None:
         assert check.safety_factor is None
 
 
-@pytest.mark.parametrize(("other_gap", "double"), [(0.006, True), (0.04, False)])
+@each(("other_gap", "double"), [(0.006, True), (0.04, False)])
 def test_uneven_sides_are_single_shear(steel: Material, other_gap: float, double: bool) -> None:
     """With a wider gap on one side, statics send less than half there. The sides may differ by a
     tenth of the load, here (l - r) / (l + r) of the distances: 0.03 and 0.32.

@@ -62,7 +62,7 @@ def test_a_body_that_nothing_holds_is_refused(
     assert error.value.code in ("not-positive-definite", "ill-conditioned")
 
 
-@pytest.mark.parametrize("cholmod", [True, False])
+@each("cholmod", [True, False])
 def test_an_indefinite_matrix_is_refused(monkeypatch: pytest.MonkeyPatch, cholmod: bool) -> None:
     monkeypatch.setattr(linear, "has_cholmod", lambda: cholmod)
     K = sp.diags_array([1.0, 2.0, -3.0]).tocsr()
@@ -77,7 +77,7 @@ def test_a_wrong_solution_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
         factorize(sp.csr_matrix(sp.eye_array(3)), np.arange(3))(np.ones(3))
 
 
-@pytest.mark.parametrize("size", [1.0, 1e-9])
+@each("size", [1.0, 1e-9])
 def test_one_wrong_solution_among_many_is_refused(
     monkeypatch: pytest.MonkeyPatch, size: float
 ) -> None:

@@ -7,10 +7,11 @@ import pytest
 
 from fea.core.material import Material
 from geometry import ArgumentError
+from tests.support.each import each
 from tests.support.errors import raises
 
 
-@pytest.mark.parametrize(
+@each(
     ("modulus", "nu", "code"),
     [
         (0.0, 0.3, "not-positive"),
@@ -25,7 +26,7 @@ def test_what_is_no_material_is_refused(modulus: float, nu: float, code: str) ->
         Material("steel", modulus, nu)
 
 
-@pytest.mark.parametrize("nu", [-0.5, 0.0, 0.3, 0.49])
+@each("nu", [-0.5, 0.0, 0.3, 0.49])
 def test_hookes_law_the_other_way_round(nu: float) -> None:
     """Strain from stress is the textbook's form: (1 + nu) / E s - nu / E tr s."""
     material = Material("m", 7e10, nu)

@@ -68,7 +68,7 @@ def test_so_it_is_of_a_section(unknowns: int, loads: int, measured: float) -> No
     assert not too_much(unknowns, 1.5 * measured, loads)
 
 
-@pytest.mark.parametrize(("unknowns", "measured"), [(52_371, 303), (256_089, 1266)])
+@each(("unknowns", "measured"), [(52_371, 303), (256_089, 1266)])
 def test_and_of_a_local_solid(unknowns: int, measured: float) -> None:
     assert 0.95 * measured < local_memory(unknowns, 6) < 1.4 * measured
     assert not too_much(unknowns, 1.4 * measured, local_loads=6)

@@ -107,6 +107,7 @@ def test_of_loads_solved_one_after_the_other(cantilever_pin: Pin, steel: Materia
     assert energy(units[:2], units[2:]) == pytest.approx(energy(units), rel=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_harmonic_beside_solid(cantilever_pin: Pin, steel: Material) -> None:
     """Force, pull, couple and torque together; the tetrahedra lack a few parts in a thousand."""

@@ -75,3 +75,8 @@ def test_a_place_that_may_be_larger_counts(
 ) -> None:
     peak = judge(SURFACE, 0.02, other)
     assert (peak.error_estimate, peak.verdict) == (error, verdict)
+
+
+def test_a_small_tolerance_is_not_said_to_be_zero() -> None:
+    peak = judge(replace(SURFACE, parts=ErrorParts(200.0 * 4e-4)), 2e-8)
+    assert peak.note.startswith("estimated error 0.04%, above the tolerance of 2e-06%;")

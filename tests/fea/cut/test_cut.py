@@ -236,6 +236,7 @@ def test_four_point_bending_with_the_hole_at_the_extreme_fibre() -> None:
     assert second.peak.max_von_mises == pytest.approx(peak.max_von_mises, rel=1e-6)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_away_from_the_cut_the_pin_is_the_uncut_one() -> None:
     """A hole in the unloaded tail of a cantilever changes nothing of its root."""

@@ -24,6 +24,7 @@ from fea.solve.solve import solve_pin
 from geometry import Bottom, Cut, CutPin, Flat, Hole, Passage, Pin, Segment, Slot
 from geometry.mesh.cut_piece import Piece, clipped, piece_mesh
 from pinbase.arrays import Floats
+from tests.support.each import sampled
 
 STEEL = Material("steel", 2.1e11, 0.3, yield_strength=5e8)
 D, R, MIDDLE = 0.02, 0.01, 0.08
@@ -213,8 +214,8 @@ def test_what_is_meshed_of_cuts() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("cuts", [FLATS[:1], (KEYWAY,), (MOUTH,)])
-def test_parts_answer_as_the_whole(cuts: tuple[Cut, ...]) -> None:
+@pytest.mark.parametrize("cuts", sampled([[FLATS[0]], [KEYWAY], [MOUTH]], every=3))
+def test_parts_answer_as_the_whole(cuts: list[Cut]) -> None:
     """Each on a mesh of its own, in bending about an axis that is no axis of symmetry."""
 
     def skew(x: Floats) -> Floats:
@@ -250,7 +251,10 @@ ROUND: list[Cut] = [
             },
         ),
         (KEYWAY, {}),
-        *(pytest.param(one, {}, marks=pytest.mark.slow) for one in ROUND),
+        *(
+            pytest.param(one, {}, marks=[pytest.mark.slow, *[pytest.mark.long] * (k % 3 > 0)])
+            for k, one in enumerate(ROUND)
+        ),
     ],
 )
 def test_sharp_inner_corners_are_found(one: Cut, expected: dict[tuple[str, str], float]) -> None:
@@ -296,11 +300,14 @@ def test_a_sharp_flat_is_singular_and_says_what_would_help() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "one",
-    [
-        Flat(MIDDLE - D / 2, MIDDLE + D / 2, 0.007, 0.0, 0.002),
-        Slot(MIDDLE - 0.01, MIDDLE + 0.01, 0.006, 0.0035, 0.0, 0.0012),
-        Hole(MIDDLE, 0.006, 0.0, 0.005, Bottom(radius=0.0012)),
-    ],
+    sampled(
+        [
+            Slot(MIDDLE - 0.01, MIDDLE + 0.01, 0.006, 0.0035, 0.0, 0.0012),
+            Flat(MIDDLE - D / 2, MIDDLE + D / 2, 0.007, 0.0, 0.002),
+            Hole(MIDDLE, 0.006, 0.0, 0.005, Bottom(radius=0.0012)),
+        ],
+        every=3,
+    ),
 )
 def test_beside_the_whole_solid(one: Cut) -> None:
     """On its finest mesh, within both errors."""

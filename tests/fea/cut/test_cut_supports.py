@@ -168,7 +168,7 @@ def test_what_cuts_lose_comes_back_to_round_off(name: str, shears: bool) -> None
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", sampled(IN_BAND, every=3))
+@pytest.mark.parametrize("name", sampled(IN_BAND, every=4))
 def test_a_flat_or_keyway_in_a_loaded_band_beside_the_whole_solid(name: str) -> None:
     """Whose pressure acts on what is left of the band, with the force of the link."""
     forces = 10e3 * np.array([[[1.0, 0.0, 0.0], [-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]]])

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from fea.core.pin_loads import LoadAmounts, UnitLoad
+from fea.harmonic.fatigue_points import stress_at
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.stress_at import stress_at
 from fea.harmonic.superposition import Circumference
 
 

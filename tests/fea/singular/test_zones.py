@@ -134,26 +134,28 @@ def test_edges_of_uniform_tractions_are_logarithms() -> None:
     ("force", "moment", "distribution", "told"),
     [
         ((0, 9, 0), (0, 0, 0), "uniform", ["transverse"]),
-        ((0, 9, 9), (0, 0, 0), "uniform", ["transverse", "axial"]),
-        ((0, 9, 9), (0, 0, 0), "cosine", ["axial"]),
-        ((0, 9, 0), (0, 0, 9), "cosine", ["axial"]),
-        ((0, 9, 0), (9, 0, 0), "cosine", ["moment"]),
+        ((0, 9, 9), (0, 0, 0), "uniform", ["transverse"]),
+        ((0, 0, 0), (9, 0, 0), "uniform", ["moment"]),
+        ((0, 9, 0), (9, 0, 0), "uniform", ["transverse", "moment"]),
+        ((0, 9, 9), (9, 0, 9), "cosine", []),
     ],
 )
 def test_the_remedy_at_the_edge_of_a_load_is_that_of_what_acts(
     force: tuple[float, ...], moment: tuple[float, ...], distribution: Distribution,
     told: list[str], steel: Material,
 ) -> None:  # fmt: skip
-    """Only a uniform transverse traction is cured by a bearing pressure."""
+    """A bearing pressure cures uniform tractions across the pin; along and about it they fade."""
     pin = Pin("P", (Segment(1, 2), Segment(1, 2, connection="B"), Segment(1, 2)))
     loads = PinLoads(
         "c", ("B",), np.array([[force]], float), np.array([[moment]], float), distribution
     )
-    remedies = {"transverse": "a bearing pressure has no jump", "axial": "along the axis acts",
-                "moment": "a moment across the axis"}  # fmt: skip
+    remedies = {
+        "transverse": "a bearing pressure has no jump",
+        "moment": "a moment across the axis",
+    }
     zones = singularities_of(pin, steel, ("end",), (loads,))
     edges = [zone for zone in zones if zone.kind == "edge of a load"]
-    assert [zone.z for zone in edges] == [1, 2]
+    assert [zone.z for zone in edges] == ([1, 2] if told else [])
     for zone in edges:
         assert [name for name, words in remedies.items() if words in zone.advice] == told
 

@@ -94,7 +94,8 @@ def test_tractions_are_those_that_are_stated(cantilever_pin: Pin, steel: Materia
     expected[..., 0, 0], expected[..., 1, 1] = slope * x[..., 2], slope * x[..., 2]
     radial = x * [1.0, 1.0, 0.0] / band.radius
     along = np.stack([-radial[..., 1], radial[..., 0], 0.0 * x[..., 0]], axis=-1)
-    expected[..., 2] = along / (2.0 * math.pi * band.radius**2 * band.length)
+    fading = 1.5 - 6.0 * (x[..., 2:] / band.length) ** 2
+    expected[..., 2] = fading * along / (2.0 * math.pi * band.radius**2 * band.length)
     theta = np.arctan2(x[..., 1], x[..., 0])
     highest = 2.0 / (math.pi * band.radius * band.length)
     series = {0: -1.0 / math.pi, 1: 0.5, 2: -2.0 / (3.0 * math.pi), 4: 2.0 / (15.0 * math.pi)}
@@ -196,7 +197,7 @@ def test_only_what_acts_is_solved_for() -> None:
     forces, moments = np.zeros((2, 3, 3)), np.zeros((2, 3, 3))
     forces[0, 0, 1], moments[1, 1, 0], moments[0, 2, 2] = 1.0, 1.0, 1.0
     loads = PinLoads("case", ("A", "B", "C"), forces, moments)
-    a, b, c = UnitLoad("A", "force", 1), UnitLoad("B", "moment", 1), UnitLoad("C", "moment", 0)
+    a, b, c = UnitLoad("A", "force", 1), UnitLoad("B", "moment", 1), UnitLoad("C", "twist", 0)
     assert acting([loads]) == ((a, 0), (a, 1), (b, 0), (b, 1), (c, 1))
     assert acting([PinLoads("case", ("A", "B", "C"), forces)]) == ((a, 0), (a, 1))
 
@@ -205,7 +206,7 @@ def test_a_load_without_a_field_is_not_dropped(bar: UnitFields) -> None:
     only = replace(bar, loads=bar.loads[:5], displacement=bar.displacement[..., :5],
                    stress=bar.stress[..., :5], support=bar.support[:, :5])  # fmt: skip
     twist = PinLoads("case", ("B",), np.zeros((1, 1, 3)), np.array([0.0, 0.0, 1.0]))
-    with raises(ArgumentError, "missing-fields", "'B', kind='moment', n=0"):
+    with raises(ArgumentError, "missing-fields", "'B', kind='twist', n=0"):
         envelope(only, twist)
 
 

@@ -31,6 +31,7 @@ from loads import (
     over_time,
 )
 from pinbase.arrays import Floats
+from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.mechanism.mechanisms import four_bar, slider_crank
 
@@ -64,7 +65,7 @@ def test_the_monotone_cubic_is_that_of_scipy() -> None:
     np.testing.assert_allclose(two(at[:51]), 1.0 + 2.0 * at[:51], atol=1e-14)
 
 
-@pytest.mark.parametrize("interpolation", ["linear", "monotone"])
+@each("interpolation", ["linear", "monotone"])
 def test_a_repeated_table_is_one_of_three_periods(interpolation: str) -> None:
     """In the middle of three copies the ends of the table are no ends."""
     x = [k * 4.0 + t for k in (-1, 0, 1) for t in ROWS[0][:-1]] + [8.0]

@@ -25,6 +25,7 @@ from loads import (
     motion_reactions,
     move,
 )
+from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.mechanism.mechanisms import four_bar
 
@@ -92,7 +93,7 @@ def test_equal_pressure_and_stiffness() -> None:
         assert [a.name for a in found.actuators] == ["c1", "c2"]
 
 
-@pytest.mark.parametrize("by", ["areas", "stiffness"])
+@each("by", ["areas", "stiffness"])
 def test_cylinders_in_parallel_put_in_the_work(by: str) -> None:
     """Of a motion with masses the powers of both balance all others."""
     rule = Parallel(("c1", "c2"), (3.0, 2.0), by)  # type: ignore[arg-type]

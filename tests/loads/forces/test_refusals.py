@@ -9,6 +9,7 @@ import pytest
 
 from loads import GROUND, Body, Connection, Joint, Linkage, LinkageError, Sharing, Slider, Turn
 from loads.motion.motion import at_rest
+from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.mechanism.mechanisms import four_bar, slider_crank
 
@@ -76,7 +77,7 @@ def test_drives_must_be_as_many_as_are_told() -> None:
         at_rest(BAR, [0.9, 1.0])
 
 
-@pytest.mark.parametrize(
+@each(
     ("lengths", "kind"),
     [
         ((1.0, 0.4, 0.9, 0.8), "crank-rocker (Grashof)"),

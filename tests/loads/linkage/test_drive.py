@@ -54,7 +54,7 @@ def test_a_table_of_a_smooth_motion_is_that_motion() -> None:
         assert found == pytest.approx(wanted, abs=1e-12)
 
 
-@pytest.mark.parametrize(
+@each(
     ("times", "code"),
     [((0.0, 1.0), "too-few-rows"), ((0, 1, 2, 2, 3, 4), "times-not-increasing")],
 )

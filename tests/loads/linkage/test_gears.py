@@ -71,7 +71,7 @@ def test_a_train_has_the_ratio_of_its_teeth() -> None:
         assert of("4") == pytest.approx(20.0 / 30.0 * of("2"), abs=1e-12)
 
 
-@pytest.mark.parametrize("sign", [1.0, -1.0])
+@each("sign", [1.0, -1.0])
 def test_shafts_of_a_train_carry_tangential_and_radial_forces(sign: float) -> None:
     """Shigley's 13-14: W_t = T / r; W_r = W_t tan(20 deg) pushes apart on either flank; the idler's
     shaft carries 2 W_t, and no radial force as the three are in a line.
@@ -189,7 +189,7 @@ def test_a_rack_travels_by_radius_times_angle(rack_moves: bool, turned: float) -
     assert at[1] - at[0] == pytest.approx([way.real, way.imag])
 
 
-@pytest.mark.parametrize("push", [50.0, -50.0])
+@each("push", [50.0, -50.0])
 def test_forces_of_a_rack(push: float) -> None:
     linkage = replace(steering(0.0), gravity=(0.0, 0.0))
     load = Applied("rack", (0.05, -0.02), force=(-push, 0.0))

@@ -27,6 +27,7 @@ from loads import (
     motion_reactions,
     move,
 )
+from tests.support.each import each
 from tests.support.errors import raises
 
 
@@ -130,7 +131,7 @@ def test_few_samples_end_where_many_do() -> None:
     assert np.abs(coarse.q[-1] - fine.q[-1]).max() < 1e-12
 
 
-@pytest.mark.parametrize("change", [0.6, -0.6])
+@each("change", [0.6, -0.6])
 def test_a_length_that_cannot_be_reached_is_told(change: float) -> None:
     linkage = lever()
     with raises(MotionBlocked, "dead-point") as caught:
@@ -168,7 +169,7 @@ def test_redundant_connections_need_a_rule() -> None:
         motion_reactions("swing", move(twice, [drive(twice)], np.zeros(1)))
 
 
-@pytest.mark.parametrize(
+@each(
     ("change", "code", "named"),
     [
         ({"driven": ("XY",)}, "unknown-drive", "'XY'"),

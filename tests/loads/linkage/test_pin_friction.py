@@ -27,6 +27,7 @@ from loads import (
     over_time,
 )
 from pinbase.arrays import Floats
+from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.mechanism.mechanisms import four_bar, slider_crank
 
@@ -51,14 +52,16 @@ def turning(linkage: Linkage, *loads: Applied, friction: bool = True) -> Dynamic
     return motion_reactions("x", motion, loads, friction=friction)
 
 
-@pytest.mark.parametrize("speed", [2.0, -2.0])
-def test_a_shaft_in_its_bearing(speed: float) -> None:
-    """A wheel on a pin, pulled by a rope at radius R: the force passes at the friction circle, and
-    rubbing between dry surfaces, mu N at radius r, gives the same couple.
+@each(("speed", "carrier", "body"), [(2.0, GROUND, "wheel"), (-2.0, GROUND, "wheel"),
+                                     (2.0, "wheel", GROUND), (-2.0, "wheel", GROUND)])  # fmt: skip
+def test_a_shaft_in_its_bearing(speed: float, carrier: str, body: str) -> None:
+    """A wheel on a pin, or with its pin in a fixed bearing, pulled by a rope at radius R: the force
+    passes at the friction circle, and rubbing between dry surfaces, mu N at radius r, gives the
+    same couple.
     """
     wheel = Linkage(
         bodies=(Body("wheel", 1.0, (0.0, 0.0), 0.1),),
-        joints=(Joint("O", (0.0, 0.0), (Connection("O", "wheel", CIRCLE),), GROUND),),
+        joints=(Joint("O", (0.0, 0.0), (Connection("O", body, CIRCLE),), carrier),),
         driven=("wheel",),
         turns=(Turn("wheel", "wheel", 0.0),),
     )
@@ -67,7 +70,8 @@ def test_a_shaft_in_its_bearing(speed: float) -> None:
     force = np.hypot(120.0, 300.0)
     normal = force / np.hypot(1.0, MU)
     couple = MU * normal * RADIUS
-    assert found.pin_friction[0, 0] == pytest.approx(-np.sign(speed) * couple, rel=1e-12)
+    on_body = -np.sign(speed) * couple * (1.0 if body == "wheel" else -1.0)
+    assert found.pin_friction[0, 0] == pytest.approx(on_body, rel=1e-12)
     assert found.drive[0, 0] == pytest.approx(150.0 + np.sign(speed) * couple, rel=1e-12)
 
 

@@ -21,6 +21,7 @@ from loads import (
     motion_reactions,
 )
 from loads.motion.mobility import mobility, require_determined
+from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.mechanism.mechanisms import coupled_wheels, four_bar
 
@@ -40,7 +41,7 @@ def flat(ground: float, crank: float, coupler: float, rocker: float, angle: floa
     )
 
 
-@pytest.mark.parametrize("angle", [0.0, np.pi])
+@each("angle", [0.0, np.pi])
 def test_a_parallelogram_drawn_flat_is_at_its_change_point(angle: float) -> None:
     with raises(LinkageError, "change-point"):
         require_determined(flat(1.0, 0.5, 1.0, 0.5, angle))

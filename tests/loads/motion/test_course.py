@@ -27,7 +27,12 @@ MANY = 0.9 + 2.0 * np.pi * TURNS
 
 
 @pytest.mark.parametrize(
-    "samples", [2, *(pytest.param(count, marks=pytest.mark.slow) for count in (3, 4, 11, 21))]
+    "samples",
+    [
+        2,
+        *(pytest.param(count, marks=pytest.mark.slow) for count in (11,)),
+        *(pytest.param(count, marks=[pytest.mark.slow, pytest.mark.long]) for count in (3, 4, 21)),
+    ],
 )
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_ten_turns_in_few_samples_stay_on_their_branch(samples: int, sense: float) -> None:

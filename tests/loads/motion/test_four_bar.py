@@ -27,6 +27,7 @@ from loads import (
 )
 from loads.motion.four_bar import four_bar as recognised
 from loads.motion.transmission_angles import transmission_angles
+from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.mechanism.mechanisms import circles, coupled_wheels, four_bar
 
@@ -121,7 +122,7 @@ def test_a_pin_may_be_fixed_in_the_link_and_turn_in_the_ground() -> None:
     assert same.reactions.turn[:, 0] == pytest.approx(law(times)[0] - 0.9)
 
 
-@pytest.mark.parametrize(
+@each(
     ("lengths", "kind"),
     [
         ((1.0, 0.4, 0.9, 0.8), "crank-rocker (Grashof)"),
@@ -200,7 +201,7 @@ def test_a_dead_point_is_told_with_what_has_no_bound() -> None:
     assert caught.value.bodies == ("crank", "coupler", "rocker")[1:]
 
 
-@pytest.mark.parametrize("short", [1e-2, 1e-4, 1e-6, 1e-8])
+@each("short", [1e-2, 1e-4, 1e-6, 1e-8])
 def test_near_a_dead_point_the_path_still_converges(short: float) -> None:
     linkage = four_bar(1.0, 0.9, 0.5, 0.6, angle=0.5)
     motion = move(linkage, [ConstantDrive(0.5, toggle() - short, 1.0)], np.array([0.0, 1.0]))

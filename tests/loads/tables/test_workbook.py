@@ -14,6 +14,7 @@ import pytest
 import xlsxwriter
 
 from loads import FileReading, Layout, Reactions, TableError, read_reactions
+from loads.tables import plain_rows, workbook
 from tests.support.each import each
 from tests.support.errors import raises
 
@@ -153,3 +154,79 @@ def test_a_workbook_that_grows_when_unpacked_is_refused(
     path = with_part(written(tmp_path / "t.xlsx"), SHEET, lambda text: text + " " * 200_000)
     with raises(TableError, "not-a-workbook", "has more than"):
         read(path)
+
+
+def many(columns: int) -> list[list[Any]]:
+    """A header and rows of numbers of all sizes, also whole ones and such with exponents."""
+    random = np.random.default_rng(3)
+    sizes = 10.0 ** random.integers(-30, 20, size=(200, columns))
+    numbers = random.normal(size=(200, columns)) * sizes
+    numbers[::7] = np.round(random.normal(size=(29, columns)) * 100.0)
+    times = np.arange(200.0)[:, None]
+    return [["t", *(f"c{k}" for k in range(columns))], *np.hstack([times, numbers]).tolist()]
+
+
+SHEET_CHANGES: list[tuple[str, str]] = [
+    ("", ""),
+    ('<row r="90">', '<row r="90" spans="1:8">'),
+    ('<row r="90"><c r="A90">', '<row r="90"><c r="A90" t="n">'),
+    ('<c r="E120"><v>', '<c r="F120"><v>'),  # refers to another column
+    ('<c r="E120"><v>', '<c r="E121"><v>'),  # refers to another row
+    ('<c r="E201"><v>', '<c r="E201"><v>1'),
+    ('<c r="E201"><v>', '<c r="E201"><v>1-'),
+    ('<c r="E150"><v>', '<c r="E150"><v></v></c><c r="H150"><v>'),
+    ('<c r="E150"><v>', '<c r="E150"><f>A1</f><v>'),
+    ('<c r="E150"><v>', '<c r="E150" t="b"><v>'),
+    ('<c r="E150"><v>', '<c r="E150"><v><!-- note -->'),
+    ("</sheetData>", "</sheetData><mergeCells><mergeCell ref='A150:B150'/></mergeCells>"),
+    ('<row r="90">', '<row r="9000">'),
+    ('<row r="2">', '<row r="0">'),
+]
+
+
+@each("old, new", SHEET_CHANGES)
+def test_rows_of_numbers_are_read_as_others_are(
+    old: str, new: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At once or cell by cell: the same numbers, or the same refusal."""
+    path = with_part(
+        written(tmp_path / "t.xlsx", rows=many(6)),
+        "xl/worksheets/sheet1.xml",
+        lambda xml: xml.replace(old, new, 1),
+    )
+    outcomes = list[object]()
+    for reader in (plain_rows.split, lambda content: (content, None)):
+        monkeypatch.setattr("loads.tables.workbook.split", reader)
+        try:
+            rows = workbook.workbook_rows("t.xlsx", path.read_bytes(), FileReading())
+            outcomes.append((rows.places, [list(map(repr, row)) for row in rows.cells]))
+        except TableError as error:
+            outcomes.append(str(error))
+        monkeypatch.undo()
+    assert outcomes[0] == outcomes[1]
+
+
+def test_rows_of_numbers_take_no_events(tmp_path: Path) -> None:
+    """All rows of numbers are read at once, in columns beyond Z as well, with styles and gaps."""
+
+    def parts(path: Path) -> tuple[bytes, plain_rows.PlainRows | None]:
+        with zipfile.ZipFile(path) as archive:
+            return plain_rows.split(archive.read("xl/worksheets/sheet1.xml"))
+
+    rows = many(40)
+    others, plain = parts(written(tmp_path / "t.xlsx", rows=rows))
+    assert plain is not None
+    np.testing.assert_allclose(plain.values, rows[1:], rtol=1e-15)  # written with 16 digits
+    assert plain.places.tolist() == list(range(2, 202))
+    assert others.count(b"<row ") == 1
+
+    with xlsxwriter.Workbook(tmp_path / "s.xlsx") as book:
+        sheet = book.add_worksheet("run 1")
+        two_digits = book.add_format({"num_format": "0.00"})
+        for k, row in enumerate(rows):
+            sheet.write_row(k, 0, row)
+            sheet.write(k, 4, row[4], two_digits)
+    _, plain = parts(tmp_path / "s.xlsx")
+    assert plain is not None
+    np.testing.assert_allclose(plain.values, rows[1:], rtol=1e-15)  # written with 16 digits
+    assert [bool(s) for s in plain.styles] == [k == 4 for k in range(41)]

@@ -14,10 +14,10 @@ import pytest
 from pinstress import InputError, load_study, study_from
 from pinstress.analysis.gather.gather import loads_only
 from pinstress.analysis.plan import all_loads
-from pinstress.cli.check import describe
 from pinstress.cli.commands import run_command_line
 from pinstress.study.reading.file import Study
 from tests.conftest import ROOT
+from tests.support.described import describe
 from tests.support.each import each
 
 SHIPPED = ROOT / "studies" / "drop.toml"
@@ -136,7 +136,7 @@ def test_side_loads_are_stated_and_not_applied() -> None:
         "kind": "ground", "rule": "23.499-side", "reference": 1000.0, "body": "piston", "at": "W",
     }  # fmt: skip
     loads = all_loads(study_from(table), ["side"])["side"]
-    assert "side 1,575.0 N" in loads.note
+    assert "side 1.575 × 1,000 = 1,575 N left, at the axle" in loads.note
     assert loads.dynamics is not None
     assert loads.dynamics.drive[0, 0] == pytest.approx(2250.0 - 30.0 * 9.80665)
 

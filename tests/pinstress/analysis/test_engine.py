@@ -16,34 +16,12 @@ from pinstress.analysis.engine import Engine
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.in_python import changed_study, study_from
 from reports.tables.json_results import to_json
+from tests.support.each import each
+from tests.support.pins.studies import TWO_PINS
 
-STUDY = """
-title = "Two pins"
-units = "mm-N-s"
-[material.steel]
-youngs_modulus = "205 GPa"
-poisson_ratio = 0.3
-yield_strength = "600 MPa"
-[pin.A]
-material = "steel"
-clamp = ["start"]
-profile = [{ length = 20, diameter = 30 }, { length = 40, diameter = 20, connection = "A" }]
-fillet = 4
-[pin.B]
-material = "steel"
-clamp = ["start"]
-profile = [{ length = 10, diameter = 31 }, { length = 20, diameter = 24, connection = "B" }]
-fillet = 3
-[case.press]
-kind = "given"
-forces = { A = [30.0, 40.0], B = [0.0, 90.0] }
-[analysis]
-model = "harmonic"
-tolerance = 0.2
-"""
 DIAMETER = "pin.A.profile[2].diameter"
 IN_LUGS = (
-    STUDY.split("[pin.A]")[0]
+    TWO_PINS.split("[pin.A]")[0]
     + """
 [pin.P]
 material = "steel"
@@ -93,7 +71,7 @@ def timeless(value: Any) -> Any:
 
 def test_an_answer_is_a_run_of_the_changed_study(solved: list[str]) -> None:
     """Whatever was asked before; the run is made without an engine."""
-    study = study_from(STUDY)
+    study = study_from(TWO_PINS)
     engine = Engine(study)
     engine.answer()
     ours = engine.answer({DIAMETER: "0.8 in", "pin.B.fillet": 2.5})
@@ -102,7 +80,7 @@ def test_an_answer_is_a_run_of_the_changed_study(solved: list[str]) -> None:
     assert numbers(engine.answer())["pins"] == numbers(pinstress.run(study))["pins"]
 
 
-@pytest.mark.parametrize("study", [STUDY, IN_LUGS])
+@each("study", [TWO_PINS, IN_LUGS])
 def test_a_row_alone_is_that_of_a_run(study: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """With its judgement, joint, margins and range, but without what only explains it."""
     ours = Engine(study_from(study))
@@ -114,7 +92,7 @@ def test_a_row_alone_is_that_of_a_run(study: str, monkeypatch: pytest.MonkeyPatc
 
 
 def test_what_a_change_does_not_touch_is_not_solved_again(solved: list[str]) -> None:
-    engine = Engine(study_from(STUDY))
+    engine = Engine(study_from(TWO_PINS))
     engine.answer()
     assert sorted(solved) == ["A", "B"]
     solved.clear()
@@ -129,7 +107,7 @@ def test_what_a_change_does_not_touch_is_not_solved_again(solved: list[str]) -> 
 
 def test_a_memo_is_bounded_and_may_be_shared(solved: list[str]) -> None:
     """One that is smaller than two pins has the last one."""
-    memo, study = Memo(1), study_from(STUDY)
+    memo, study = Memo(1), study_from(TWO_PINS)
     Engine(study, pins=["A"], memo=memo).answer()
     Engine(study, pins=["A"], memo=memo).answer()
     assert solved == ["A"]
@@ -140,7 +118,7 @@ def test_a_memo_is_bounded_and_may_be_shared(solved: list[str]) -> None:
 
 def test_slopes_are_those_of_finite_changes() -> None:
     """Of the diameter by central differences of answers on their own meshes, which scatter."""
-    study = study_from(STUDY.replace("tolerance = 0.2", "tolerance = 0.005"))
+    study = study_from(TWO_PINS.replace("tolerance = 0.2", "tolerance = 0.005"))
     engine = Engine(study)
     slopes = engine.slopes({}, "A", "press", [DIAMETER])
     assert isinstance(slopes, dict)
@@ -152,7 +130,7 @@ def test_slopes_are_those_of_finite_changes() -> None:
 
 
 def test_a_quick_answer_lies_within_its_error() -> None:
-    engine = Engine(study_from(STUDY.replace("tolerance = 0.2", "tolerance = 0.002")))
+    engine = Engine(study_from(TWO_PINS.replace("tolerance = 0.2", "tolerance = 0.002")))
     full = engine.row({}, "A", "press").max_von_mises
     quick = engine.row({}, "A", "press", accuracy="quick")
     assert full is not None
@@ -163,7 +141,7 @@ def test_a_quick_answer_lies_within_its_error() -> None:
 
 
 def test_what_cannot_be_built_says_its_key() -> None:
-    engine = Engine(study_from(STUDY))
+    engine = Engine(study_from(TWO_PINS))
     with pytest.raises(InputError, match=r"pin\.A\.profile\[2\]\.diameter"):
         engine.answer({DIAMETER: -3.0})
     with pytest.raises(InputError, match=r"no 'C' there"):

@@ -14,6 +14,7 @@ from fea.support.records import LugStress
 from pinstress.analysis.plan import all_loads
 from pinstress.study.model.shanks import shank_angles
 from reports.files import write_reports
+from tests.support.each import each
 from tests.support.mechanism.machines import STUDIES
 
 CLEVIS = (STUDIES / "clevis.toml").read_text(encoding="utf-8")
@@ -160,7 +161,7 @@ def test_a_shank_turns_with_its_link(tmp_path: Path) -> None:
     assert "D" in angles["C2"].assumed
 
 
-@pytest.mark.parametrize(
+@each(
     ("shank", "part"),
     [
         ("{ width = 19 }", "times as wide as the hole"),

@@ -10,12 +10,12 @@ import pytest
 
 import pinstress
 from pinstress.analysis.gather.gather import loads_only
-from pinstress.cli.check import describe
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import load_study
 from reports.data.results import Results
 from reports.format.numbers import engineering
 from tests.conftest import ROOT
+from tests.support.described import describe
 from tests.support.each import each
 from tests.support.errors import raises
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,10 @@ from pinstress.explore.sweep.parameters import parameters_of
 from pinstress.study.model.lost_fits import lost_fit_warnings
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.in_python import study_from
+from reports.data.results import PinResult
+from tests.support.each import each
 from tests.support.errors import raises
+from tests.support.pins.studies import DOUBLE_SHEAR
 
 LOADS = 'kind = "given"\nforces = { L = [-9000, 0], M = [18000, 0], R = [-9000, 0] }\n'
 STUDY = f"""
@@ -45,13 +49,7 @@ clearance = 0.02
 material = "aluminium"
 [pin.P]
 material = "steel"
-profile = [
-  {{ length = 10, diameter = 20, connection = "L" }},
-  {{ length = 1, diameter = 20 }},
-  {{ length = 20, diameter = 20, connection = "M" }},
-  {{ length = 1, diameter = 20 }},
-  {{ length = 10, diameter = 20, connection = "R" }},
-]
+profile = {DOUBLE_SHEAR}
 """
 GROWTH = (23.4e-6 - 12e-6) * 0.02 * 100.0  # m
 FIT = "clearance = 0.02\n"
@@ -76,7 +74,7 @@ def test_a_temperature_changes_the_clearance_in_its_case_alone() -> None:
     assert [x.clearance for x in tasks["hot"].lugs] == pytest.approx([2e-5 + GROWTH] * 3)
 
 
-@pytest.mark.parametrize("spelled", ["393.15 K", "120 °C", "248 degF"])
+@each("spelled", ["393.15 K", "120 °C", "248 degF"])
 def test_a_temperature_may_have_any_unit(spelled: str) -> None:
     hot = tasks_of(changed(("120 degC", spelled)))["hot"]
     assert hot.lugs[0].growth == pytest.approx(GROWTH, rel=1e-12)
@@ -96,7 +94,7 @@ def test_one_expansion_leaves_the_fits_and_one_task() -> None:
     assert [x.case for x in task.loads] == ["cold", "hot"]
 
 
-@pytest.mark.parametrize(
+@each(
     ("changes", "code", "named"),
     [
         (
@@ -213,18 +211,24 @@ def test_a_hot_case_is_the_same_as_its_clearance_alone(tmp_path: Path) -> None:
     assert lengths[1] == pytest.approx([0.0, 0.04 + 2e3 * GROWTH])
 
 
-@pytest.mark.parametrize("accuracy", ["full", "quick"])
+@cache
+def hotter() -> PinResult:
+    """The row of a run with another temperature."""
+    hotter_study = study_from(changed(("120 degC", "200 degC")))
+    return pinstress.run(hotter_study, cases=["hot"])["P", "hot"]
+
+
+@pytest.mark.slow
+@each("accuracy", ["full", "quick"])
 def test_an_engine_answers_a_temperature_as_a_run_does(accuracy: str) -> None:
-    study = study_from(STUDY)
-    engine = Engine(study)
+    engine = Engine(study_from(STUDY), cases=["hot"])
     other = {"case.hot.temperature": "200 degC"}
     before = engine.answer(accuracy=accuracy)["P", "hot"]  # type: ignore[arg-type]
     asked = engine.answer(other, accuracy=accuracy)["P", "hot"]  # type: ignore[arg-type]
     again = engine.answer(accuracy=accuracy)["P", "hot"]  # type: ignore[arg-type]
-    direct = pinstress.run(study_from(changed(("120 degC", "200 degC"))))["P", "hot"]
     assert again.max_von_mises == before.max_von_mises != asked.max_von_mises
     close = 1e-9 if accuracy == "full" else 0.1
-    assert asked.max_von_mises == pytest.approx(direct.max_von_mises, rel=close)
+    assert asked.max_von_mises == pytest.approx(hotter().max_von_mises, rel=close)
     assert asked.joint is not None
     assert asked.joint.bands[0].clearance == pytest.approx(0.02 + 1.8e3 * GROWTH)
 

@@ -17,6 +17,7 @@ from pinstress.study.model.pins import pin as pin_of
 from reports.data.results import Results
 from reports.files import write_loads
 from tests.conftest import ROOT
+from tests.support.each import each
 
 RATIO = 50.0 / 180.0  # crank over rod
 OMEGA = 2.0 * math.pi / 0.25  # rad/s
@@ -34,7 +35,7 @@ def crank() -> Results:
     return loads_of("slider_crank")
 
 
-@pytest.mark.parametrize(
+@each(
     ("connection", "path", "velocity", "turns_with"),
     [
         ("O", 8.0 * 2.0 * math.pi, 8.0 * OMEGA, "crank"),

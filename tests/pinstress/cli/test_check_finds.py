@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 import pinstress
-from pinstress.cli.check import describe
 from pinstress.study.model.balance import given_warnings
 from pinstress.study.reading.errors import InputError
+from tests.support.described import describe
 from tests.support.each import each
 
 PIN = """title = "Link"

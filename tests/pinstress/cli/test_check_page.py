@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 
 import pinstress
-from pinstress.cli.check import describe, examine
+from pinstress.cli.check import examine
 from pinstress.cli.check_page import write_check_page
 from tests.conftest import ROOT
 from tests.pinstress.test_import import DRAW, SOLVE, loaded_by
+from tests.support.described import describe
 from tests.support.programs.command_line import QUICK, run_here
 
 GEAR = ROOT / "studies" / "landing_gear.toml"

@@ -6,6 +6,7 @@ import inspect
 import math
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from pinstress.analysis.gather.gather import loads_only
 from pinstress.cli.commands import run_command_line
 from pinstress.study.reading.file import Study
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.errors import raises
 
 STUDY = ROOT / "studies" / "one_pin.toml"
@@ -62,7 +64,7 @@ def study() -> Study:
     return pinstress.load_study(STUDY)
 
 
-@pytest.mark.parametrize(("name", "value", "code"), WRONG)
+@each(("name", "value", "code"), WRONG)
 def test_a_wrong_choice_is_one_message(study: Study, name: str, value: Any, code: str) -> None:
     with raises(pinstress.InputError, code) as caught:
         pinstress.run(study, **{name: value})
@@ -81,7 +83,7 @@ def test_no_jobs_is_an_answer_and_no_endless_wait() -> None:
     assert done.stdout == "jobs: must be a whole number of at least 1, not 0\n"
 
 
-@pytest.mark.parametrize(
+@each(
     ("arguments", "message"),
     [
         (["run", "--tolerance", "nan"], "--tolerance: must be between 0 and 1, not nan"),
@@ -123,7 +125,7 @@ def test_a_hundred_thousand_names_are_looked_up_at_once(study: Study) -> None:
     assert [table.case for table in found.reactions] == ["landing"]
 
 
-@pytest.mark.parametrize("wrong", [None, 3, b"study.toml", 1.5, ["study.toml"]])
+@each("wrong", [None, 3, b"study.toml", 1.5, ["study.toml"]])
 def test_what_is_no_path_is_no_study(wrong: Any) -> None:
     with raises(pinstress.InputError, "not-a-path"):
         pinstress.load_study(wrong)
@@ -150,3 +152,32 @@ def test_numpys_numbers_and_any_iterable_are_choices(study: Study) -> None:
     assert processes(np.int64(3)) in (1, 3)  # type: ignore[arg-type]
     found = pinstress.run(study, pins=iter(["B"]), cases={"landing": 1}, tolerance=np.float64(0.3))
     assert [(p.pin, p.case) for p in found.pins] == [("B", "landing")]
+
+
+def test_a_study_in_place_of_a_plan(study: Study) -> None:
+    with raises(pinstress.InputError, "not-a-plan", "pinstress.prepare makes one"):
+        pinstress.solve(study)  # type: ignore[arg-type]
+
+
+def test_an_unknown_accuracy_is_no_quick_answer(study: Study) -> None:
+    engine = pinstress.Engine(study)
+    for ask in (engine.answer, engine.rows):
+        with raises(pinstress.InputError, "unknown-accuracy", "'full' or 'quick', not 'fast'"):
+            ask({}, accuracy="fast")  # type: ignore[arg-type]
+
+
+def test_a_row_that_is_not_there_has_the_names_of_others(study: Study) -> None:
+    engine = pinstress.Engine(study)
+    for ask in (engine.row, partial(engine.slopes, keys=["pin.B.fillet"])):
+        with raises(pinstress.InputError, "unknown-case", "pin B", "'land'", "landing"):
+            ask({}, "B", "land")
+
+
+@each(("pin", "case", "what"), [("Q", "landing", "pin 'Q'"), ("B", "Q", "case 'Q'")])
+def test_an_argument_without_a_name_is_not_told_as_an_option(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], pin: str, case: str, what: str
+) -> None:
+    out = str(tmp_path / "deck.inp")
+    arguments = ["export", str(STUDY), pin, case, "--deck", "abaqus", "--out", out]
+    assert run_command_line(arguments) == 2
+    assert capsys.readouterr().err.startswith(f"Error: the study has no {what}; ")

@@ -13,7 +13,6 @@ import pytest
 from geometry import CutPin, Flat, Hole, Pin
 from geometry.imported.imported_pin import SolidBody
 from pinstress import load_study
-from pinstress.cli.check import describe
 from pinstress.cli.commands import run_command_line
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.pins import shape_notes
@@ -26,6 +25,7 @@ from tests.geometry.test_recognise import (
     same_outline,
     step,
 )
+from tests.support.described import describe
 
 HEAD = """
 title = "From CAD"

@@ -98,8 +98,8 @@ def test_of_two_runs_into_one_folder_one_is_refused(earlier: Path) -> None:
         ("2", signal.SIGINT),
         ("1", signal.SIGTERM),
         ("2", signal.SIGHUP),
-        pytest.param("2", signal.SIGTERM, marks=pytest.mark.slow),
-        pytest.param("1", signal.SIGHUP, marks=pytest.mark.slow),
+        pytest.param("2", signal.SIGTERM, marks=pytest.mark.long),
+        pytest.param("1", signal.SIGHUP, marks=pytest.mark.long),
     ],
 )
 def test_a_signal_ends_a_run_with_nothing_written(
@@ -174,6 +174,14 @@ def test_workers_end_when_their_run_is_killed(earlier: Path) -> None:
             assert time.monotonic() < deadline
             time.sleep(0.02)
     assert (earlier / "results.json").read_text() == "earlier"
+
+
+def test_a_file_where_a_folder_belongs_is_called_so(tmp_path: Path) -> None:
+    (tmp_path / "out").write_text("a file")
+    why = r"--out: cannot write to .*out \(it is a file, no folder\)"
+    with pytest.raises(InputError, match=why), replacing(tmp_path / "out" / "trial"):
+        pass
+    assert (tmp_path / "out").read_text() == "a file"
 
 
 @pytest.mark.parametrize("jobs", ["1", "2"])

@@ -6,13 +6,14 @@ import csv
 import json
 import os
 import subprocess
-import sys
 from pathlib import Path
+from unittest.mock import patch
 
 import pytest
 
 from pinstress.cli.commands import run_command_line
 from tests.conftest import ROOT
+from tests.support.programs.command_line import run_here
 
 ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
 
@@ -20,13 +21,8 @@ ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
 def run(folder: Path, **environment: str) -> subprocess.CompletedProcess[str]:
     (folder / "study.toml").write_text(ONE_PIN.replace("tolerance = 0.05", "tolerance = 0.3"))
     command = "run study.toml --second-opinion ccx --no-pictures --out out"
-    return subprocess.run(
-        [sys.executable, "-m", "pinstress", *command.split()],
-        cwd=folder,
-        env=os.environ | environment,
-        capture_output=True,
-        text=True,
-    )
+    with patch.dict(os.environ, environment):
+        return run_here(*command.split(), cwd=folder)
 
 
 def put(folder: Path, script: str) -> dict[str, str]:

@@ -17,7 +17,6 @@ from reports.page.pin_drawing import draw_pin
 from reports.page.scripts import plots_of
 from reports.plots.all import all_plots
 from tests.support.results.html_page import EVIL, parse
-from tests.support.results.made_up_run import leg
 from tests.support.results.rows import with_values
 
 LIBRARY = re.compile(r'<script type="text/plain" id="libraries">.*?</script>', re.S)
@@ -153,10 +152,9 @@ def moving(results: Results, tmp_path_factory: pytest.TempPathFactory) -> Path:
     motion = replace(results.motion[0], case=case)
     (directory / animation_name(case)).write_text(ANIMATION, encoding="utf-8")
     drives = tuple(replace(results.drive[0], name=name, kind="rotary") for name in ("a.b", "c"))
-    legs = (leg(np.asarray(results.drive[0].time)),)
     table = replace(results.reactions[0], position_unit="deg")
     pins = tuple(replace(pin, position_unit="deg") for pin in results.pins)
-    found = replace(results, motion=(motion,), legs=legs, drive=drives, reactions=(table,))
+    found = replace(results, motion=(motion,), drive=drives, reactions=(table,))
     found = replace(found, pins=pins)
     return write_page(found, directory)
 
@@ -167,7 +165,6 @@ def test_motions_have_a_section(moving: Path) -> None:
     assert all(page.ids.count(name) == 1 for name in ("motion", "published", "drive"))
     kinds = ("linkage", "bodies", "transmission", "shaking", "ledger")
     names = {plot_name(kind, "up & 100%.down") for kind in kinds}
-    names |= {f"leg-{kind}.fold" for kind in ("motion", "momenta", "hinge")}
     assert names | {"drive.retract.a%2Eb", "drive.retract.c"} <= set(specs(moving))
     for label in (
         "up &amp; 100%.down: the linkage from start to end, with the paths of its joints",

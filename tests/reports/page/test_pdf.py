@@ -8,6 +8,7 @@ from reports.data.decision import worst_first
 from reports.data.envelope import governing_cases
 from reports.data.results import Results, TitleBlock
 from reports.data.sensitivities import PinSensitivities, Sensitivity
+from reports.page.overview import overview_part
 from reports.page.paper import MAX_DIMENSIONS, PINS_PER_MATRIX, document
 from reports.pdf.typeset import shown_plots, typeset
 from reports.plots.all import all_plots
@@ -62,6 +63,26 @@ def test_names_are_not_typesetting(results: Results) -> None:
     once = typeset(content, plots)
     assert once == typeset(content, plots)
     assert once.startswith(b"%PDF-")
+
+
+def test_the_first_page_has_what_the_first_screen_shows(results: Results) -> None:
+    """Also the key of the bars, the marks of the outcomes and the curve of the worst pin."""
+    row = with_values(
+        results.pins[0], verdict="converged", singular_at=(), safety_factor_interval=None,
+        joint=None, required=2.0, safety_factor=1.1, decided=False,
+    )  # fmt: skip
+    failing = replace(results, pins=(row,), required_safety_factor=2.0)
+    screen = overview_part(failing, {}, "")
+    content = document(failing, {}, screen)
+    shown = content["overview"]
+    assert shown["legend"].startswith("Mark: factor and error.")
+    assert shown["lines"][0]["mark"] == "×"
+    assert "<style>" in shown["curve"]
+    assert screen["curve"].count("<text") == 5
+    pdf = typeset(content, {})
+    for part in ("curve", "legend"):
+        without = {**content, "overview": {**shown, part: None if part == "curve" else ""}}
+        assert typeset(without, {}) != pdf
 
 
 def test_characters_that_no_font_has_are_shown_by_number(results: Results) -> None:

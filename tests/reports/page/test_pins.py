@@ -23,6 +23,7 @@ from reports.page.stress_along import StressAlong, stress_along
 from reports.page.stress_panel import ticks
 from reports.tables.column import PinRow
 from reports.tables.stress.joint import carrying_share
+from tests.support.each import each
 from tests.support.results.judged_results import checks
 from tests.support.results.made_up_joint import in_lugs, make_joint, surface_in
 from tests.support.results.made_up_run import make_results
@@ -277,7 +278,7 @@ def test_a_pin_without_results_is_its_profile() -> None:
     assert 'class="load"' not in svg
 
 
-@pytest.mark.parametrize("top", [1e-3, 0.7, 1.0, 9.99, 123.0, 4e5])
+@each("top", [1e-3, 0.7, 1.0, 9.99, 123.0, 4e5])
 def test_ticks_are_round_and_few(top: float) -> None:
     found = ticks(top)
     assert 2 <= len(found) <= 5
@@ -331,7 +332,7 @@ def test_conventions_are_said_where_they_are_needed() -> None:
     assert signs().count("marker-end") == 4
 
 
-@pytest.mark.parametrize("peak", [(0.0, 1.0, 0.2), (-1.0, 0.0, 2.9), (0.6, -0.8, 1.5)])
+@each("peak", [(0.0, 1.0, 0.2), (-1.0, 0.0, 2.9), (0.6, -0.8, 1.5)])
 def test_views_have_z_from_left_to_right_as_drawings(peak: tuple[float, float, float]) -> None:
     points = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (0.0, 3.0)])
     view = View.of(points, np.array(peak))

@@ -21,6 +21,7 @@ from reports.page.viewer import (
     MAX_STRESS_INTEGER,
     pin_views,
 )
+from tests.support.each import each
 from tests.support.programs.packed import unpacked
 from tests.support.results.rows import with_values
 
@@ -72,7 +73,7 @@ def data(results: Results, surface: Surface) -> dict[str, Any]:
     return dict(json.loads(str(view.data)))
 
 
-@pytest.mark.parametrize("kind", ["<i1", "<i2", "<u1", "<u2", "<u4", "<f4"])
+@each("kind", ["<i1", "<i2", "<u1", "<u2", "<u4", "<f4"])
 def test_packed_numbers_come_back_to_the_last_bit(kind: str) -> None:
     """Extremes after each other, whose differences no number of the type holds."""
     whole = np.dtype(kind).kind != "f"
@@ -185,7 +186,7 @@ def test_maxima_along_the_pin_leave_out_what_is_excluded(
     assert rows["gap"] == ["–", "–"]  # no point is there
 
 
-@pytest.mark.parametrize("kind", ["u1", "<i1", "<i2", "<u2", "<u4", "<f4", "<f8"])
+@each("kind", ["u1", "<i1", "<i2", "<u2", "<u4", "<f4", "<f8"])
 def test_numbers_of_every_type_that_is_packed_are_unpacked(kind: str) -> None:
     """Those of one byte have no order of bytes; "u1" was once written as "1", which left the views
     of pins with cuts empty.

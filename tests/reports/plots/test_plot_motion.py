@@ -13,7 +13,7 @@ import pytest
 
 from reports.data.results import LinkageMotion, Results
 from reports.plots.draw import draw
-from reports.plots.loads.drive import drive_plot
+from reports.plots.loads.histories import drive_plot
 from reports.plots.loads.linkage import linkage_plot
 from reports.plots.loads.motion import motion_plots
 from reports.plots.spec import Plot

@@ -29,7 +29,7 @@ from reports.plots.theme import (
     on_page,
     on_paper,
 )
-from tests.support.results.made_up_run import leg, ranged
+from tests.support.results.made_up_run import ranged
 from tests.support.results.rows import with_landing, with_values
 
 DIGITS = 1e-5  # relative: six are written
@@ -37,9 +37,8 @@ DIGITS = 1e-5  # relative: six are written
 
 @pytest.fixture(scope="module")
 def plots(results: Results) -> dict[str, Plot]:
-    legs = (leg(np.asarray(results.drive[0].time)),)
     results = with_landing(results, ranged("A"), ranged("B", "singular", 2.0))
-    return all_plots(replace(results, legs=legs))
+    return all_plots(results)
 
 
 def columns(plot: Spec) -> dict[str, Floats]:
@@ -68,7 +67,7 @@ def test_there_is_a_plot_of_everything(plots: dict[str, Plot]) -> None:
         *(f"reactions.retract.{pin}" for pin in pins),
         *("reactions.landing", "drive.retract", "linkage.retract", "linkage.landing"),
         *("bodies.retract", "transmission.retract", "shaking.retract", "ledger.retract"),
-        *("leg-motion.fold", "leg-momenta.fold", "leg-hinge.fold", "landing-range.landing"),
+        "landing-range.landing",
         *("beam-diagrams", "beam-stress", "motion-check", "refinement.retract"),
         *("refinement.landing", *(f"refinement-pin.{pin}" for pin in pins)),
     }

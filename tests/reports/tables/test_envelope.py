@@ -12,13 +12,23 @@ import pytest
 from rich.console import Console
 
 from reports.data.envelope import MAX_DETAILED_CASES, detailed_rows, governing_cases
+from reports.data.overview import pin_lines
 from reports.data.results import Dependence, Results
 from reports.format.numbers import DASH
 from reports.page.page import render
 from reports.page.paper import document
-from reports.tables.strength.envelope import cell_text, envelope_table, heat, matrix
+from reports.tables.strength.envelope import (
+    MAX_CASES_IN_SENTENCES,
+    MAX_SHOWN_PINS,
+    cell_text,
+    envelope_table,
+    heat,
+    matrix,
+    worst_cases,
+)
 from reports.tables.strength.safety_factors import write_safety_factors
 from reports.text.html import safety_factors_html
+from reports.text.overview import decisions
 from reports.text.safety_factors import print_safety_factors
 from tests.support.results.rows import with_values
 
@@ -79,7 +89,8 @@ def test_many_cases_are_short_on_the_terminal_and_in_files(
     made = replace(made, pins=tuple(pins))
     shown = StringIO()
     print_safety_factors(made, Console(file=shown, width=200))
-    assert len(set(re.findall(r"gust \d+", shown.getvalue()))) == 2  # of each pin the worst
+    named = set(re.findall(r"gust \d+", shown.getvalue()))
+    assert named == {"gust 49", "gust 0", "gust 48", "gust 47"}  # of each pin the worst, two more
     assert "50 other cases" in shown.getvalue()
     write_safety_factors(made, tmp_path)
     written = (tmp_path / "safety_factors.md").read_text(encoding="utf-8")
@@ -92,6 +103,37 @@ def test_many_cases_are_short_on_the_terminal_and_in_files(
     assert "safety_factors.csv" not in few
 
 
+def test_the_matrix_on_the_terminal_hides_no_larger_utilisation(results: Results) -> None:
+    """Two pins in 50 cases: A needs 1.5 and has 20 / (k + 1), P has 1 + k, of case k."""
+    made = of_cases(results, 50)
+    a = made.reactions[0].pins[0]
+    table = worst_cases(made, [a, "P"])
+    assert table is not None
+    lines = [[column.shown(row) for column in table.columns] for row in table.rows]
+    assert lines == [
+        ["gust 49", "3.75*", "0.03 "],
+        ["gust 0", "0.07 ", "1.50*"],
+        ["gust 48", "3.67 ", "0.03 "],
+        ["gust 47", "3.60 ", "0.03 "],
+        ["46 others", "3.52 ", "0.75 "],
+    ]
+    assert worst_cases(of_cases(results, MAX_CASES_IN_SENTENCES), [a, "P"]) is None
+    wide = worst_cases(made, [f"pin {k}" for k in range(40)])
+    assert wide is not None
+    assert len(wide.columns) == 1 + MAX_SHOWN_PINS
+
+
+def test_many_safe_cases_share_a_sentence(results: Results) -> None:
+    made = of_cases(results, 12)
+    safe = tuple(
+        with_values(row, safety_factor=3.0 + k, decided=True) for k, row in enumerate(made.pins)
+    )
+    made = replace(made, pins=safe)
+    text = decisions(made, pin_lines(made))
+    assert "In 11 other cases all pins are safe, lowest" in text
+    assert text.count("gust") == 1
+
+
 def test_many_cases_are_a_matrix_and_the_governing_ones(results: Results, tmp_path: Path) -> None:
     made = of_cases(results, 50)
     page = render(made, tmp_path)
@@ -102,7 +144,7 @@ def test_many_cases_are_a_matrix_and_the_governing_ones(results: Results, tmp_pa
     factors = page[page.index('id="factors"') :]
     factors = factors[: factors.index("</table>")]
     assert factors.count("<tr>") == 3  # a heading, and a row for each pin
-    lines = page[page.index('<table class="lines">') :]
+    lines = page[page.index('<table class="lines') :]
     assert lines[: lines.index("</table>")].count('scope="row"') == 2
     assert "safety_factors.csv" in found
     printed = document(made, {})

@@ -21,7 +21,7 @@ from reports.tables.loads.motion import (
     motion_check_table,
     reactions_table,
 )
-from reports.tables.published import published_reactions_table, write_published_reactions
+from reports.tables.published import published_reactions_table, write_published
 from reports.tables.strength.safety_factors import (
     safety_factors_table,
     write_safety_factors,
@@ -233,7 +233,7 @@ def test_tables_of_motion_and_checks(results: Results, tmp_path: Path) -> None:
 
 
 def test_published_reactions(results: Results, tmp_path: Path) -> None:
-    write_published_reactions(results, tmp_path)
+    write_published(results, tmp_path)
     rows = written(published_reactions_table(results), tmp_path)
     assert list(rows[0]) == ["case", "connection", "ours", "published", "ratio"]
     largest = results.reactions[0].magnitudes[:, 1].max()
@@ -243,7 +243,7 @@ def test_published_reactions(results: Results, tmp_path: Path) -> None:
 
 
 def test_nothing_published_writes_nothing(results: Results, tmp_path: Path) -> None:
-    write_published_reactions(replace(results, reactions=()), tmp_path)
+    write_published(replace(results, reactions=(), published=()), tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -13,8 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from loads import LegMotion, SpatialLeg
-
 Floats = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Function = Callable[[Complex], Complex]
@@ -65,13 +63,54 @@ def cloud_inertia(mass: Floats, at: Floats) -> Floats:
 
 
 @dataclass(frozen=True)
+class Leg:
+    """Geometry, masses and inertia of leg and wheel, in the symbols of Appeltans et al. (2014).
+
+    Frames: xyz of the world, z up; x'y'z' of the aircraft, x' to its right, y' ahead;
+    x'''y'''z''' of the leg, turned by beta about y' at the hinge B. The wheel spins about -x'''.
+    l1, l2: B from the aircraft's point A along x' and z', m.
+    l3, l4: the wheel's centre C from B along -z''' and -x''', m; the leg's centre D is at 3/4 of l3
+    and 1/4 of l4.
+    leg_inertia: (3, 3) about D, leg axes. wheel_axial, wheel_transverse: about C, kg m^2.
+    slope: of the ground about x', rad. gravity: m/s^2.
+    """
+
+    l1: float
+    l2: float
+    l3: float
+    l4: float
+    leg_mass: float
+    wheel_mass: float
+    leg_inertia: Floats
+    wheel_axial: float
+    wheel_transverse: float
+    slope: float
+    gravity: float
+
+
+@dataclass(frozen=True)
+class LegMotion:
+    """Motion at T instants: speed of A, yaw, fold angle, spin of the wheel, and rates, (T,)."""
+
+    v_v: Floats
+    a_v: Floats
+    omega_g: Floats
+    alpha_g: Floats
+    beta: Floats
+    omega_i: Floats
+    alpha_i: Floats
+    omega_w: Floats
+    alpha_w: Floats
+
+
+@dataclass(frozen=True)
 class Particles:
     """One leg, one motion. masses (N,) kg, offsets (N, 3) m from D or C.
 
     follow: how far A's course follows the yaw: 1 entirely, 0 not at all.
     """
 
-    leg: SpatialLeg
+    leg: Leg
     leg_masses: Floats
     leg_offsets: Floats
     wheel_masses: Floats
@@ -83,14 +122,14 @@ class Particles:
     follow: float
 
     def motion(self, times: Floats) -> LegMotion:
-        """The motion as the program takes it."""
+        """The motion in numbers."""
         t = times.astype(complex)
 
         def rates(wave: Wave) -> tuple[Floats, Floats, Floats]:
             return wave(t).real, derivative(wave, t).real, derivative(wave, t, 2).real
 
         v_v, a_v, _ = rates(self.speed)
-        heading, omega_g, alpha_g = rates(self.heading)
+        _, omega_g, alpha_g = rates(self.heading)
         beta, omega_i, alpha_i = rates(self.beta)
         _, omega_w, alpha_w = rates(self.spin)
         return LegMotion(
@@ -103,8 +142,6 @@ class Particles:
             alpha_i=alpha_i,
             omega_w=omega_w,
             alpha_w=alpha_w,
-            course_rate=self.follow * omega_g,
-            heading=heading,
         )
 
     def aircraft(self, t: Complex) -> Complex:
@@ -190,7 +227,7 @@ def random_particles(seed: int, follow: float | None = None) -> Particles:
     wheel_masses = np.repeat(rng.uniform(0.5, 3.0, 3), [10, 5, 1])
     axial, transverse = np.diag(cloud_inertia(wheel_masses, wheel_offsets))[:2]
     l1, l2, l3, l4 = rng.uniform(-1.5, 1.5, 4)
-    leg = SpatialLeg(
+    leg = Leg(
         l1=l1,
         l2=l2,
         l3=l3,

@@ -1,4 +1,20 @@
-"""A study of a pin in the lugs of a clevis."""
+"""A pin in the lugs of a clevis, and a study of it."""
+
+from geometry import Pin, Segment
+
+DIAMETER = 0.02
+CLEVIS_PIN = Pin(
+    "P",
+    (
+        Segment(0.002, DIAMETER),
+        Segment(0.010, DIAMETER, connection="L"),
+        Segment(0.001, DIAMETER),
+        Segment(0.020, DIAMETER, connection="M"),
+        Segment(0.001, DIAMETER),
+        Segment(0.010, DIAMETER, connection="R"),
+        Segment(0.002, DIAMETER),
+    ),
+)
 
 CLEVIS = """
 title = "A clevis"

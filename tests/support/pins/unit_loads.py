@@ -12,18 +12,24 @@ from fea.solid.nodal_loads import Unit
 
 def forces(*names: str, along: tuple[int, ...] = (0, 1)) -> tuple[Unit, ...]:
     """A force along each of these axes (x 0, y 1, z 2) on each surface."""
-    one = {a: ("force", 0 if a == 2 else 1, a % 2) for a in along}
+    one = {a: ("pull", 0, 0) if a == 2 else ("force", 1, a) for a in along}
     return tuple(
-        (UnitLoad(name, "force", n), phase) for name in names for _, n, phase in one.values()
+        (UnitLoad(name, kind, n), phase)  # type: ignore[arg-type]
+        for name in names
+        for kind, n, phase in one.values()
     )
 
 
 def moments(*names: str) -> tuple[Unit, ...]:
     """A moment about y, -x and z on each surface."""
     return tuple(
-        (UnitLoad(name, "moment", n), phase)
+        (unit, phase)
         for name in names
-        for n, phase in ((1, 0), (1, 1), (0, 1))
+        for unit, phase in (
+            (UnitLoad(name, "moment", 1), 0),
+            (UnitLoad(name, "moment", 1), 1),
+            (UnitLoad(name, "twist", 0), 1),
+        )
     )
 
 

@@ -89,6 +89,20 @@ class DaskCluster:
         subprocess.run(command, check=True, timeout=LIMIT)
 
 
+IMPATIENT = """
+import pinstress.explore.sweep.cluster as module
+module.WORKER_TIMEOUT = 5.0
+from pinstress.__main__ import main
+main()
+"""
+
+
+def impatient(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    """The program, which waits for a worker for 5 s instead of 30."""
+    command = [sys.executable, "-c", IMPATIENT, *arguments]
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True)
+
+
 @contextmanager
 def dask_cluster(folder: Path, encrypted: bool = True) -> Iterator[DaskCluster]:
     """A scheduler, which ends with the block, and its workers too; with keys of its own."""

@@ -8,6 +8,7 @@ ONE_PIN = shipped_studies()["one_pin"].read_text(encoding="utf-8")
 DIAMETER = "pin.B.profile[2].diameter"
 FORCE = "case.landing.forces.B[2]"
 STRENGTH = "material.AISI 4340.yield_strength"
+SHAPES = f'"{DIAMETER}" = {{ from = "1.5 in", to = "4.5 in" }}'
 
 
 def varied(parameters: str, head: str = 'sample = "sobol"\ncount = 4', text: str = ONE_PIN) -> str:
@@ -21,3 +22,7 @@ def swept(parameters: str, head: str = 'sample = "sobol"\ncount = 4', text: str 
 
 
 DEADLY = 2
+
+
+# Takes long enough to be interrupted; `whole_sweep` of tests/conftest.py is its table.
+LONG_SWEEP = varied(SHAPES, 'sample = "sobol"\ncount = 48')

@@ -6,12 +6,10 @@ import numpy as np
 
 from reports.data.results import (
     BeamCheck,
-    Dimensioned,
     DriveTable,
     Field,
     GoverningLoad,
     LandingRange,
-    LegTable,
     LinkageMotion,
     MotionCheck,
     PinResult,
@@ -199,22 +197,6 @@ def four_bar(case: str, times: np.ndarray | None) -> LinkageMotion:
         shaking_about="O",
         ledger=PowerLedger(kinetic - weight, weight, 0.0 * angle, 0.0 * angle, kinetic, 1.2e-15),
     )
-
-
-def leg(times: np.ndarray) -> LegTable:
-    wave = np.sin(times)[:, None] * np.array([1.0, -0.5, 0.2])
-    names = {
-        "wheel_omega": "rad/s", "wheel_alpha": "rad/s^2", "v_C": "in/s", "v_D": "in/s",
-        "a_C": "in/s^2", "a_D": "in/s^2", "coriolis_C": "in/s^2", "p_leg_rate": "lbf",
-        "p_wheel_rate": "lbf", "L_leg_rate": "lbf in", "L_wheel_rate": "lbf in",
-        "F_B": "lbf", "M_B": "lbf in",
-    }  # fmt: skip
-    scalars = {
-        "actuator": Dimensioned(wave[:, 0], "energy", "lbf in"),
-        "spin_moment": Dimensioned(wave[:, 1], "energy", "lbf in"),
-    }
-    vectors = {n: Dimensioned(wave, "force", u) for n, u in names.items()}
-    return LegTable("fold", times, vectors, scalars, "x', y', z'")
 
 
 def drive(times: np.ndarray) -> DriveTable:

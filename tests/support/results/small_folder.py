@@ -11,6 +11,7 @@ from reports.vtk.fields import write_vtu
 from tests.support.results.made_up_run import UNITS, make_field, make_results, pin, shape, static
 
 VTU = "vtk/B_landing.vtu"
+SECRET = b"what is outside of the folder"
 
 
 def small_folder(folder: Path) -> Path:

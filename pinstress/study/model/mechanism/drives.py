@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import Protocol
 
 from loads import (
     ArgumentError,
@@ -10,7 +12,6 @@ from loads import (
     CosineDrive,
     CycloidalDrive,
     Law,
-    Linkage,
     LinkageError,
     TableDrive,
     TableError,
@@ -21,6 +22,8 @@ from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import Coordinates, InstantCase, StaticCase
 from pinstress.study.schema.landing import AtWheel
 from pinstress.study.schema.mechanism import MechanismTable, RotaryDrive, SliderDrive, drive_name
+from pinstress.study.schema.space import LengthDrive, SpaceDrive, TravelDrive
+from pinstress.study.schema.tables import AnyMechanism
 from pinstress.study.schema.units import to_si
 
 DRIVE_LAWS: dict[str, type[CosineDrive | CycloidalDrive | ConstantDrive]] = {
@@ -28,10 +31,28 @@ DRIVE_LAWS: dict[str, type[CosineDrive | CycloidalDrive | ConstantDrive]] = {
     "cycloidal": CycloidalDrive,
     "constant": ConstantDrive,
 }
-AnyDriveTable = SliderDrive | RotaryDrive
+AnyDriveTable = SliderDrive | RotaryDrive | SpaceDrive
 
 
-def mechanism_of(study: Study) -> MechanismTable:
+class DrawnDrive(Protocol):
+    """A driven coordinate: a slider or turn, or in space a joint's angle or travel or a span."""
+
+    @property
+    def drawn(self) -> float:
+        """Its value as drawn, m or rad."""
+        ...
+
+
+class Driven(Protocol):
+    """A linkage in the plane or in space."""
+
+    @property
+    def drives(self) -> Sequence[DrawnDrive]:
+        """The coordinates that drives prescribe."""
+        ...
+
+
+def mechanism_of(study: Study) -> AnyMechanism:
     """Return the study's mechanism.
 
     Raises: InputError where it has none.
@@ -41,18 +62,31 @@ def mechanism_of(study: Study) -> MechanismTable:
     return study.table.mechanism
 
 
+def plane_of(study: Study) -> MechanismTable:
+    """Return the study's mechanism, which is in a plane."""
+    mechanism = mechanism_of(study)
+    assert isinstance(mechanism, MechanismTable)
+    return mechanism
+
+
 def laws(study: Study) -> tuple[Law, ...]:
     """Return the law of every drive.
 
     Raises: InputError for a table that cannot be used.
     """
-    return tuple(_law(study, d) for d in mechanism_of(study).drive)
+    return tuple(_law(study, d) for d in drive_tables(study))
 
 
 def offsets(study: Study) -> dict[str, float]:
     """Return the offset subtracted from each driven slider's length to display its position, m."""
-    drives = mechanism_of(study).drive
-    return {d.slider: d.position_offset for d in drives if isinstance(d, SliderDrive)}
+    sliding = (SliderDrive, TravelDrive, LengthDrive)
+    drives = drive_tables(study)
+    return {drive_name(d): d.position_offset for d in drives if isinstance(d, sliding)}
+
+
+def drive_tables(study: Study) -> list[AnyDriveTable]:
+    """Return the drives of the study's mechanism."""
+    return [*mechanism_of(study).drive]
 
 
 def _law(study: Study, drive: AnyDriveTable) -> Law:
@@ -75,7 +109,7 @@ def drive_table(study: Study, drive: AnyDriveTable) -> TableDrive:
     Raises: InputError.
     """
     path = study.path_to(drive.table or "")
-    slides = isinstance(drive, SliderDrive)
+    slides = drive.slides
     length, time = study.system.factor("length"), study.system.factor("time")
     value = "position" if slides else "position_deg"
     unit, rates = (length, length) if slides else (math.pi / 180.0, 1.0)
@@ -100,13 +134,13 @@ def drive_table(study: Study, drive: AnyDriveTable) -> TableDrive:
 
 
 def state(
-    study: Study, name: str, case: StaticCase | InstantCase | AtWheel, drawn: Linkage
+    study: Study, name: str, case: StaticCase | InstantCase | AtWheel, drawn: Driven
 ) -> list[tuple[float, float, float]]:
     """Return the position, velocity and acceleration of every drive in a case, SI.
 
     Raises: InputError.
     """
-    drives = mechanism_of(study).drive
+    drives = drive_tables(study)
     rates = (case.velocity, case.acceleration) if isinstance(case, InstantCase) else (0.0, 0.0)
     for key, stated in zip(DRIVE_DIMENSIONS, (case.position, *rates), strict=True):
         if stated and not drives:
@@ -138,7 +172,7 @@ def _coordinate(
     default: float,
 ) -> float:
     where = f"case.{case}.{key}"
-    names = [drive_name(d) for d in mechanism_of(study).drive]
+    names = [drive_name(d) for d in drive_tables(study)]
     if isinstance(value, dict):
         unknown = [n for n in value if n not in names]
         if unknown:
@@ -154,7 +188,7 @@ def _coordinate(
         )
     if value is None or (value == 0.0 and key != "position"):
         return default
-    slides = isinstance(drive, SliderDrive)
+    slides = drive.slides
     try:
         coordinate = to_si(value, DRIVE_DIMENSIONS[key][0 if slides else 1], study.system)
     except ArgumentError as error:

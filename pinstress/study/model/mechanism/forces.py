@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from loads import (
@@ -24,14 +25,18 @@ from loads import (
     read_table,
 )
 from loads.linkage.linkage import Point
+from loads.space.out_of_plane import SideLoad
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import ApplyTable
 from pinstress.study.schema.forces import (
     CurveTable,
     ForceLawTable,
+    LineLawTable,
     LineSpringTable,
+    TorsionLawTable,
     TorsionSpringTable,
 )
+from pinstress.study.schema.mechanism import MechanismTable
 from pinstress.study.schema.types import JointOrPoint
 from pinstress.study.schema.units import to_si
 
@@ -39,7 +44,7 @@ RADIANS_PER_DEGREE = math.pi / 180.0
 
 
 @dataclass(frozen=True)
-class _Column:
+class TableColumn:
     """A column of a table: its name in a file, its dimension, SI value of the file's unit, and
     its unit in messages.
     """
@@ -50,16 +55,20 @@ class _Column:
     unit: str
 
 
-def _column(study: Study, name: str, dimension: str) -> _Column:
-    return _Column(name, dimension, study.system.factor(dimension), study.system.unit(dimension))
+def column(study: Study, name: str, dimension: str) -> TableColumn:
+    """Return a column of a dimension, in the study's units."""
+    return TableColumn(
+        name, dimension, study.system.factor(dimension), study.system.unit(dimension)
+    )
 
 
-def _angle(name: str) -> _Column:
-    return _Column(name, "angle", RADIANS_PER_DEGREE, "deg")
+def angle_column(name: str) -> TableColumn:
+    """Return a column of angles, in degrees."""
+    return TableColumn(name, "angle", RADIANS_PER_DEGREE, "deg")
 
 
 def curve(
-    study: Study, where: str, given: CurveTable | None, x: _Column, value: tuple[str, str]
+    study: Study, where: str, given: CurveTable | None, x: TableColumn, value: tuple[str, str]
 ) -> ForceTable | None:
     """Return a table as a function.
 
@@ -71,7 +80,7 @@ def curve(
     """
     if given is None:
         return None
-    y = _column(study, *value)
+    y = column(study, *value)
     try:
         rows = _rows(study, given, x, y)
         at, values = zip(*rows, strict=True)
@@ -85,7 +94,9 @@ def curve(
         raise study.error(f"{where}.points: {error}", code=error.code) from None
 
 
-def _rows(study: Study, given: CurveTable, x: _Column, y: _Column) -> list[tuple[float, float]]:
+def _rows(
+    study: Study, given: CurveTable, x: TableColumn, y: TableColumn
+) -> list[tuple[float, float]]:
     if given.table is None:
         return [
             (to_si(a, x.dimension, study.system), to_si(b, y.dimension, study.system))
@@ -101,7 +112,7 @@ def springs(study: Study, mechanism: Linkage) -> tuple[Spring, ...]:
     Raises: InputError.
     """
     table = study.table.mechanism
-    assert table is not None
+    assert isinstance(table, MechanismTable)
     lines = (_spring(study, mechanism, *item) for item in table.spring.items())
     turns = (_torsion(study, *item) for item in table.torsion_spring.items())
     return (*lines, *turns)
@@ -117,9 +128,20 @@ def _spring(study: Study, mechanism: Linkage, name: str, table: LineSpringTable)
         assert table.joints is not None
         ends = (_at(mechanism, table.joints[0]), _at(mechanism, table.joints[1]))
         between, drawn = Distance(table.bodies, ends), math.dist(*ends)
+    return Spring(name, between, line_law(study, name, table, drawn))
+
+
+def _torsion(study: Study, name: str, table: TorsionSpringTable) -> Spring:
+    base, body = table.bodies
+    turn = Turn(name, body, 0.0, base)
+    return Spring(name, Position(turn), torsion_law(study, name, table))
+
+
+def line_law(study: Study, name: str, table: LineLawTable, drawn: float) -> ForceLaw:
+    """Return the law of a spring of a length. drawn: its length as drawn, m."""
     where, value = f"mechanism.spring.{name}", ("force", "force")
-    length, velocity = _column(study, "length", "length"), _column(study, "velocity", "velocity")
-    law = ForceLaw(
+    length, velocity = column(study, "length", "length"), column(study, "velocity", "velocity")
+    return ForceLaw(
         table.preload,
         table.stiffness,
         drawn if table.reference is None else table.reference,
@@ -127,22 +149,20 @@ def _spring(study: Study, mechanism: Linkage, name: str, table: LineSpringTable)
         curve(study, f"{where}.force", table.force, length, value),
         curve(study, f"{where}.damper", table.damper, velocity, value),
     )
-    return Spring(name, between, law)
 
 
-def _torsion(study: Study, name: str, table: TorsionSpringTable) -> Spring:
+def torsion_law(study: Study, name: str, table: TorsionLawTable) -> ForceLaw:
+    """Return the law of a spring of an angle, which is zero as drawn."""
     where, value = f"mechanism.torsion_spring.{name}", ("moment", "moment")
-    rate = _Column("angular_velocity", "angular velocity", 1.0, "rad/s")
-    law = ForceLaw(
+    rate = TableColumn("angular_velocity", "angular velocity", 1.0, "rad/s")
+    return ForceLaw(
         table.preload,
         table.stiffness,
         table.reference,
         table.damping,
-        curve(study, f"{where}.couple", table.couple, _angle("angle_deg"), value),
+        curve(study, f"{where}.couple", table.couple, angle_column("angle_deg"), value),
         curve(study, f"{where}.damper", table.damper, rate, value),
     )
-    base, body = table.bodies
-    return Spring(name, Position(Turn(name, body, 0.0, base)), law)
 
 
 def _at(mechanism: Linkage, place: JointOrPoint) -> Point:
@@ -150,34 +170,42 @@ def _at(mechanism: Linkage, place: JointOrPoint) -> Point:
 
 
 def load(
-    study: Study, where: str, table: ApplyTable, force: Point, mechanism: Linkage
-) -> tuple[Applied, ...]:
+    study: Study, where: str, table: ApplyTable, force: Sequence[float], mechanism: Linkage
+) -> tuple[SideLoad, ...]:
     """Return a load of a case.
 
-    force: N, along `force_law` of size one.
+    force: (fx, fy[, fz]) N, along `force_law` of size one.
 
     Raises: InputError.
     """
-    at = table.at
-    if at is None:
-        at = next(b.centre for b in mechanism.bodies if b.name == table.body)
-    one = Applied(
+    if table.at is None:
+        at, z = next(b.centre for b in mechanism.bodies if b.name == table.body), None
+    elif isinstance(table.at, str):
+        at, z = mechanism.joint(table.at).at, None
+    else:
+        (x, y), z = table.at[:2], table.at[2] if len(table.at) > 2 else None
+        at = (x, y)
+    mx, my, mz = table.moments
+    fx, fy, fz = (*force, 0.0)[:3]
+    applied = Applied(
         table.body,
-        _at(mechanism, at),
-        force,
-        table.couple,
+        at,
+        (fx, fy),
+        mz,
         table.follows,
         begin=table.begin or -math.inf,
         end=math.inf if table.end is None else table.end,
     )
+    one = SideLoad(applied, z, fz, (mx, my))
     if table.force_law is None and table.couple_law is None:
         return (one,)
     by_force = _varying(study, f"{where}.force_law", table.force_law, mechanism, "force")
     by_couple = _varying(study, f"{where}.couple_law", table.couple_law, mechanism, "moment")
-    turned = 1.0 if by_couple else table.couple
+    turned = 1.0 if by_couple else mz
+    couple = replace(applied, force=(0.0, 0.0), couple=turned, times=by_couple)
     return (
-        replace(one, couple=0.0, times=by_force),
-        replace(one, force=(0.0, 0.0), couple=turned, times=by_couple),
+        SideLoad(replace(applied, couple=0.0, times=by_force), z, fz),
+        SideLoad(couple, z, 0.0, (mx, my)),
     )
 
 
@@ -191,15 +219,15 @@ def _varying(
     return None if table is None else Varying(measure, table)
 
 
-def _argument(study: Study, law: ForceLawTable, mechanism: Linkage) -> tuple[Measure, _Column]:
+def _argument(study: Study, law: ForceLawTable, mechanism: Linkage) -> tuple[Measure, TableColumn]:
     if law.length_between is not None:
         joints = [mechanism.joint(name) for name in law.length_between]
         (a, b), (p, q) = (mechanism.carrier(j) for j in joints), (j.at for j in joints)
-        return Distance((a, b), (p, q)), _column(study, "length", "length")
+        return Distance((a, b), (p, q)), column(study, "length", "length")
     if law.position_of is None:
-        return Clock(), _column(study, "time", "time")
+        return Clock(), column(study, "time", "time")
     sources: dict[str, Slider | Turn] = {s.name: s for s in mechanism.sliders}
     of = (sources | {t.name: t for t in mechanism.turns})[law.position_of]
     if isinstance(of, Turn):
-        return Position(of), _angle("position_deg")
-    return Position(of), _column(study, "position", "length")
+        return Position(of), angle_column("position_deg")
+    return Position(of), column(study, "position", "length")

@@ -24,18 +24,22 @@ from loads import (
 )
 from loads.linkage.mass_properties import flat_bar, round_bar
 from loads.motion.mobility import Mobility, mobility, require_determined
+from loads.space.linkage import SpaceLinkage
 from pinstress.study.model.mechanism.drawing import Drawing, joints_on
 from pinstress.study.model.mechanism.drives import drive_table, mechanism_of
 from pinstress.study.model.mechanism.gears import gears, rack
 from pinstress.study.model.mechanism.joint_layout import Point, places
-from pinstress.study.model.pins import pin
+from pinstress.study.model.mechanism.masses import STANDARD_GRAVITY, friction_circle, pin_mass
+from pinstress.study.model.mechanism.space import (
+    determined_in_space,
+    space_contradictions,
+)
 from pinstress.study.reading.damage import Damage
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.file import Study
-from pinstress.study.schema.cases import GivenCase, LegCase, StaticCase
+from pinstress.study.schema.cases import GivenCase
 from pinstress.study.schema.mechanism import (
     BodyTable,
-    JointTable,
     MechanismTable,
     RotaryDrive,
     SharingTable,
@@ -46,11 +50,13 @@ from pinstress.study.schema.mechanism import (
 
 A = TypeVar("A")
 B = TypeVar("B")
-STANDARD_GRAVITY = 9.80665
 
 
-def linkage(study: Study) -> Linkage:
-    """Return the linkage of the study's mechanism.
+AnyLinkage = Linkage | SpaceLinkage
+
+
+def any_linkage(study: Study) -> AnyLinkage:
+    """Return the linkage of the study's mechanism, in a plane or in space.
 
     Raises: InputError with all its contradictions.
     """
@@ -60,14 +66,37 @@ def linkage(study: Study) -> Linkage:
     return drawn
 
 
+def linkage(study: Study) -> Linkage:
+    """Return the linkage of the study's mechanism, which is in a plane.
+
+    Raises: InputError with all its contradictions, or where it is in space.
+    """
+    drawn = any_linkage(study)
+    if not isinstance(drawn, Linkage):
+        text = "mechanism.dimension: this needs a linkage in a plane"
+        raise study.error(text, code="wrong-dimension")
+    return drawn
+
+
 def contradictions(
     study: Study, damage: Damage | None = None
-) -> tuple[Linkage | None, list[Wrong]]:
+) -> tuple[AnyLinkage | None, list[Wrong]]:
     """Return the linkage of the study's mechanism, or None and all its contradictions.
 
     damage: what the study lacks; contradictions that may follow from it are left out.
     """
     mechanism = mechanism_of(study)
+    if isinstance(mechanism, MechanismTable):
+        return _in_a_plane(study, mechanism, damage)
+    if damage is not None and damage.touches(("mechanism",)):
+        return None, []
+    return space_contradictions(study)
+
+
+def _in_a_plane(
+    study: Study, mechanism: MechanismTable, damage: Damage | None
+) -> tuple[Linkage | None, list[Wrong]]:
+    """Return the linkage of a planar mechanism; arguments as of `contradictions`."""
     g = float(np.hypot(*mechanism.gravity)) or STANDARD_GRAVITY
     unit, factor = study.system.length, study.system.factor("length")
 
@@ -124,13 +153,15 @@ def _wrong(errors: Iterable[LinkageError]) -> list[Wrong]:
     ]
 
 
-def determined(study: Study, mechanism: Linkage) -> Mobility:
+def determined(study: Study, mechanism: AnyLinkage) -> Mobility:
     """Return the mobility of a mechanism whose drives determine every position.
 
     Without drives every case may name locks instead, which are checked with the case.
 
     Raises: InputError where they do not, or where a sharing rule applies to no indeterminate force.
     """
+    if isinstance(mechanism, SpaceLinkage):
+        return determined_in_space(study, mechanism)
     try:
         return mobility(mechanism) if _held_in_all(study) else require_determined(mechanism)
     except LinkageError as error:
@@ -139,9 +170,8 @@ def determined(study: Study, mechanism: Linkage) -> Mobility:
 
 def _held_in_all(study: Study) -> bool:
     """Return whether every case, of a mechanism without drives, names the locks that hold it."""
-    apart = (GivenCase, LegCase)
-    cases = [case for case in study.table.case.values() if not isinstance(case, apart)]
-    holds = [isinstance(case, StaticCase) and case.hold is not None for case in cases]
+    cases = [case for case in study.table.case.values() if not isinstance(case, GivenCase)]
+    holds = [getattr(case, "hold", None) is not None for case in cases]
     return not mechanism_of(study).drive and bool(holds) and all(holds)
 
 
@@ -205,9 +235,12 @@ def _linkage(
             Joint(
                 name,
                 drawing.at[name],
-                tuple(Connection(c, body, _circle(j)) for c, body in j.connections.items()),
+                tuple(
+                    Connection(c, body, friction_circle(j.friction, j.diameter))
+                    for c, body in j.connections.items()
+                ),
                 j.fixed_in,
-                _pin_mass(study, name, j.weight, g) if j.fixed_in is None else 0.0,
+                pin_mass(study, name, j.weight, g) if j.fixed_in is None else 0.0,
             )
             for name, j in mechanism.joint.items()
         ),
@@ -233,12 +266,6 @@ def _body_anywhere(item: tuple[str, BodyTable]) -> Body:
 def _turn_by_any_angle(drive: RotaryDrive) -> Turn:
     """Return what stands for a driven angle that is not known as drawn."""
     return Turn(drive_name(drive), drive.body, 0.0, drive.against)
-
-
-def _circle(joint: JointTable) -> float:
-    """Return the radius of the friction circle, m."""
-    mu = joint.friction or 0.0
-    return 0.5 * (joint.diameter or 0.0) * mu / math.hypot(1.0, mu)
 
 
 def _stop(name: str, stop: StopTable) -> Turn:
@@ -317,16 +344,6 @@ def _body(drawing: Drawing, name: str, b: BodyTable, g: float) -> Body:
             )
         centre = (sum(x for x, _ in on) / len(on), sum(y for _, y in on) / len(on))
     return Body(name, mass, centre, b.inertia)
-
-
-def _pin_mass(study: Study, joint: str, weight: float | None, gravity: float) -> float:
-    """Return the mass of a floating pin: as stated, or of the profile of that name, or zero."""
-    if weight is not None:
-        return weight / gravity
-    if joint not in study.table.pin:
-        return 0.0
-    density = study.table.material[study.table.pin[joint].material].density
-    return density * pin(study, joint).volume if density else 0.0
 
 
 def ground_joint(linkage: Linkage) -> str:

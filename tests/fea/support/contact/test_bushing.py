@@ -8,7 +8,7 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.assembly import Section
-from fea.support.contact.flexibility import half_plane, layered, lug_flexibility, wavy_flexibility
+from fea.support.contact.flexibility import half_plane, layered, lug_rings, wavy_flexibility
 from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.eye_mesh import eye_mesh
 from fea.support.lugs.lug import Bushing, Lug
@@ -29,7 +29,7 @@ def lug(thickness: float | None, material: Material = BRONZE) -> Lug:
 
 def flexibility(of: Lug, ends: Floats, highest: int, across: float = 20.0) -> Floats:
     pin = Pin("P", (Segment(float(ends[-1]), 2.0 * A, connection="A"),))
-    return lug_flexibility(annulus(pin, "A", of.outer_diameter, ends), of, across, highest)
+    return lug_rings(annulus(pin, "A", of.outer_diameter, ends), of, across).flexibility(highest)
 
 
 def test_the_exact_annulus_is_lames_and_muskhelishvilis() -> None:

@@ -13,7 +13,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats
 from fea.support.bands import Bands
 from fea.support.contact.contact import ContactProblem, ContactState
-from fea.support.contact.flexibility import half_plane, lug_flexibility, pin_flexibility
+from fea.support.contact.flexibility import half_plane, lug_rings, pin_rings
 from fea.support.lugs.lug import Lug
 from fea.support.lugs.rings import annulus, graded, ring, ringed
 from geometry import Pin, Segment
@@ -47,7 +47,7 @@ def test_a_thin_disc_is_the_plane_ones(n: int) -> None:
     mu, k = E / 2.0 / (1.0 + NU), (3.0 - NU) / (1.0 + NU)
     exact = r * (1.0 - NU) / E if n == 0 else r / (4.0 * mu) * (k / (n + 1) + 1.0 / (n - 1))
     disc = Pin("disc", (Segment(t, 2.0 * r, connection="A"),))
-    found = pin_flexibility(disc, ["A"], STEEL, 24.0, n)[n, 0, 0]
+    found = pin_rings(disc, ["A"], STEEL, 24.0).flexibility(n)[n, 0, 0]
     assert found == pytest.approx(exact, rel=2e-3)
 
 
@@ -55,7 +55,7 @@ def test_an_even_pressure_in_a_lug_is_lames() -> None:
     """u = p r / E [(D^2 + d^2) / (D^2 - d^2) + nu] with free faces, whatever the length."""
     pin = Pin("P", (Segment(0.02, 0.02, connection="A"),))
     lug = Lug("A", 0.05, STEEL)
-    flexible = lug_flexibility(annulus(pin, "A", 0.05, graded(0.02, 4)), lug, 8.0, 0)[0]
+    flexible = lug_rings(annulus(pin, "A", 0.05, graded(0.02, 4)), lug, 8.0).flexibility(0)[0]
     moved = flexible.sum(axis=1)  # an even pressure on all rings
     ratio = (0.05**2 + 0.02**2) / (0.05**2 - 0.02**2)
     assert moved == pytest.approx(0.01 / E * (ratio + NU), rel=1e-4)
@@ -67,8 +67,8 @@ def test_flexibilities_are_symmetric_and_positive() -> None:
     rings = [ring("A", i) for i in range(5)]
     ends = graded(0.03, 5)
     lengths = np.diff(ends)
-    pin = pin_flexibility(ringed(whole, {"A": ends}), rings, STEEL, 8.0, 4)
-    lug = lug_flexibility(annulus(whole, "A", 0.05, ends), Lug("A", 0.05, STEEL), 6.0, 4)
+    pin = pin_rings(ringed(whole, {"A": ends}), rings, STEEL, 8.0).flexibility(4)
+    lug = lug_rings(annulus(whole, "A", 0.05, ends), Lug("A", 0.05, STEEL), 6.0).flexibility(4)
     for found in (pin, lug):
         work = found * lengths[None, :, None]
         assert work == pytest.approx(work.swapaxes(1, 2), rel=1e-12)
@@ -104,11 +104,11 @@ def clevis(inner: float, outer: float, gap: float) -> tuple[Pin, Bands, Floats]:
     ends = {name: graded(pin.band(name).length, RINGS) for name in LUGS}
     cut = ringed(pin, ends)
     rings = [ring(name, i) for name in LUGS for i in range(RINGS)]
-    flexible = pin_flexibility(cut, rings, STEEL, 10.0, HIGHEST)
+    flexible = pin_rings(cut, rings, STEEL, 10.0).flexibility(HIGHEST)
     for b, name in enumerate(LUGS):
         own = slice(b * RINGS, (b + 1) * RINGS)
         eye = annulus(pin, name, EYE, ends[name])
-        flexible[:, own, own] += lug_flexibility(eye, Lug(name, EYE, STEEL), 5.0, HIGHEST)
+        flexible[:, own, own] += lug_rings(eye, Lug(name, EYE, STEEL), 5.0).flexibility(HIGHEST)
     bands = [cut.band(name) for name in rings]
     z, length = np.array([b.middle for b in bands]), np.array([b.length for b in bands])
     radius = np.full(len(rings), D / 2.0)

@@ -16,6 +16,7 @@ from fea.support.lugs.lug import Bushing, Lug
 from geometry import Cut, CutPin, Flat, Hole, Pin, Segment
 from pinbase.arrays import Floats
 from pinbase.memo import Memo
+from tests.support.each import sampled
 
 D, F = 0.02, 50e3
 STEEL, BRONZE = Material("steel", 2.1e11, 0.3), Material("bronze", 1.1e11, 0.34)
@@ -32,6 +33,7 @@ TIGHT = tuple(
 )
 LOOSE = tuple(replace(lug, clearance=5e-5) for lug in TIGHT)
 LINED = tuple(replace(lug, bushing=Bushing(0.002, BRONZE)) for lug in LOOSE)
+KINDS = {"tight": TIGHT, "loose": LOOSE, "bushing": LINED}
 ROUGH, MEMO = Resolution(4, 24, 8), Memo()
 FLAT = Flat(0.0165, 0.0295, D / 2.0 * math.cos(math.pi / 6.0), math.pi, 0.001)
 HOLE = Hole(0.007, 0.3 * D)
@@ -75,11 +77,12 @@ def moment(of: ContactModel, state: ContactState) -> float:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("lugs", [TIGHT, LOOSE, LINED], ids=["tight", "loose", "bushing"])
-def test_a_flat_does_not_press_and_softens_the_pin(lugs: tuple[Lug, ...]) -> None:
+@pytest.mark.parametrize("kind", sampled(KINDS, every=3, first=2))
+def test_a_flat_does_not_press_and_softens_the_pin(kind: str) -> None:
     """Nothing presses on it, every lug still has its force, and the lever of the forces becomes
     shorter; another cut in another lug shortens it more.
     """
+    lugs = KINDS[kind]
     plain, cut, both = model(lugs), model(lugs, FLAT), model(lugs, FLAT, HOLE)
     moments = []
     for of in (plain, cut, both):

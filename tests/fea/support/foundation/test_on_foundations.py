@@ -135,7 +135,7 @@ def test_plane_contact_is_perssons(gap: float) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("play", [0.0, 3.0])
+@pytest.mark.parametrize("play", sampled([3.0, 0.0], every=2))
 @pytest.mark.parametrize("count", sampled([6, 20], every=2))
 def test_contact_is_within_the_bounds_of_most_pins(play: float, count: int) -> None:
     """9 in 10, on pins that had no part in any constant: the larger of surface and section,
@@ -265,7 +265,9 @@ def test_auto_takes_foundations_where_they_show_that_a_pin_is_safe() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("required", "edges"), [(3.0, 3e-4), (10.0, 3e-4), (1.5, 0.0)])
+@pytest.mark.parametrize(
+    ("required", "edges"), sampled([(3.0, 3e-4), (10.0, 3e-4), (1.5, 0.0)], every=2)
+)
 def test_auto_takes_contact_for_what_is_close_or_fails_or_is_singular(
     required: float, edges: float
 ) -> None:
@@ -324,7 +326,7 @@ def test_clearance_that_is_wide_for_a_small_load_is_left_out() -> None:
 def test_why_there_is_no_range() -> None:
     """One row for each case that was solved."""
     pin, lugs = usual()
-    turning = replace(PULL, moments=np.array([10.0, 0.0, 0.0]))
+    turning = replace(PULL, moments=FORCE * D * np.array([1.0, 0.0, 0.0]))  # that nothing reacts
     unbalanced = replace(PULL, forces=PULL.forces * [[[1.0], [0.5], [1.0]]])
     found = prescribed_ranges(pin, STEEL, lugs, (PULL, turning, None, unbalanced), (0.1, True))
     assert found[2] is None

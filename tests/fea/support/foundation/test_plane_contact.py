@@ -9,7 +9,7 @@ from fea.core.material import Material
 from fea.core.tractions import Traction
 from fea.harmonic.assembly import around
 from fea.harmonic.model import HarmonicModel, body_force
-from fea.support.contact.flexibility import half_plane, lug_flexibility, pin_flexibility
+from fea.support.contact.flexibility import half_plane, lug_rings, pin_rings
 from fea.support.foundation.plane_contact import (
     MAX_PLANE_HARMONIC,
     lug_harmonics,
@@ -28,16 +28,16 @@ SOLID = Pin("P", (Segment(0.02, 0.02, connection="A"),))
 
 
 def test_a_lug_is_that_of_finite_elements() -> None:
-    found = lug_flexibility(
-        annulus(TUBE, "A", 0.05, np.array([0.0, 0.02])), Lug("A", 0.05, EVEN), 20.0, 6
-    )[:, 0, 0]
+    found = lug_rings(
+        annulus(TUBE, "A", 0.05, np.array([0.0, 0.02])), Lug("A", 0.05, EVEN), 20.0
+    ).flexibility(6)[:, 0, 0]
     assert lug_harmonics(0.01, 0.025, EVEN)[:7] == pytest.approx(found, rel=1e-3)
 
 
 @pytest.mark.parametrize(("pin", "bore"), [(TUBE, 0.005), (SOLID, 0.0)])
 def test_a_pin_is_that_of_finite_elements(pin: Pin, bore: float) -> None:
     """But for n = 1, which is below."""
-    found = pin_flexibility(pin, ["A"], EVEN, 20.0, 6)[:, 0, 0]
+    found = pin_rings(pin, ["A"], EVEN, 20.0).flexibility(6)[:, 0, 0]
     ours = pin_harmonics(bore, 0.01, EVEN)[:7]
     assert np.delete(ours, 1) == pytest.approx(np.delete(found, 1), rel=1e-3)
 

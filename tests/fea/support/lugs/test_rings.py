@@ -15,6 +15,7 @@ from fea.support.contact.solve_joint import ContactModel, Resolution
 from fea.support.lugs.lug import Lug
 from fea.support.lugs.rings import MAX_RING_LENGTH, graded, ring_ends, ringed, rings
 from geometry import Band, Pin, Segment
+from tests.support.each import each
 
 BAND = Band("A", 0.0, 0.02, 0.01)
 
@@ -26,8 +27,8 @@ def test_sharp_edges_have_the_usual_rings() -> None:
     assert np.diff(long).max() <= MAX_RING_LENGTH * 0.02
 
 
-@pytest.mark.parametrize("radius", [2e-4, 5e-4, 1e-3, 4e-3, 0.01])
-@pytest.mark.parametrize("count", [4, 8, 16])
+@each("radius", [2e-4, 5e-4, 1e-3, 4e-3, 0.01])
+@each("count", [4, 8, 16])
 def test_rounded_edges_have_rings_where_rounding_begins(radius: float, count: int) -> None:
     """Rising, mirrored, an end at each radius; beside it no ring longer than a third of it."""
     ends = ring_ends(BAND, radius, count, 1.0 / 3.0)
@@ -44,8 +45,8 @@ def test_rounded_edges_have_rings_where_rounding_begins(radius: float, count: in
     assert parts.max() <= MAX_RING_LENGTH * 0.02 * 8 / count * 1.0001
 
 
-@pytest.mark.parametrize("radius", [2e-4, 5e-4, 1e-3, 4e-3, 0.01])
-@pytest.mark.parametrize("count", [4, 8, 16])
+@each("radius", [2e-4, 5e-4, 1e-3, 4e-3, 0.01])
+@each("count", [4, 8, 16])
 def test_rings_of_rounded_edges(radius: float, count: int) -> None:
     """As many as of sharp edges where the bore is straight, and a few short ones in the rounding,
     the shortest next to where it begins.

@@ -16,6 +16,7 @@ from fea.support.lugs.thermal import (
 )
 from geometry import ArgumentError, Pin, Segment
 from geometry.shape.lug_outline import LugOutline
+from tests.support.each import each
 
 STEEL = Material("steel", 210e9, 0.3, thermal_expansion=12e-6)
 ALUMINIUM = Material("aluminium", 70e9, 0.33, thermal_expansion=23e-6)
@@ -50,7 +51,7 @@ def timoshenko(rise: float) -> tuple[float, float]:
     return p, A * 18e-6 * rise - 2.0 * p * B**2 * A / (BRONZE.youngs_modulus * (B**2 - A**2))
 
 
-@pytest.mark.parametrize("rise", [RISE, -RISE])
+@each("rise", [RISE, -RISE])
 def test_a_bonded_bimetal_ring_grows_at_its_bore_as_two_tubes(rise: float) -> None:
     lug = Lug("A", 0.05, ALUMINIUM, bushing=Bushing(3e-3, BRONZE))
     hot = at_temperature(lug, STEEL, R, rise)
@@ -90,7 +91,7 @@ def test_a_bushing_opens_where_its_interference_is_used_up() -> None:
     assert bushing_opening_rise(at_temperature(pressed, STEEL, R, -2 * opens), -2 * opens) is None
 
 
-@pytest.mark.parametrize("which", ["pin", "lug", "bushing"])
+@each("which", ["pin", "lug", "bushing"])
 def test_a_material_without_expansion_is_named(which: str) -> None:
     def of(name: str, material: Material) -> Material:
         return replace(material, thermal_expansion=None) if which == name else material

@@ -8,15 +8,42 @@ from pathlib import Path
 import pytest
 
 import pinstress
+from geometry import Pin, Segment
+from geometry.mesh.solid_mesh import MeshSize, solid_mesh
+from pinstress.analysis.remedies.changes import FROM_FILE
 from pinstress.cli.commands import run_command_line
-from reports.data.changes import Remedy
+from reports.data.changes import Remedy, command
 from reports.data.decision import factor_ends
 from reports.data.results import Results
 from tests.conftest import ROOT
+from tests.support.pins.pin_files import write_mesh
 from tests.support.programs.command_line import QUICK
 
 GEAR = ROOT / "studies" / "grenier2008.toml"
 STRONG = "material.AISI 4340.yield_strength"
+
+
+FROM_MESH = """
+title = "A mesh"
+units = "mm-N-s"
+[material.steel]
+youngs_modulus = "205 GPa"
+poisson_ratio = 0.3
+yield_strength = "100 MPa"
+[pin.B]
+material = "steel"
+geometry = "pin.vtk"
+clamp = ["root"]
+[pin.B.band]
+B = { z = [60.0, 90.0] }
+root = { z = [0.0, 40.0], connection = false }
+[case.push]
+kind = "given"
+forces = { B = [0.0, 50000.0] }
+[analysis]
+tolerance = 0.5
+required_safety_factor = 4
+"""
 
 
 def least(results: Results) -> float:
@@ -68,6 +95,48 @@ def test_a_pin_as_wide_as_long_is_no_remedy(weak: pinstress.Study) -> None:
     found = only(pinstress.run(hard))
     assert found.diameter_factor is None
     assert "as wide as long" in found.diameter_note
+
+
+def test_the_command_names_all_pins_but_those_that_it_says_it_leaves_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Every other of eight pins needs a pin wider than long: named with the reason, not just gone.
+
+    The command is one line however narrow the terminal, and no diameter is estimated for them.
+    """
+    head, profile = QUICK.split("[pin.B]")[0], QUICK.split("[pin.B]")[1].split("[case")[0]
+    band = 'connection = "B"'
+    assert band in profile
+    pins = {f"P{k}": 300.0 if k % 2 else 600.0 for k in range(1, 9)}
+    tables = [f"[pin.{n}]{profile.replace(band, f'connection = {chr(34)}{n}{chr(34)}')}"
+              for n in pins]  # fmt: skip
+    forces = ", ".join(f"{n} = [0.0, {force}]" for n, force in pins.items())
+    case = f'[case.landing]\nkind = "given"\nforces = {{ {forces} }}\n'
+    study = tmp_path / "many.toml"
+    required = "[analysis]\ntolerance = 0.1\nrequired_safety_factor = 1200\n"
+    study.write_text("\n".join((head, *tables, case, required)))
+    command = ["run", str(study), "--out", str(tmp_path / "out"), "--no-pictures", "--quiet"]
+    run_command_line([*command, "--vtk", "none", "--jobs", "1"])
+    lines = capsys.readouterr().out.splitlines()
+    (sizing,) = (line.split() for line in lines if "pinstress size" in line)
+    sized = set(sizing[sizing.index("--pins") + 1].split(","))
+    assert sized == {"P1", "P3", "P5", "P7"}
+    said = " ".join(lines)
+    assert "no remedy for P2, P4, P6, P8, so the command leaves them out (P2: a pin as wide" in said
+    estimated = {line.split()[0] for line in lines if " → " in line}
+    assert estimated == {*sized, "#"}  # and the key
+
+
+def test_a_shape_from_a_file_is_not_sized(tmp_path: Path) -> None:
+    """The command would refuse it."""
+    file = Pin("B", (Segment(0.04, 0.05), Segment(0.05, 0.04)))
+    write_mesh(solid_mesh(file, MeshSize(1.0)), tmp_path / "pin.vtk", linear=True)
+    study = tmp_path / "study.toml"
+    study.write_text(FROM_MESH)
+    results = pinstress.run(pinstress.load_study(study))
+    found = only(results)
+    assert (found.diameter_factor, found.diameter_note) == (None, FROM_FILE)
+    assert command(results.changes, "study.toml", 4.0) == ""
 
 
 @pytest.mark.slow

@@ -20,34 +20,8 @@ from pinstress.analysis.solve import solutions, solve_tasks
 from pinstress.cli.commands import run_command_line
 from reports.data.results import PinSensitivities
 from tests.support.pins.clevis import CLEVIS
+from tests.support.pins.studies import BY_SEGMENTS_AND_CORNERS
 from tests.support.programs.command_line import QUICK
-
-TWICE = """
-title = "The same pin by segments and by corners"
-units = "mm-N-s"
-[material.steel]
-youngs_modulus = "210 GPa"
-poisson_ratio = 0.3
-yield_strength = "500 MPa"
-[pin.P]
-material = "steel"
-clamp = ["start"]
-profile = [
-  { length = 40, diameter = 20, bore = 8 },
-  { length = 10, diameter = [20, 30], bore = 8 },
-  { length = 30, diameter = 30, bore = 8, connection = "B", edge_radius = 1 },
-]
-fillet = 2
-[pin.M]
-material = "steel"
-clamp = ["start"]
-meridian = [[0, 10], [40, 10, 2], [50, 15], [80, 15, 1]]
-bore_meridian = [[0, 4], [80, 4]]
-band.C = { z = [50, 80] }
-[case.push]
-kind = "given"
-forces = { B = [0, 1000], C = [0, 1000] }
-"""
 
 
 def _own(key: str) -> str:
@@ -109,7 +83,7 @@ def test_all_cases_where_asked() -> None:
 
 def test_corners_and_segments_agree() -> None:
     """The same pin twice: each number under its own key."""
-    study = pinstress.study_from(TWICE)
+    study = pinstress.study_from(BY_SEGMENTS_AND_CORNERS)
     both = {found.pin: found for found in pinstress.run(study).sensitivities}
     P, M = ({_own(row.key): row.stress for row in both[name].rows} for name in "PM")
     for ours, theirs in (

@@ -20,7 +20,7 @@ from pinstress.explore.chart.measured_process import Measured, MeasureJob, Measu
 from reports.data.chart import Chart, ChartPoint
 from reports.plots.chart import chart_plot
 from reports.plots.draw import draw
-from reports.tables.chart import write_chart_csv
+from reports.tables.chart import chart_table
 from reports.text.chart_summary import cost, failures, reference_line, staying, summary
 from tests.conftest import ROOT
 from tests.support.each import each
@@ -170,7 +170,7 @@ def test_what_failed_is_shown_with_its_reason(
     ]
     one = (*made_up.points, ChartPoint("solid", CURVED, failed="no mesh"))
     assert failures(replace(made_up, points=one)) == [f"Failed: solid ({CURVED}), mesh 6: no mesh"]
-    write_chart_csv(found, tmp_path)
+    chart_table(found).write(tmp_path)
     rows = list(csv.DictReader((tmp_path / "chart.csv").read_text().splitlines()))
     (row,) = [r for r in rows if r["element"] == LINEAR]
     assert row["failed"] == "exceeded the limit of 9 s"

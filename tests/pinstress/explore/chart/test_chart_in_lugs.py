@@ -105,6 +105,17 @@ def test_errors_are_those_against_the_finest_contact(plan: ChartPlan, made_up: C
     assert made_up.points[0].error == pytest.approx(abs(1.02 / best - 1.0))
 
 
+def test_a_reference_on_narrow_arcs_has_their_error(plan: ChartPlan) -> None:
+    """Two sets of cells agree to less than 2 %, but follow the pressure of loose lugs no better."""
+    problem = plan.problem
+    assert isinstance(problem, JointProblem)
+    loose = replace(problem, lugs=tuple(replace(lug, clearance=5e-4) for lug in problem.lugs))
+    light = replace(loose, loads=replace(loose.loads, forces=0.02 * loose.loads.forces))
+    reference = chart(replace(plan, problem=light), MadeUp()).reference
+    assert reference.error > 1.5 / (CHART_RESOLUTIONS[-1].highest * light.half_angle) ** 2
+    assert reference.error > 0.3
+
+
 def test_what_is_said(made_up: Chart) -> None:
     """Of the beam on foundations only its error; CalculiX is at 3 %."""
     told = summary(made_up)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
+from functools import cache
 
 import numpy as np
 import pytest
@@ -138,13 +139,18 @@ def test_a_bore_grows_to_its_limit() -> None:
     assert (row.safety_factor or 0.0) > 2.5
 
 
+@cache
+def stepped() -> LightStudy:
+    return lightest(STEPPED, vary=("diameters",))
+
+
 @pytest.mark.slow
 def test_a_stepped_cantilever_is_fully_stressed() -> None:
     """d_i is as M_i^(1/3) where beam theory says so, at the wider end of each segment, times the
     cube root of the peak in the corner, about 2 for these fillets; the first one is as wide as the
     shoulder before the second must be.
     """
-    found = lightest(STEPPED, vary=("diameters",))
+    found = stepped()
     (only,) = found.pins
     values = values_of(found)
     assert only.optimality is not None
@@ -165,7 +171,7 @@ def test_a_stepped_cantilever_is_fully_stressed() -> None:
 @pytest.mark.parametrize("times", sampled([4.64, 0.585], every=2))
 def test_a_start_far_off_leads_to_the_same(times: float) -> None:
     """With a factor 100 times as large, or a fifth."""
-    usual = lightest(STEPPED, vary=("diameters",))
+    usual = stepped()
     off = STEPPED
     for d in (80, 60, 45, 30):
         off = off.replace(f"diameter = {d}", f"diameter = {d * times}")
@@ -366,6 +372,7 @@ def test_a_pin_that_a_run_has_weaker_than_its_search_is_searched_again(
     assert 2.0 <= min(low_factor(p) or 0.0 for p in pinstress.run(found.study).pins) <= 2.02
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_the_clevis_settles_in_one_pass() -> None:
     """Its run has finer cells and so a smaller error than its search, which is no reason to search

@@ -15,7 +15,6 @@ from hypothesis import strategies as st
 from pinstress.analysis.plan import prepare
 from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE, MAX_TRIALS, NoSizeError, smallest
 from pinstress.analysis.results import run
-from pinstress.cli.check import describe
 from pinstress.cli.commands import run_command_line
 from pinstress.explore.size.pin_answers import SizedStudy
 from pinstress.explore.size.scaled_study import moved, resized, resized_study
@@ -26,6 +25,7 @@ from pinstress.study.reading.file import load_study, parse_study
 from pinstress.study.schema.units import UNIT_SYSTEMS
 from reports.data.decision import factor_ends
 from tests.conftest import ROOT
+from tests.support.described import describe
 from tests.support.each import each
 from tests.support.programs.command_line import ONE_PIN, QUICK, Refused, sizes_nothing
 

@@ -25,7 +25,7 @@ from tests.conftest import ROOT
 from tests.support.programs.command_line import QUICK, run_here
 from tests.support.programs.process_group import started
 
-NAMES = "BCDEFG"
+NAMES = "BCDE"
 PATIENCE = 300.0  # s, for the first pin
 
 
@@ -52,6 +52,7 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return solved
 
 
+@pytest.mark.slow
 def test_an_interrupted_size_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """By a process of its own, which is interrupted once its first pin is written: finished pins
     are in the new study; with --resume only the others are solved, and the new study is that of a

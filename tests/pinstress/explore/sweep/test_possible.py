@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 import pinstress
-from pinstress.cli.check import describe
 from pinstress.cli.commands import run_command_line
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.in_python import study_from
+from tests.support.described import describe
 from tests.support.each import each
 
 CLEVIS = """title = "Clevis"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pinstress
-from pinstress.cli.check import describe
+from tests.support.described import describe
 from tests.support.each import each
 from tests.support.programs.command_line import QUICK
 

@@ -13,6 +13,7 @@ from pinstress.analysis.remedies.joint_parameters import joint_parameters
 from pinstress.cli.commands import run_command_line
 from pinstress.study.reading.file import Study
 from tests.pinstress.study.model.test_lugs import study as written
+from tests.support.each import each
 
 
 def fitted(folder: Path, pin: str, joints: str = "contact") -> Study:
@@ -47,7 +48,7 @@ def test_the_range_over_the_joint_is_over_the_fit(tmp_path: Path) -> None:
     assert changes == pytest.approx([0.020, 0.062])
 
 
-@pytest.mark.parametrize(
+@each(
     ("lug", "message"),
     [
         ('fit = "H7/f7", clearance = 0', r"pin.P.lug.M: give fit or clearance, not both"),

@@ -13,8 +13,10 @@ from pinstress.study.model.mechanism.linkage import linkage
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import load_study, parse_study
 from reports.animation.page import render_animation
+from reports.data.skeleton import planar_skeleton
 from reports.plots.loads.linkage import linkage_plot
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.errors import raises
 
 PLANETARY = ROOT / "studies" / "planetary.toml"
@@ -42,7 +44,7 @@ def test_pitch_circles_turn_with_their_gears() -> None:
             expected = np.exp(1j * np.radians(angle - angle[0]))
             assert np.abs(turned - expected).max() < 1e-9
     assert {"sun_planet1", "planet3_ring"} <= {*motion.joints}
-    page = render_animation(motion, results)
+    page = render_animation(planar_skeleton(motion), results)
     assert page.count("data-pitch=") == 5
     axes = linkage_plot(motion, results.units).spec["encoding"]
     assert axes["y"]["scale"]["domain"][1] > 144.0
@@ -73,7 +75,7 @@ def test_radii_and_teeth_give_the_same_gears() -> None:
         assert one.normal == pytest.approx(two.normal)
 
 
-@pytest.mark.parametrize(
+@each(
     ("old", "new", "code", "named"),
     [
         ("teeth = 16\nmodule = 5", "teeth = 16", "give-both", "module"),

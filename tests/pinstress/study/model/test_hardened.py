@@ -35,6 +35,7 @@ distribution = "uniform"
 required_safety_factor = 1.5
 """
 CASE = 'hardened = { surface = "900 MPa", core = "500 MPa", depth = 2 }'
+RANGED = "yield_strength = 800\nrange = { yield_strength = [10, 9000] }"
 
 
 def study(tmp_path: Path, strength: str = "", of_pin: str = "", of_segment: str = "") -> Path:
@@ -53,6 +54,7 @@ def study(tmp_path: Path, strength: str = "", of_pin: str = "", of_segment: str 
         (CASE + '\nyield_strength = "500 MPa"', "", "", "either yield_strength or hardened"),
         ("", CASE.replace("= 2 }", "= 16 }"), "", r"pin\.P\.hardened\.depth"),
         ("", "", ", " + CASE, r"profile\[2\]\.hardened: the rest of pin P has no yield strength"),
+        (RANGED, "", ", " + CASE, r"range\.yield_strength: pin P is hardened in part.*lower end"),
     ],
 )
 def test_bad_case_is_told(
@@ -81,6 +83,17 @@ def test_row_says_what_governs(tmp_path: Path) -> None:
     assert row["safety_factor"] < second["safety_factor"]
     assert ",core," in (out / "safety_factors.csv").read_text()
     assert "the core beneath the hardened case governs" in (out / "report.html").read_text()
+
+
+def test_a_range_of_the_material_is_none_of_a_pin_hardened_all_over(tmp_path: Path) -> None:
+    """Neither its outcome nor its checks take a yield strength that counts nowhere on it."""
+    (plain,) = pinstress.run(
+        pinstress.load_study(study(tmp_path, of_pin=CASE, strength="yield_strength = 800"))
+    ).pins
+    (ranged,) = pinstress.run(pinstress.load_study(study(tmp_path, RANGED, CASE))).pins
+    assert plain.outcome != "depends"
+    assert (ranged.outcome, ranged.depends_on, ranged.strength_range) == (plain.outcome, (), None)
+    assert ranged.margins == plain.margins
 
 
 def test_only_the_hardened_segment_has_the_case(tmp_path: Path) -> None:

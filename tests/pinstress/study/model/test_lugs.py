@@ -12,7 +12,9 @@ import pytest
 from fea.support.lugs.lug import Bushing, Lug, LugRange
 from pinstress import InputError, load_study, prepare, run
 from pinstress.study.model.lugs import AssumedLugs
+from tests.support.each import each
 from tests.support.errors import raises
+from tests.support.pins.studies import DOUBLE_SHEAR
 
 STUDY = """
 title = "A pin in double shear"
@@ -37,20 +39,14 @@ forces = {{ L = [-25000, 0], M = [50000, 0], R = [-25000, 0] }}
 
 [pin.P]
 material = "steel"
-profile = [
-  {{ length = 10, diameter = 20, connection = "L" }},
-  {{ length = 1, diameter = 20, name = "gap" }},
-  {{ length = 20, diameter = 20, connection = "M" }},
-  {{ length = 1, diameter = 20 }},
-  {{ length = 10, diameter = 20, connection = "R" }},
-]
+profile = {profile}
 {pin}
 """
 
 
 def study(folder: Path, pin: str = "", analysis: str = "") -> Path:
     path = folder / "study.toml"
-    path.write_text(STUDY.format(pin=pin, analysis=analysis))
+    path.write_text(STUDY.format(profile=DOUBLE_SHEAR, pin=pin, analysis=analysis))
     return path
 
 
@@ -98,7 +94,7 @@ def test_what_is_not_given(tmp_path: Path) -> None:
     assert middle.tilt == pytest.approx(8.0 * left.tilt)
 
 
-@pytest.mark.parametrize(
+@each(
     ("pin", "joints", "held"),
     [
         ("", "auto", 0),
@@ -117,7 +113,7 @@ def test_a_lug_of_the_structure_by_the_name_of_a_segment(tmp_path: Path) -> None
     assert [lug.connection for lug in lugs(tmp_path, "lug.gap = {}")] == ["L", "M", "R", "gap"]
 
 
-@pytest.mark.parametrize(
+@each(
     "cut",
     [
         "flat = [{ z = [14, 26], distance = 9 }]",
@@ -130,7 +126,7 @@ def test_cuts_of_all_kinds_may_be_in_lugs(tmp_path: Path, cut: str) -> None:
     assert len(lugs(tmp_path, f"lug.M = {{}}\n{cut}")) == 3
 
 
-@pytest.mark.parametrize(
+@each(
     ("pin", "code", "said"),
     [
         ("lug.X = {}", "unknown-segment", "pin.P.lug.X"),
@@ -182,9 +178,7 @@ def test_what_cannot_be_is_refused_before_anything_is_solved(
     assert said in str(caught.value)
 
 
-@pytest.mark.parametrize(
-    "lug", ["{ clearance = -0.001 }", '{ bushing = { thickness = 1, material = "bronze" } }']
-)
+@each("lug", ["{ clearance = -0.001 }", '{ bushing = { thickness = 1, material = "bronze" } }'])
 def test_what_foundations_cannot_answer_is_refused(tmp_path: Path, lug: str) -> None:
     path = study(tmp_path, f"lug.M = {lug}", 'joints = "foundation"')
     with raises(InputError, "beyond-foundations", "lug M", '"contact"'):
@@ -192,7 +186,7 @@ def test_what_foundations_cannot_answer_is_refused(tmp_path: Path, lug: str) -> 
     assert len(lugs(tmp_path, f"lug.M = {lug}")) == 3
 
 
-@pytest.mark.parametrize("model", ["harmonic", "solid"])
+@each("model", ["harmonic", "solid"])
 def test_foundations_are_a_beams_alone(tmp_path: Path, model: str) -> None:
     path = study(tmp_path, "", f'joints = "foundation"\nmodel = "{model}"')
     with raises(InputError, "model-without-contact", "pin P", "beam"):
@@ -234,9 +228,7 @@ def test_given_lugs_of_a_prescribed_pin_are_those_of_its_range(tmp_path: Path) -
     assert [lug.outer_diameter for lug in found.lugs] == pytest.approx([0.05, 0.06, 0.05])
 
 
-@pytest.mark.parametrize(
-    "pin", ['clamp = ["start"]', 'clamp = ["M", "end"]', "hole = [{ z = 20, diameter = 4 }]"]
-)
+@each("pin", ['clamp = ["start"]', 'clamp = ["M", "end"]', "hole = [{ z = 20, diameter = 4 }]"])
 def test_where_no_lugs_can_be_assumed(tmp_path: Path, pin: str) -> None:
     found = around(tmp_path, pin)
     assert (found.pin, found.lugs) == (None, ())
@@ -282,7 +274,7 @@ def test_a_prescribed_pin_without_a_range_says_why(tmp_path: Path) -> None:
     assert "start" in row.joint.remark
 
 
-@pytest.mark.parametrize("model", ["beam", "solid"])
+@each("model", ["beam", "solid"])
 def test_contact_is_found_by_the_harmonic_model_alone(tmp_path: Path, model: str) -> None:
     path = study(tmp_path, "lug.M = {}", f'model = "{model}"')
     with raises(InputError, "model-without-contact", "pin P", "harmonic"):

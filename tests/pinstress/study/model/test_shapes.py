@@ -14,10 +14,10 @@ import pytest
 from geometry import CutPin, Flat, Hole, Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from pinstress import InputError, load_study
-from pinstress.cli.check import describe
 from pinstress.cli.commands import run_command_line
 from pinstress.study.model.pins import pin as pin_of
 from tests.conftest import ROOT
+from tests.support.described import describe
 from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.pins.pin_files import write_mesh, write_step

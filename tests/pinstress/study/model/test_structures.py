@@ -8,10 +8,10 @@ import pytest
 
 from pinstress import InputError, load_study
 from pinstress.analysis.gather.gather import loads_only
-from pinstress.cli.check import describe
 from reports.files import write_loads
 from reports.text.loads import remarks
 from reports.text.loads_summary import load_parts
+from tests.support.described import describe
 from tests.support.errors import raises
 
 ARCH = """

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
 from click.testing import CliRunner
 
 from pinstress.cli.commands import commands
@@ -37,7 +36,7 @@ def test_two_hundredths_apart_is_told(tmp_path: Path, stated: str, warned: int) 
     assert len(weight_warnings(load_study(gear(tmp_path, stated)))) == warned
 
 
-@pytest.mark.parametrize("command", ["check", "loads"])
+@each("command", ["check", "loads"])
 def test_both_weights_are_named_on_stderr(tmp_path: Path, command: str) -> None:
     path = gear(tmp_path, "28.32")
     more = ["--out", str(tmp_path / "out"), "--no-pictures"] if command == "loads" else []

@@ -13,11 +13,11 @@ from pathlib import Path
 import pytest
 
 import pinstress
-from pinstress.cli.check import describe
 from pinstress.study.model.load import load_study
 from pinstress.study.reading.errors import InputError
 from tests.conftest import ROOT
 from tests.fuzz.mutate import line_removed, renamed, retyped, scaled
+from tests.support.described import describe
 from tests.support.each import each, sampled
 
 BUCKET = (ROOT / "studies" / "bucket.toml").read_text(encoding="utf-8")

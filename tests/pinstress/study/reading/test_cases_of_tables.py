@@ -26,7 +26,7 @@ def study(folder: Path, section: str, table: str = TABLE, more: str = "") -> Stu
     return load_study(folder / "s.toml")
 
 
-@pytest.mark.parametrize(("section", "name"), [("*", "{}"), ("rig 3, *", "rig 3, {}")])
+@each(("section", "name"), [("*", "{}"), ("rig 3, *", "rig 3, {}")])
 def test_each_case_of_the_table_has_its_own_forces(tmp_path: Path, section: str, name: str) -> None:
     found = study(tmp_path, section)
     for case, force in (("gust", [1.0, 2.0, 0.0]), ("taxi", [3.0, -4.0, 0.0])):

@@ -8,9 +8,9 @@ import pytest
 
 import pinstress
 from pinstress import InputError, load_study
-from pinstress.cli.check import describe
 from pinstress.cli.commands import run_command_line
 from pinstress.study.model.pins import pin as pin_of
+from tests.support.described import describe
 from tests.support.errors import raises
 
 STUDY = """

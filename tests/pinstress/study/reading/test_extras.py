@@ -12,6 +12,7 @@ import pinstress
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.extras import EXTRAS
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.programs.command_line import ONE_PIN, run_here
 from tests.support.programs.swept import FORCE, swept, varied
 
@@ -40,7 +41,7 @@ USERS = [
 ]
 
 
-@pytest.mark.parametrize(("package", "text", "command", "start"), USERS)
+@each(("package", "text", "command", "start"), USERS)
 def test_one_line_names_the_extra(
     package: str,
     text: str,

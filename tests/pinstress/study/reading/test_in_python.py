@@ -123,7 +123,7 @@ def test_results_by_pin_and_case() -> None:
     assert pinstress.solve(plan)["P", "pull"].max_von_mises == results.pins[0].max_von_mises
 
 
-@pytest.mark.parametrize(
+@each(
     ("name", "changes"),
     [
         ("landing_gear", {"pin.E.profile[2].diameter": "2.1 in", "pin.E.lug.E1.clearance": 0.001}),
@@ -141,9 +141,7 @@ def test_changed_content_is_that_of_the_changed_study(name: str, changes: dict[s
     assert raw == raw_study(study)  # which others still have
 
 
-@pytest.mark.parametrize(
-    "key", ["pin.Z.fillet", "pin.B.profile[9].length", "pin.B.clamp[0]", "", "a["]
-)
+@each("key", ["pin.Z.fillet", "pin.B.profile[9].length", "pin.B.clamp[0]", "", "a["])
 def test_both_ways_refuse_a_key_with_the_same_words(key: str) -> None:
     study = load_study(shipped_studies()["one_pin"])
     with pytest.raises(InputError) as one:

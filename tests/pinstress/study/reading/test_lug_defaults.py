@@ -15,6 +15,8 @@ from pinstress.explore.sweep.evaluate import Evaluator
 from pinstress.explore.sweep.number import number_at
 from pinstress.study.reading.file import Study, parse_study
 from pinstress.study.reading.in_python import changed_study
+from tests.support.each import each
+from tests.support.pins.studies import DOUBLE_SHEAR
 
 STUDY = """
 title = "Two pins, one of them clamped"
@@ -40,13 +42,7 @@ forces = {{ L = [-25000, 0], M = [50000, 0], R = [-25000, 0], C = [0, 100] }}
 {defaults}
 [pin.P]
 material = "steel"
-profile = [
-  {{ length = 10, diameter = 20, connection = "L" }},
-  {{ length = 1, diameter = 20 }},
-  {{ length = 20, diameter = 20, connection = "M" }},
-  {{ length = 1, diameter = 20 }},
-  {{ length = 10, diameter = 20, connection = "R" }},
-]
+profile = {profile}
 {pin}
 [pin.Q]                 # clamped
 material = "steel"
@@ -61,7 +57,7 @@ EVERY = ("L", "M", "R")
 
 
 def study(defaults: str = DEFAULTS, pin: str = "", joints: str = "auto") -> Study:
-    text = STUDY.format(defaults=defaults, pin=pin, joints=joints)
+    text = STUDY.format(profile=DOUBLE_SHEAR, defaults=defaults, pin=pin, joints=joints)
     return parse_study(Path("study.toml"), text)
 
 
@@ -88,8 +84,8 @@ def test_the_keys_of_a_lug_come_first_also_those_of_its_own_tables() -> None:
     assert lugs(study(defaults, given)) == lugs(by_hand(written))
 
 
-@pytest.mark.parametrize("own", ["clearance = 0.1", 'fit = "H7/g6"'])
-@pytest.mark.parametrize("default", ["clearance = 0.02", 'fit = "H8/e8"'])
+@each("own", ["clearance = 0.1", 'fit = "H7/g6"'])
+@each("default", ["clearance = 0.02", 'fit = "H8/e8"'])
 def test_what_a_lug_says_of_its_clearance_replaces_what_the_defaults_say(
     own: str, default: str
 ) -> None:
@@ -121,8 +117,8 @@ def test_a_mistake_in_the_defaults_is_reported_once_at_their_line() -> None:
         assert len(caught.value.lines) == 1
 
 
-@pytest.mark.parametrize("pin", ["", "lug.M = {}", "[pin.P.lug.M]", "lug = { M = {} }"])
-@pytest.mark.parametrize("name", EVERY)
+@each("pin", ["", "lug.M = {}", "[pin.P.lug.M]", "lug = { M = {} }"])
+@each("name", EVERY)
 def test_a_number_that_only_the_defaults_give_has_a_key(pin: str, name: str) -> None:
     key, old = f"pin.P.lug.{name}.clearance", study(pin=pin)
     assert number_at(old, key).nominal == pytest.approx(2e-5)

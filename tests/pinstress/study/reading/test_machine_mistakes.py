@@ -5,15 +5,16 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from pinstress.cli.check import describe
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import load_study
 from tests.conftest import ROOT
+from tests.support.described import describe
 from tests.support.each import each
 from tests.support.errors import raises
 
 STUDIES = ROOT / "studies"
 GAS = 'table = "engine/gas_force.csv"        # columns position_deg,force'
+TURN = 'ground_motion = { rate = "1 rad/s" }'
 HOLD, OFF = 'hold = ["downlock"]', "outside-table"
 LOAD = 'force = { value = ["40 kN", "90 kN"], provenance = "assumed" }'
 SUN = 'bodies = ["sun", "planet1"]'
@@ -41,6 +42,8 @@ LOCKS = 'bodies = ["upper_lock", "lower_lock"]'
         ("main_gear", HOLD, 'hold = ["uplock"]', "unknown-stop", "'uplock'"),
         ("main_gear", HOLD, 'hold = ["downlock", "actuator"]', "hold-too-many", "parallel"),
         ("main_gear", HOLD, "hold = []", "list-too-short", "hold"),
+        ("main_gear", HOLD, f"{HOLD}\n{TURN}", "wrong-dimension", "ground_motion"),
+        ("kuleuven2014", "axis = [0, 0, 1]", "axis = [0, 0, 0]", "no-direction", "ground_motion"),
         ("main_gear", LOCKS, f'{LOCKS}\ncarries = "positive"', "stop-opens", "downlock"),
         ("main_gear", LOCKS, 'bodies = ["leg", "leg"]', "same-body", "downlock"),
         ("main_gear", LOCKS, 'bodies = ["leg", "log"]', "unknown-body", "'log'"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import datetime
 import math
+import re
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -134,6 +135,31 @@ def test_a_mistake_has_its_code_key_and_remedy(
     assert old in text
     with raises(InputError, code, f": {key}: ", right):
         parse_study(Path("s.toml"), text.replace(old, new, 1))
+
+
+SLEWING = (ROOT / "studies" / "slewing_crank.toml").read_text(encoding="utf-8")
+
+
+@each(
+    ("study", "old", "new", "message"),
+    [
+        ("slewing", 'at = { value = [300, 250, 200], provenance = "assumed" }',
+         "at = [nan, 400, 200]", "mechanism.joint.C.at[1]: must be finite, not nan"),
+        ("slewing", "dimension = 3", "dimension = 4", "mechanism.dimension: must be 3, not 4"),
+        ("slewing", "dimension = 3", 'dimension = "3"', "mechanism.dimension: must be 3, not '3'"),
+        ("slider_crank", "[mechanism]", "[mechanism]\ndimension = 4",
+         "mechanism.dimension: must be 2, not 4"),
+    ],
+)  # fmt: skip
+def test_what_follows_from_a_mistake_is_not_reported(
+    study: str, old: str, new: str, message: str
+) -> None:
+    """A vector without its wrong element has two numbers; a linkage is read by its dimension."""
+    text = (STUDIES | {"slewing": SLEWING})[study]
+    assert old in text
+    with pytest.raises(InputError) as error:
+        parse_study(Path("s.toml"), text.replace(old, new, 1))
+    assert re.fullmatch(rf"s\.toml:\d+: {re.escape(message)}", str(error.value))
 
 
 def test_the_whole_message() -> None:

@@ -109,7 +109,7 @@ def test_a_file_that_was_cut_off_is_one_message(
     assert f"pin{ending}" in told
 
 
-@pytest.mark.parametrize("model", ["auto", "harmonic"])
+@each("model", ["auto", "harmonic"])
 def test_no_force_makes_no_stress(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], model: str
 ) -> None:

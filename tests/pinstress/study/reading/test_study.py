@@ -29,7 +29,7 @@ def write(tmp_path: Path, text: str) -> Path:
     return path
 
 
-@pytest.mark.parametrize("name", ["one_pin", "grenier2008"])
+@each("name", ["one_pin", "grenier2008"])
 def test_shipped_studies_are_valid(name: str) -> None:
     assert load_study(ROOT / "studies" / f"{name}.toml").name == name
 
@@ -195,6 +195,28 @@ def test_all_mistakes_are_told_at_once(tmp_path: Path) -> None:
     assert "diameter: " in caught.value.lines[1]
 
 
+@each(
+    "force",
+    [
+        "[0, 1e400]",
+        "[0, nan]",
+        "[0, '100 kg']",
+        "[0, '1,000 N']",
+        "[0, true]",
+        "[1000]",
+        "[1, 2, 3, 4]",
+    ],
+)
+def test_a_wrong_force_is_the_only_error(tmp_path: Path, force: str) -> None:
+    """Of a case with one force nothing remains without it; that it is empty only follows."""
+    text = ONE_PIN.replace("[0.0, -988.86]", force)
+    assert text != ONE_PIN
+    with pytest.raises(InputError) as caught:
+        load_study(write(tmp_path, text))
+    assert len(caught.value.lines) == 1, caught.value.lines
+    assert "case.landing.forces.B" in caught.value.lines[0]
+
+
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
     with raises(InputError, "no-such-file", "gone.toml"):
         load_study(tmp_path / "gone.toml")
@@ -247,7 +269,7 @@ def test_the_pivot_of_a_motion_check_must_be_fixed(tmp_path: Path) -> None:
 
 def test_without_a_sharing_rule_the_connections_are_named(tmp_path: Path) -> None:
     from pinstress.analysis.plan import all_loads
-    from pinstress.cli.check import describe
+    from tests.support.described import describe
 
     start, end = GEAR.index("[[mechanism.sharing]]"), GEAR.index("[mechanism.joint.A]")
     study = load_study(write(tmp_path, GEAR[:start] + GEAR[end:]))

@@ -66,6 +66,8 @@ def reactions(folder: Path, table: str, rows: str = ROWS, case: str = "landing")
          "missing-unit", "column 'Mz' for B.mz has no unit; state moment_unit"),
         (f'table = {{ file = "a.csv", {B} }}', "duplicate-row", "line 3: connection B"),
         (f'table = {{ file = "gone.csv", {B} }}', "no-such-file", "gone.csv"),
+        (f'table = {{ file = ".", {B} }}', "folder", "s.toml:26: case.landing.table: "),
+        ('table = "."', "folder", "s.toml:26: case.landing.table: "),
         (f'table = [{{ file = "a.csv", {TIME}, {B} }}, {{ file = "a.csv", {TIME}, {B} }}]',
          "duplicate-row", "connection B is in another table of the case, too"),
         (f'table = {{ file = "a.csv", sheet = "x", {B} }}', "no-sheets", "remove sheet"),

@@ -1,0 +1,75 @@
+"""Load per length, moments and contact of a pin's bands at one instant, as results show them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from fea.core.pin_loads import Floats, PinLoads
+from fea.support.contact.bending import LoadedJoint, stations
+from fea.support.contact.solve_joint import JointContact
+from fea.support.records import BandContact, JointRange, JointResult
+
+
+def contact_result(
+    contact: JointContact,
+    over: JointRange | None,
+    case: PinLoads,
+    remark: str,
+    torques: Floats | None,
+) -> JointResult:
+    """The joint result of a contact at a single instant.
+
+    case: loads of the rings on the pin at all instants.
+    remark: what the range leaves out.
+    torques: the largest of friction over all instants, by lug, (B,) N m.
+    """
+    bands = []
+    for b, lug in enumerate(contact.lugs):
+        band = band_contact(contact, b, float(np.degrees(contact.contact_angle[0, b])))
+        torque = None if torques is None or not lug.friction else float(torques[b])
+        bands.append(replace(band, friction=lug.friction, friction_torque=torque))
+    whole = LoadedJoint(contact.pin, contact.lugs, contact.bands, case, contact.mass)
+    result = joint_result("contact", contact, bands, over, remark)
+    return replace(result, along=whole.section_forces())
+
+
+def joint_result(
+    model: str,
+    joint: LoadedJoint,
+    bands: list[BandContact],
+    over: JointRange | None,
+    remark: str,
+) -> JointResult:
+    """The result of a joint at a single instant, with the bending moment along the pin."""
+    z = stations(joint.pin)
+    moment = np.linalg.norm(joint.bending_moment(z)[0], axis=1)
+    moments = tuple(zip(z.tolist(), moment.tolist(), strict=True))
+    return JointResult(model, tuple(bands), float(moment.max()), moments, over, remark)
+
+
+def band_contact(
+    joint: LoadedJoint, b: int, contact_angle: float, turning: Floats | float = 0.0
+) -> BandContact:
+    """A band, by its number, at the single instant of a joint, but for friction.
+
+    contact_angle: degrees. turning: what loads that vary along rings add to the couple, (2,) N m.
+    """
+    lug, bands = joint.lugs[b], joint.bands
+    on_band = bands.band == b
+    z, length, line = bands.z[on_band], bands.length[on_band], joint.line_load[0, on_band]
+    force = length @ line
+    size = float(np.linalg.norm(force))
+    along = force / size if size else np.array([1.0, 0.0])
+    return BandContact(
+        name=lug.connection,
+        force=size,
+        contact_angle=contact_angle,
+        mean_pressure=size / (2.0 * float(bands.radius[on_band][0]) * float(length.sum())),
+        line_load=tuple(zip(z.tolist(), (line @ along).tolist(), strict=True)),
+        couple=float(np.linalg.norm((length * (z - bands.middles[b])) @ line + turning)),
+        clearance=lug.clearance,
+        outer_diameter=lug.outer_diameter,
+        ends=(*(z - length / 2.0).tolist(), float((z + length / 2.0)[-1])),
+    )

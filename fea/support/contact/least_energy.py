@@ -1,0 +1,78 @@
+"""The cells in contact by descent of the energy, which ends from any start.
+
+Cells that push a pin, held on springs, minimise a strictly convex energy over pressures that are
+not negative. The active set here only ever steps to less energy, so that it meets no set of cells
+twice, and there are finitely many; it takes more steps than the one of
+fea.support.contact.contact, which may run in circles where hardly more cells touch than hold the
+pin.
+
+Source: Lawson & Hanson, Solving Least Squares Problems (1974), chapter 23 (nonnegative least
+squares), here with several cells a step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from pinbase.arrays import Floats, Mask
+
+# Of the largest gap or the step: a smaller overlap is round-off, and cells within it of the first
+# one that opens open together.
+ROUND_OFF = 1e-12
+
+
+def least_energy_cells(
+    force: Floats,
+    least: Callable[[Mask], tuple[Floats, Floats]],
+    chosen: Callable[[Floats, Mask, Mask], Mask],
+) -> tuple[Mask, Floats]:
+    """The cells (U,) in contact where the energy is least, and their forces (U,), N.
+
+    force: any to begin with, (U,) N, none of them negative.
+    least: forces (U,) N and gaps (U,) m with which the energy is least over given cells in contact,
+    their forces of any sign.
+    chosen: which of the cells that overlap to close at once, by gaps, overlapping cells and cells
+    in contact.
+    """
+    active, force, gap = _descent(force > 0.0, force, least)
+    minima = {active.tobytes()}
+    while True:
+        overlaps = ~active & (gap < -ROUND_OFF * np.abs(gap).max())
+        if not overlaps.any():
+            return active, force
+        deepest = np.zeros_like(active)
+        deepest[int(np.where(overlaps, gap, np.inf).argmin())] = True
+        # Closing the deepest cell alone always takes energy away; closing several may not, where
+        # all of them open again.
+        for closing in (chosen(gap, overlaps, active), deepest):
+            next_active, next_force, gap = _descent(active | closing, force, least)
+            if next_active.tobytes() not in minima:
+                break
+        else:
+            return active, force  # within round-off
+        active, force = next_active, next_force
+        minima.add(active.tobytes())
+
+
+def _descent(
+    active: Mask, force: Floats, least: Callable[[Mask], tuple[Floats, Floats]]
+) -> tuple[Mask, Floats, Floats]:
+    """The cells, forces and gaps of a minimum over some of the given cells, reached from forces
+    that are not negative.
+    """
+    active = active.copy()
+    while True:
+        minimum, gap = least(active)
+        opening = np.flatnonzero(active & (minimum <= 0.0))
+        if not len(opening):
+            return active, minimum, gap
+        # As far towards the minimum as no cell pulls; the first one that would is opened.
+        step = np.zeros(len(opening))
+        loaded = force[opening] > 0.0
+        at = opening[loaded]
+        step[loaded] = force[at] / (force[at] - minimum[at])
+        force = np.maximum(force + step.min() * (minimum - force), 0.0)
+        opened = opening[step <= step.min() + ROUND_OFF]
+        active[opened], force[opened] = False, 0.0

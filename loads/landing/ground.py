@@ -1,0 +1,98 @@
+"""The forces of the ground on a wheel that are parts of a reference load."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from loads.landing.requirements import GroundRule
+from loads.linkage.linkage import Point
+
+Vector = tuple[float, float, float]
+Side = Literal["left", "right", "inboard", "outboard"]
+AXLE, CONTACT = "axle", "ground contact"
+
+
+@dataclass(frozen=True)
+class WheelForce:
+    """A component of the force of the ground on a wheel.
+
+    component: "vertical", "drag" or "side".
+    factor: over the reference load, not negative.
+    reference: N.
+    towards: its direction in words.
+    direction: unit vector, world axes.
+    place: where it acts, at the axle or at the ground contact.
+    arm: from the axle to that point, m, world axes.
+    """
+
+    component: str
+    factor: float
+    reference: float
+    towards: str
+    direction: Vector
+    place: str = AXLE
+    arm: Vector = (0.0, 0.0, 0.0)
+
+    @property
+    def force(self) -> Vector:
+        """The force, N, world axes."""
+        x, y, z = (self.factor * self.reference * part for part in self.direction)
+        return x, y, z
+
+    @property
+    def couple(self) -> Vector:
+        """The moment of the force about the axle, N m, world axes."""
+        x, y, z = np.cross(self.arm, self.force).tolist()
+        return x, y, z
+
+
+@dataclass(frozen=True)
+class GroundedWheel:
+    """A wheel on the ground.
+
+    up, aft: unit vectors in the plane of the linkage.
+    leg: on which side of the aircraft it is: "left", "right" or "nose".
+    radius: of the loaded tyre, m; None: all forces act at the axle.
+    braked: whether it cannot turn, so that drag acts at the ground contact.
+    """
+
+    up: Point
+    aft: Point
+    leg: str
+    radius: float | None = None
+    braked: bool = False
+
+    def sideways(self, towards: Side) -> Vector:
+        """The unit vector across the linkage towards a side.
+
+        The pilot's left is aft x up.
+        """
+        opposite = {"left": "right", "right": "left"}
+        inboard = {"inboard": opposite.get(self.leg, ""), "outboard": self.leg}
+        z = self.aft[0] * self.up[1] - self.aft[1] * self.up[0]
+        return 0.0, 0.0, z if inboard.get(towards, towards) == "left" else -z
+
+    def forces(self, rule: GroundRule, reference: float, towards: Side) -> tuple[WheelForce, ...]:
+        """The components that a rule demands, without those that are zero.
+
+        reference: load of which they are parts, N.
+        towards: side to which the side load acts.
+        """
+        up: Vector = (*self.up, 0.0)
+        drag: Vector = (self.aft[0], self.aft[1], 0.0)
+        if rule.drag < 0.0:
+            drag = (-drag[0], -drag[1], 0.0)
+        contact: tuple[str, Vector] = (AXLE, (0.0, 0.0, 0.0))
+        if self.radius is not None:
+            contact = CONTACT, (-self.radius * up[0], -self.radius * up[1], 0.0)
+        of_drag = contact if self.braked else (AXLE, (0.0, 0.0, 0.0))
+        forces = (
+            WheelForce("vertical", rule.vertical, reference, "up", up, *contact),
+            WheelForce("drag", abs(rule.drag), reference, "aft" if rule.drag > 0.0 else "forward",
+                       drag, *of_drag),
+            WheelForce("side", rule.side, reference, towards, self.sideways(towards), *contact),
+        )  # fmt: skip
+        return tuple(force for force in forces if force.factor)

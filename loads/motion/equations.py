@@ -1,0 +1,119 @@
+"""What following a motion needs to know of a linkage: its equations, in the plane or in space."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+
+from loads.motion.least_squares import Factors
+from pinbase.arrays import Floats
+
+MIN_PARTICIPATION = 1e-6  # of the largest component of a null vector
+
+
+CLOSING_GEARS = (("the ratios of its gears", "the gears"),)  # of Equations.besides_lengths
+
+
+class Equations(Protocol):
+    """The equations of a linkage: of its joints and gears, then of its D drives.
+
+    There are `rows` equations, in m, for n = `columns` coordinates, all zero as drawn.
+    A pose holds what follows from coordinates (T, n) at T instants; it can be indexed by instants.
+    """
+
+    linkage: Any  # a Linkage or SpaceLinkage
+    drawn_drives: Floats
+
+    @property
+    def columns(self) -> int:
+        """Number of coordinates."""
+        ...
+
+    @property
+    def guides(self) -> int:
+        """Number of equations without the drives'."""
+        ...
+
+    @property
+    def scale(self) -> Floats:
+        """Length per unit of each coordinate, (n,)."""
+        ...
+
+    def parts(self, count: int) -> list[slice]:
+        """Slices that divide `count` instants into batches whose matrices take little memory."""
+        ...
+
+    @property
+    def drive_scale(self) -> Floats:
+        """Length per unit of each drive, (D,)."""
+        ...
+
+    def pose(self, q: Floats) -> Any:
+        """The position of the linkage at coordinates q (T, n)."""
+        ...
+
+    def residual(self, q: Floats, pose: Any, drives: Floats) -> Floats:
+        """Violation of every equation, (T, rows) m, with the drives at values (T, D)."""
+        ...
+
+    def jacobian(self, pose: Any) -> Floats:
+        """Derivatives of the residual by the scaled coordinates, (T, rows, n), dimensionless."""
+        ...
+
+    def factors(self, pose: Any) -> Factors:
+        """Orthogonal factors of the Jacobian at T instants."""
+        ...
+
+    def bend_side(self, pose: Any, rates: Floats) -> Floats:
+        """Right-hand side (T, rows) from the accelerations that are quadratic in rates (T, n)."""
+        ...
+
+    # --- names for messages -----------------------------------------------------------------------
+
+    @property
+    def kutzbach(self) -> int:
+        """Degrees of freedom by counting links and joints."""
+        ...
+
+    @property
+    def along_lengths(self) -> tuple[bool, ...]:
+        """Whether each drive moves along a length; otherwise it turns an angle."""
+        ...
+
+    @property
+    def besides_lengths(self) -> tuple[tuple[str, str], ...]:
+        """What decides besides lengths whether redundant links close, and where it is described."""
+        ...
+
+    def moving(self, pose: Any, rates: Floats, least: float = MIN_PARTICIPATION) -> tuple[str, ...]:
+        """Names of the bodies that move in any of k motions.
+
+        pose: at a single instant. rates: (k, n) of the coordinates.
+        least: speed of a body that moves, relative to the fastest.
+        """
+        ...
+
+    def advice(self, pose: Any, rates: Floats) -> str:
+        """Advice on stopping k motions (k, n) with the drives locked; "" where there is none."""
+        ...
+
+    def stressed(self, pose: Any, multipliers: Floats) -> tuple[str, ...]:
+        """Names of the connections and teeth that carry any of k self-equilibrated sets of forces.
+
+        pose: at a single instant. multipliers: (rows, k).
+        """
+        ...
+
+    def apart(self, q: Floats, drives: Floats) -> tuple[tuple[str, ...], float]:
+        """Names of the members that do not meet at coordinates q (n,), and the largest gap, m.
+
+        drives: (D,) values.
+        """
+        ...
+
+
+def drive_side(equations: Equations, rates: Floats) -> Floats:
+    """Right-hand side (T, rows) for drives with these rates (T, D)."""
+    fixed = np.zeros((len(rates), equations.guides))
+    return np.concatenate([fixed, equations.drive_scale * rates], axis=1)

@@ -1,0 +1,108 @@
+"""The equations of a planar linkage, with the names of what moves, carries load or stays open."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from loads.linkage.linkage import GROUND, Linkage, Slider
+from loads.motion.equations import CLOSING_GEARS, MIN_PARTICIPATION
+from loads.motion.joint_forces import connection_members
+from loads.motion.loop_equations import Loops, Pose
+from pinbase.arrays import Floats
+
+
+class PlanarEquations(Loops):
+    """The loop and drive equations of a planar linkage, as `Equations`."""
+
+    @property
+    def along_lengths(self) -> tuple[bool, ...]:
+        """Whether each drive moves along a length; otherwise it turns an angle."""
+        return tuple(isinstance(d, Slider) for d in self.linkage.drives)
+
+    @property
+    def besides_lengths(self) -> tuple[tuple[str, str], ...]:
+        """What decides besides lengths whether redundant links close, and where it is described."""
+        return CLOSING_GEARS * bool(self.linkage.teeth)
+
+    @cached_property
+    def kutzbach(self) -> int:
+        """Degrees of freedom by Kutzbach: 3 (links - 1) - 2 (pins and sliders) - pairs of teeth.
+
+        A pin at which k links meet counts k - 1 times; particles do not count. Welded bodies are
+        one link.
+        """
+        linkage = self.linkage
+        names = [b.name for b in linkage.bodies if not is_particle(linkage, b.name)] + [GROUND]
+        link = {name: linkage.rigid[name][0] for name in names}
+        pins = 0
+        for joint in linkage.joints:
+            meeting = (*(c.body for c in joint.connections), joint.fixed_in or "")
+            pins += max(len({link[name] for name in meeting if name in link}) - 1, 0)
+        links = len({*link.values()})
+        return 3 * (links - 1) - 2 * (pins + len(linkage.sliders)) - len(linkage.teeth)
+
+    def moving(
+        self, pose: Pose, rates: Floats, least: float = MIN_PARTICIPATION
+    ) -> tuple[str, ...]:
+        """Names of the bodies that move in any of k motions.
+
+        pose: at a single instant. rates: (k, n) of the coordinates.
+        least: speed of a body that moves, relative to the fastest.
+        """
+        if not len(rates):
+            return ()
+        linkage, angles = self.linkage, self.frames - 1
+        slopes = self.partials(pose, self.centres)[0]
+        speed = np.abs(rates @ slopes)[:, : len(linkage.bodies)]
+        for i, body in enumerate(linkage.bodies):
+            f = self.frame[i]
+            if f and body.inertia is not None and f <= angles:
+                speed[:, i] += linkage.length_scale * np.abs(rates[:, f - 1])
+        largest = speed.max(axis=0)
+        named = zip(linkage.bodies, largest, strict=True)
+        return tuple(b.name for b, v in named if v > least * largest.max())
+
+    def advice(self, pose: Pose, rates: Floats) -> str:
+        """Nothing: what stops bodies in the plane is as many connections or drives."""
+        return ""
+
+    def stressed(self, pose: Pose, multipliers: Floats) -> tuple[str, ...]:
+        """Names of the connections and teeth that carry any of k self-equilibrated sets of forces.
+
+        pose: at a single instant. multipliers: (rows, k).
+        """
+        closing = self.closing_forces(pose, multipliers.T)
+        if not closing.size:
+            return ()
+        no_forces = np.zeros((len(closing), len(self.linkage.items)), dtype=complex)
+        forces = connection_members(self).forces(no_forces, closing)
+        size = np.abs(np.hstack([forces, closing[:, len(self.closing) :]])).max(axis=0)
+        named = zip((name for name, _ in self.linkage.forces), size, strict=True)
+        return tuple(name for name, f in named if f > MIN_PARTICIPATION * size.max())
+
+    def apart(self, q: Floats, drives: Floats) -> tuple[tuple[str, ...], float]:
+        """Names of the members that do not meet at coordinates q (n,), and the largest gap, m.
+
+        drives: (D,) values. Teeth out of step are named, but have no gap.
+        """
+        pose = self.pose(q[None])
+        teeth = self.linkage.teeth
+        lag = self.residual(q[None], pose, drives[None])[0, 2 * len(self.closing) :]
+        apart = np.abs(self.place(pose, self.gaps)[0])
+        gap = np.abs([*apart, *lag[: len(teeth)]])
+        members = [
+            self.linkage.sliders[k].name if slides else self.linkage.connections[k][1].name
+            for slides, k in self.closing
+        ]
+        members += [t.name for t in teeth]
+        names = tuple(n for n, g in zip(members, gap, strict=True) if g > 0.1 * gap.max())
+        return names, float(apart.max(initial=0.0))
+
+
+def is_particle(linkage: Linkage, name: str) -> bool:
+    """Whether a body is a particle at its connection."""
+    body = next(b for b in linkage.bodies if b.name == name)
+    slides = any(name in (s.base, s.moving) for s in linkage.sliders)
+    return body.inertia is None and not slides

@@ -1,0 +1,1 @@
+"""Linkages in space: rigid bodies, joints of eight kinds, and the wrench in every joint."""

@@ -1,0 +1,140 @@
+"""Applied forces, springs and dampers on the bodies of a linkage in space."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from loads.forces.acting import SWITCH_TIME_TOLERANCE, ForceLaw
+from loads.forces.curve import ForceTable
+from loads.space.linkage import Vector
+from loads.space.motion import SpaceMotion
+from pinbase.arrays import Floats
+
+
+@dataclass(frozen=True)
+class SpacePush:
+    """The action of a load on one body over time, world axes.
+
+    at: the body's point at which the force acts, as drawn, m.
+    force: (T, 3) N. couple: (T, 3) N m.
+    """
+
+    body: str
+    at: Vector
+    force: Floats
+    couple: Floats
+
+
+class SpaceLoad(Protocol):
+    """A load on a linkage in space, known at every instant of a motion."""
+
+    def pushes(self, motion: SpaceMotion) -> Iterator[SpacePush]:
+        """The load's actions on bodies at every instant."""
+        ...
+
+    def along_measured(self, motion: SpaceMotion) -> Iterator[tuple[str, Floats]]:
+        """Its forces (N) and couples (N m), (T,), along measured coordinates, by their names."""
+        ...
+
+
+@dataclass(frozen=True)
+class MeasuredFactor:
+    """A factor tabulated over time, or over a measured coordinate.
+
+    measured: its name; None: time.
+    begin, end: times between which it matters, s.
+    """
+
+    measured: str | None
+    table: ForceTable
+    begin: float = -math.inf
+    end: float = math.inf
+
+    def __call__(self, motion: SpaceMotion) -> Floats:
+        """The factor at every instant, (T,). Raises: LinkageError outside the table."""
+        on = (motion.times >= self.begin) & (motion.times <= self.end)
+        at = motion.times if self.measured is None else motion.coordinate(self.measured)[0]
+        factor = np.zeros(len(motion))
+        if on.any():
+            factor[on] = self.table(at[on])
+        return factor
+
+
+@dataclass(frozen=True)
+class SpaceForce:
+    """A force on a point of a body and a couple on the body.
+
+    at: the point, as drawn, m.
+    force, couple: N and N m.
+    follows: whether both turn with the body (they are then stated as drawn); otherwise their
+    directions are fixed in the world.
+    times: gives a factor of force and couple, (T,); None: 1.
+    begin, end: times between which the load acts, s.
+    """
+
+    body: str
+    at: Vector
+    force: Vector = (0.0, 0.0, 0.0)
+    couple: Vector = (0.0, 0.0, 0.0)
+    follows: bool = False
+    times: Callable[[SpaceMotion], Floats] | None = None
+    begin: float = -math.inf
+    end: float = math.inf
+
+    def pushes(self, motion: SpaceMotion) -> Iterator[SpacePush]:
+        """The force and couple at every instant; at a switch, those just before it."""
+        t = motion.times
+        on = np.ones(len(motion), dtype=bool)
+        if math.isfinite(self.begin):
+            on &= t > self.begin + SWITCH_TIME_TOLERANCE * abs(self.begin)
+        if math.isfinite(self.end):
+            on &= t <= self.end + SWITCH_TIME_TOLERANCE * abs(self.end)
+        size = np.where(on, 1.0 if self.times is None else self.times(motion), 0.0)
+        force, couple = (size[:, None] * np.array(v) for v in (self.force, self.couple))
+        if self.follows:
+            turn = motion.rotation(self.body)
+            force, couple = ((turn @ v[..., None])[..., 0] for v in (force, couple))
+        yield SpacePush(self.body, self.at, force, couple)
+
+    def along_measured(self, motion: SpaceMotion) -> Iterator[tuple[str, Floats]]:
+        """Nothing: the force acts on a body."""
+        return iter(())
+
+
+@dataclass(frozen=True)
+class SpaceSpring:
+    """A spring and damper along a measured coordinate: between two points, along or about a joint.
+
+    It pushes towards a larger value with the force (couple) of its law.
+    """
+
+    name: str
+    measured: str
+    law: ForceLaw
+
+    def pushes(self, motion: SpaceMotion) -> Iterator[SpacePush]:
+        """Nothing: the force acts along a coordinate."""
+        return iter(())
+
+    def along_measured(self, motion: SpaceMotion) -> Iterator[tuple[str, Floats]]:
+        """Its force (N) or couple (N m), (T,)."""
+        value, rate, _ = motion.coordinate(self.measured)
+        yield self.measured, self.law(value, rate)
+
+
+def power(motion: SpaceMotion, loads: tuple[SpaceLoad, ...]) -> Floats:
+    """Power of the loads on the linkage, (T,) W."""
+    out = np.zeros(len(motion))
+    for load in loads:
+        for push in load.pushes(motion):
+            _, velocity, _ = motion.point(push.body, push.at)
+            out += np.einsum("ti,ti->t", velocity, push.force)
+            out += np.einsum("ti,ti->t", motion.spin(push.body), push.couple)
+        for name, force in load.along_measured(motion):
+            out += force * motion.coordinate(name)[1]
+    return out

@@ -1,0 +1,134 @@
+"""Motion of a linkage in space: exact positions, velocities and accelerations at every instant."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from loads.linkage.drives import Law
+from loads.motion.least_squares import Factors
+from loads.motion.mobility import require_driven
+from loads.motion.motion import Followed, Instants
+from loads.space.conditions import Rates
+from loads.space.equations import SpaceEquations
+from loads.space.linkage import SpaceLinkage, Vector
+from loads.space.pose import SpacePose
+from pinbase.arrays import Floats
+
+# Position (m), velocity and acceleration of a point, (T, 3) each
+SpacePoint = tuple[Floats, Floats, Floats]
+
+
+@dataclass(frozen=True)
+class SpaceMotion(Instants[SpaceEquations]):
+    """The motion of a linkage in space at T instants."""
+
+    @property
+    def linkage(self) -> SpaceLinkage:
+        """The linkage that moves."""
+        return self.equations.linkage
+
+    @cached_property
+    def pose(self) -> SpacePose:
+        """The position of the linkage at every instant."""
+        return self.equations.pose(self.q)
+
+    @cached_property
+    def factors(self) -> Factors:
+        """Orthogonal factors of the Jacobian at all instants, for one batch at a time."""
+        return self.equations.factors(self.pose)
+
+    @cached_property
+    def force_factors(self) -> Factors:
+        """The same, of the Jacobian whose multipliers are the forces in joints and teeth."""
+        return self.equations.force_factors(self.pose) if self.linkage.teeth else self.factors
+
+    @cached_property
+    def velocities(self) -> Rates:
+        """Velocities of all bodies and measured coordinates."""
+        return self.equations.rates(self.pose, self.v)
+
+    @cached_property
+    def accelerations(self) -> Rates:
+        """Accelerations of the same, of rotations about world axes."""
+        return self.equations.rates(self.pose, self.a)
+
+    def rotation(self, body: str) -> Floats:
+        """Rotation of a body from the drawing, (T, 3, 3)."""
+        return np.asarray(self.pose.rotation[:, self.linkage.index[body]])
+
+    def spin(self, body: str) -> Floats:
+        """Angular velocity of a body, world axes, (T, 3) rad/s."""
+        return np.asarray(self.velocities.spin[:, self.linkage.index[body]])
+
+    def spin_rate(self, body: str) -> Floats:
+        """Angular acceleration of a body, world axes, (T, 3) rad/s^2."""
+        return np.asarray(self.accelerations.spin[:, self.linkage.index[body]])
+
+    def point(self, body: str, drawn: Vector) -> SpacePoint:
+        """Position (m), velocity and acceleration, (T, 3) each, of a body's point, as drawn (m)."""
+        k = self.linkage.index[body]
+        arm = self.pose.arm(k, drawn)
+        spin, turned = self.spin(body), np.cross(self.spin(body), arm)
+        return (
+            self.pose.centre[:, k] + arm,
+            self.velocities.velocity[:, k] + turned,
+            self.accelerations.velocity[:, k]
+            + np.cross(self.spin_rate(body), arm)
+            + np.cross(spin, turned),
+        )
+
+    def coordinate(self, name: str) -> tuple[Floats, Floats, Floats]:
+        """Value (m or rad) of a measured coordinate with its first two derivatives, (T,) each."""
+        k = self.equations.column(name)
+        drawn = next(m.drawn for m in self.linkage.measured if m.name == name)
+        return drawn + self.q[:, k], self.v[:, k], self.a[:, k]
+
+    @cached_property
+    def inertias(self) -> Floats:
+        """Inertia tensors of all bodies about their centres of mass, world axes, (T, B, 3, 3)."""
+        drawn = np.array([b.inertia for b in self.linkage.bodies]).reshape(-1, 3, 3)
+        turn = self.pose.rotation[:, :-1]
+        return np.asarray(turn @ drawn @ np.swapaxes(turn, -1, -2))
+
+    @property
+    def masses(self) -> Floats:
+        """Masses of all bodies, (B,) kg."""
+        return np.array([b.mass for b in self.linkage.bodies])
+
+    @cached_property
+    def kinetic_energy(self) -> Floats:
+        """Kinetic energy, (T,) J."""
+        v, w = self.velocities.velocity[:, :-1], self.velocities.spin[:, :-1]
+        turning = np.einsum("tbi,tbij,tbj->t", w, self.inertias, w)
+        return np.asarray(0.5 * (np.einsum("b,tbi,tbi->t", self.masses, v, v) + turning))
+
+
+class SpaceCourse(Followed[SpaceMotion]):
+    """The motion of a linkage in space under one law per drive, from a first to a last time (s).
+
+    Raises: LinkageError when the drives do not determine the position; MotionBlocked when the
+    linkage cannot follow them.
+    """
+
+    def __init__(
+        self, linkage: SpaceLinkage, laws: Sequence[Law], first: float, last: float
+    ) -> None:
+        self.space = SpaceEquations(linkage)
+        self.mobility = require_driven(self.space)
+        super().__init__(self.space, laws, first, last)
+
+    def at(self, times: Floats) -> SpaceMotion:
+        """The motion at times (T,) s, in any order. Raises: MotionBlocked."""
+        return SpaceMotion(self.space, self.mobility, times, *self._coordinates(times), self.pace)
+
+
+def space_move(linkage: SpaceLinkage, laws: Sequence[Law], times: Floats) -> SpaceMotion:
+    """The motion under one law per drive at `times` (T,) s, followed from the first of them.
+
+    Raises: LinkageError; MotionBlocked.
+    """
+    return SpaceCourse(linkage, laws, float(times.min()), float(times.max())).at(times)

@@ -1,0 +1,178 @@
+"""Wrenches that rigid-body statics leaves open, shared by stated rules and by the links' stiffness.
+
+With more conditions than freedoms some sets of wrenches are in equilibrium by themselves. Of these
+the amounts follow in two steps: the linkage's rules, by which named joints share like springs; then
+least complementary energy of the links, each a beam from its centre of mass to each of its joints.
+Of links whose stiffness is not stated all have the same section, and the result is one of several:
+each link is also taken a tenth and ten times as stiff.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from loads.linkage.linkage import GROUND, LinkageError
+from loads.space.equations import SpaceEquations
+from loads.space.linkage import SpaceLinkage
+from loads.space.pose import SpacePose
+from loads.space.stiffness import LinkStiffness, cantilever, complete
+from pinbase.arrays import Floats
+
+STIFFNESS_RATIO = 10.0  # of a link whose stiffness is not stated, up and down
+OPEN_TOLERANCE = 1e-9  # smallest over largest singular value: below it the energy leaves a set open
+MIN_END = 1e-9  # over the length scale: a joint this near to the centre of mass has no beam
+
+
+@dataclass(frozen=True)
+class _End:
+    """The beam of a body to one of its joints.
+
+    joint, body: their numbers.
+    rows: (6, 6), of which the squares of the products with the wrench (force, moment at the joint;
+    axes as drawn) are twice the complementary energy.
+    """
+
+    joint: int
+    body: int
+    rows: Floats
+
+
+def unstated(linkage: SpaceLinkage, stressed: tuple[str, ...]) -> tuple[str, ...]:
+    """Bodies at joints that carry sets in equilibrium by themselves, of no stated stiffness."""
+    stated = {*linkage.stiffness, GROUND}
+    ends = (b for j in linkage.joints if j.name in stressed for b in (j.base, j.moving))
+    return tuple(dict.fromkeys(b for b in ends if b not in stated))
+
+
+def scaled(linkage: SpaceLinkage, body: str, factor: float) -> SpaceLinkage:
+    """The same linkage with one body stiffer by a factor."""
+    stiffness = stiffness_of(linkage)
+    return replace(linkage, stiffness={**stiffness, body: stiffness[body].times(factor)})
+
+
+def stiffness_of(linkage: SpaceLinkage) -> dict[str, LinkStiffness]:
+    """The stiffness of every body: as stated, else of the usual link of this linkage."""
+    names = [b.name for b in linkage.bodies]
+    return complete(names, linkage.stiffness, linkage.length_scale)
+
+
+@dataclass(frozen=True)
+class RedundantSets:
+    """The k sets in equilibrium by themselves at the instants of a pose.
+
+    multipliers: (T, rows, k). wrenches: (T, J + G, 6, k), of joints, then of teeth.
+    """
+
+    multipliers: Floats
+    wrenches: Floats
+
+
+def redundant_sets(equations: SpaceEquations, pose: SpacePose, null: Floats) -> RedundantSets:
+    """The sets with these multipliers (T, rows, k)."""
+    each = [equations.transmitted(pose, s) for s in np.moveaxis(null, -1, 0)]
+    return RedundantSets(null, np.stack(each, axis=-1))
+
+
+def shared(
+    equations: SpaceEquations,
+    linkage: SpaceLinkage,
+    pose: SpacePose,
+    f: Floats,
+    sets: RedundantSets,
+) -> Floats:
+    """The multipliers (T, rows) with the sets that rules and stiffness demand.
+
+    linkage: has the rules and the stiffness.
+    f: (T, rows) multipliers in equilibrium with the loads.
+
+    Raises: LinkageError where neither rules nor stiffness determine them.
+    """
+    first, null, own = equations.transmitted(pose, f), sets.multipliers, sets.wrenches
+    for rows in (_rules(linkage), _Energy(linkage, pose)):
+        if rows is None or not own.shape[-1]:
+            continue
+        A, b = rows(own), rows(first[..., None])[..., 0]
+        amounts, rest = _least(A, b)
+        f = f + np.einsum("trk,tk->tr", null, amounts)
+        first = first + np.einsum("tjck,tk->tjc", own, amounts)
+        null, own = null @ rest, np.einsum("tjck,tkl->tjcl", own, rest)
+    if own.shape[-1]:
+        size = np.abs(own).max(axis=(0, 2, 3))
+        named = zip(linkage.forces, size, strict=True)
+        names = (name for (name, _), s in named if s > 1e-6 * size.max())
+        raise LinkageError(
+            f"rigid-body statics does not determine the forces at {', '.join(names)}, nor does the "
+            "stiffness of the links, since these joints lie at their centres of mass or on the "
+            "ground; state how they share the load: [[mechanism.sharing]]",
+            "sharing-incomplete",
+            ("sharing",),
+        )
+    return f
+
+
+def _least(A: Floats, b: Floats) -> tuple[Floats, Floats]:
+    """Amounts (T, k) that minimise |A amounts + b|, the shortest, and a basis (T, k, l) of those
+    that A leaves open. A: (T, m, k). b: (T, m).
+    """
+    missing = max(A.shape[2] - A.shape[1], 0)  # rows of zeros give a complete basis
+    A, b = np.pad(A, ((0, 0), (0, missing), (0, 0))), np.pad(b, ((0, 0), (0, missing)))
+    left, s, right = np.linalg.svd(A, full_matrices=False)
+    rank = int(np.max(np.sum(s > OPEN_TOLERANCE * max(float(s.max(initial=0.0)), 1e-300), axis=1)))
+    determined = s > OPEN_TOLERANCE * s.max(axis=1, initial=1e-300, keepdims=True)
+    along = np.einsum("tml,tm->tl", left, b) / np.where(determined, s, np.inf)
+    return -np.einsum("tl,tlk->tk", along, right), np.swapaxes(right[:, rank:], 1, 2)
+
+
+class _Rules:
+    """The rows of all rules: force over the root of the stiffness of each named joint or gear."""
+
+    def __init__(self, linkage: SpaceLinkage) -> None:
+        names = [name for name, _ in linkage.forces]
+        members = [p for s in linkage.sharing for p in zip(s.connections, s.stiffness, strict=True)]
+        self._which = [names.index(name) for name, _ in members]
+        self._weight = np.array([stiffness**-0.5 for _, stiffness in members])
+
+    def __call__(self, wrenches: Floats) -> Floats:
+        """Rows (T, m, k) of wrenches (T, J + G, 6, k)."""
+        force = wrenches[:, self._which, :3] * self._weight[:, None, None]
+        return np.asarray(force.reshape(len(force), -1, wrenches.shape[-1]))
+
+
+def _rules(linkage: SpaceLinkage) -> _Rules | None:
+    return _Rules(linkage) if linkage.sharing else None
+
+
+class _Energy:
+    """The rows of the complementary energy of all links."""
+
+    def __init__(self, linkage: SpaceLinkage, pose: SpacePose) -> None:
+        self._ends = list(_ends(linkage))
+        self._turn = pose.rotation
+
+    def __call__(self, wrenches: Floats) -> Floats:
+        """Rows (T, m, k) of wrenches (T, J + G, 6, k), world axes."""
+        out = []
+        for end in self._ends:
+            turn = np.swapaxes(self._turn[:, end.body], -1, -2)
+            w = wrenches[:, end.joint].reshape(len(turn), 2, 3, -1)
+            as_drawn = (turn[:, None] @ w).reshape(len(turn), 6, -1)
+            out.append(end.rows @ as_drawn)
+        none = np.zeros((len(wrenches), 0, wrenches.shape[-1]))
+        return np.concatenate([none, *out], axis=1)
+
+
+def _ends(linkage: SpaceLinkage) -> Iterator[_End]:
+    """The beams of all bodies."""
+    stiffness = stiffness_of(linkage)
+    for k, joint in enumerate(linkage.joints):
+        for body in (joint.base, joint.moving):
+            if body == GROUND:
+                continue  # it does not yield
+            arm = np.subtract(joint.at, linkage.bodies[linkage.index[body]].centre)
+            if np.linalg.norm(arm) > MIN_END * linkage.length_scale:
+                size, axes = np.linalg.eigh(cantilever(arm, stiffness[body]))
+                rows = np.sqrt(np.maximum(size, 0.0))[:, None] * axes.T
+                yield _End(k, linkage.index[body], rows)

@@ -1,0 +1,112 @@
+"""Stiffness of links as beams, and flexibility of the cantilevers from their centres to joints.
+
+Only ratios of stiffness matter where links share loads. A link is a star of cantilevers: from its
+centre of mass, which holds them, one to each of its joints (Euler-Bernoulli beams with
+Saint-Venant's torsion; Timoshenko, Strength of Materials I, ch. V and II, ch. VI).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pinbase.arrays import Floats
+
+POISSON_RATIO = 0.3  # of the bars, for torsion against bending
+NOMINAL_SLENDERNESS = 10.0  # length over diameter of links of which no stiffness is stated
+MIN_ARM = 1e-12  # m: a joint this close to the centre has no cantilever
+
+
+@dataclass(frozen=True)
+class LinkStiffness:
+    """The stiffness of a link's section, in any units that all links share.
+
+    axial: EA, N.
+    bending, across: EI against bending in the plane of the drawing, and out of it, N m^2.
+    torsion: GJ, N m^2.
+    """
+
+    axial: float
+    bending: float
+    across: float
+    torsion: float
+
+    def times(self, factor: float) -> LinkStiffness:
+        """The same link, stiffer by a factor in everything."""
+        return LinkStiffness(
+            self.axial * factor, self.bending * factor, self.across * factor, self.torsion * factor
+        )
+
+    def with_torsion(self, factor: float) -> LinkStiffness:
+        """The same link with another stiffness in torsion."""
+        return replace(self, torsion=self.torsion * factor)
+
+
+def round_link(diameter: float, youngs_modulus: float = 1.0, bore: float = 0.0) -> LinkStiffness:
+    """The stiffness of a round bar or tube. diameter, bore: m. youngs_modulus: Pa."""
+    inertia = math.pi / 64.0 * (diameter**4 - bore**4)
+    area = math.pi / 4.0 * (diameter**2 - bore**2)
+    bending = youngs_modulus * inertia
+    return LinkStiffness(youngs_modulus * area, bending, bending, bending / (1.0 + POISSON_RATIO))
+
+
+def flat_link(depth: float, width: float, youngs_modulus: float = 1.0) -> LinkStiffness:
+    """The stiffness of a rectangular bar. depth: in the plane, m. width: across it, m.
+
+    Torsion by the approximation of Roark, Formulas for Stress and Strain, table 10.1, within 4 %.
+    """
+    a, b = max(depth, width) / 2.0, min(depth, width) / 2.0
+    twist = a * b**3 * (16.0 / 3.0 - 3.36 * b / a * (1.0 - b**4 / (12.0 * a**4)))
+    shear = youngs_modulus / (2.0 * (1.0 + POISSON_RATIO))
+    return LinkStiffness(
+        youngs_modulus * depth * width,
+        youngs_modulus * width * depth**3 / 12.0,
+        youngs_modulus * depth * width**3 / 12.0,
+        shear * twist,
+    )
+
+
+def complete(
+    bodies: Sequence[str], stated: Mapping[str, LinkStiffness], length_scale: float
+) -> dict[str, LinkStiffness]:
+    """The stiffness of every body; what is not stated is the geometric mean of what is.
+
+    Where nothing is stated, all links are round bars, a tenth as thick as the linkage is large.
+    length_scale: of the linkage, m.
+    """
+    mean = round_link(length_scale / NOMINAL_SLENDERNESS)
+    if known := [s for s in stated.values() if np.isfinite(s.axial)]:
+        rows = np.log([[s.axial, s.bending, s.across, s.torsion] for s in known])
+        mean = LinkStiffness(*np.exp(rows.mean(axis=0)).tolist())
+    return {body: stated.get(body, mean) for body in bodies}
+
+
+def cantilever(arm: Floats, link: LinkStiffness) -> Floats:
+    """The flexibility (6, 6) at the end of a cantilever, of force, then moment, in world axes.
+
+    arm: (3,) m, from the fixed end to the loaded one; without length it does not yield.
+    """
+    length = float(np.linalg.norm(arm))
+    out = np.zeros((6, 6))
+    if length <= MIN_ARM:
+        return out
+    along = arm / length
+    # `across` bends towards z; for a cantilever along z any normal will do.
+    up = np.array([0.0, 0.0, 1.0]) if abs(along[2]) < 1.0 - 1e-9 else np.array([1.0, 0.0, 0.0])
+    side = np.cross(up, along)
+    side /= np.linalg.norm(side)
+    normal = np.cross(along, side)
+    axes = np.stack([along, side, normal])  # rows: local x, y (in the plane), z (across it)
+    plane, across = link.bending, link.across
+    local = np.zeros((6, 6))
+    local[0, 0] = length / link.axial
+    local[1, 1], local[2, 2] = length**3 / (3.0 * plane), length**3 / (3.0 * across)
+    local[1, 5] = local[5, 1] = length**2 / (2.0 * plane)
+    local[2, 4] = local[4, 2] = -(length**2) / (2.0 * across)
+    local[3, 3] = length / link.torsion
+    local[4, 4], local[5, 5] = length / across, length / plane
+    turn = np.kron(np.eye(2), axes)
+    return np.asarray(turn.T @ local @ turn)

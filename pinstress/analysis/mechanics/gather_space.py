@@ -1,0 +1,171 @@
+"""Results of a linkage in space for reports, gathered in SI from its dynamics."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import fields
+
+import numpy as np
+
+from loads import Effort
+from pinbase.arrays import Floats
+from pinstress.analysis.mechanics.space_skeleton import space_skeleton
+from pinstress.study.model.mechanism.drives import drive_tables, offsets
+from pinstress.study.model.mechanism.space import pin_axes, space_mechanism
+from pinstress.study.model.space_cases import InSpace
+from pinstress.study.reading.file import Study
+from pinstress.study.schema.mechanism import drive_name
+from reports.data import results as plain
+from reports.data.skeleton import Skeleton
+
+NEGLIGIBLE_RANGE = 1e-3  # of the largest force of the case: a smaller range is not reported
+MAX_BODY_LINES = 200_000  # of the table of bodies, 50 MB; a longer one is not written
+NO_TABLES = "In space: no tables of transmission angles and of sliding on pins are written."
+
+
+def shown_positions(study: Study, positions: Floats, moved: Sequence[tuple[str, bool]]) -> Floats:
+    """Return the displayed positions (T, D): lengths less their offsets, angles in degrees.
+
+    positions: (T, D) m or rad. moved: the name of every drive, and whether it slides.
+    """
+    less = offsets(study)
+    shown = [
+        position - less.get(name, 0.0) if slides else np.degrees(position)
+        for position, (name, slides) in zip(positions.T, moved, strict=True)
+    ]
+    return np.stack(shown, axis=1) if shown else positions
+
+
+def drives(
+    case: str,
+    moved: Sequence[tuple[str, bool]],
+    times: Floats | None,
+    course: tuple[Floats, Floats, Floats],
+    exerted: tuple[Floats, Floats],
+    energies: tuple[Floats, Floats],
+    efforts: Sequence[Effort] | None,
+    frictionless: Sequence[Effort] | None = None,
+) -> list[plain.DriveTable]:
+    """Return the table of every drive of a case.
+
+    moved: the name of every drive, and whether it slides.
+    course: displayed positions, and speeds and accelerations in SI, (T, D) each.
+    exerted: forces or torques, and powers, (T, D) each.
+    energies: kinetic and potential energy of the linkage, (T,) J each.
+    efforts: of every drive over a whole motion. frictionless: the same without friction.
+    """
+    (force, power), (kinetic, potential) = exerted, energies
+    tables = []
+    for k, (name, slides) in enumerate(moved):
+        effort = efforts[k] if efforts else None
+        free = frictionless[k].largest.value if frictionless else None
+        position, velocity, acceleration = (values[:, k] for values in course)
+        tables.append(
+            plain.DriveTable(
+                case=case,
+                name=name,
+                kind="slider" if slides else "rotary",
+                time=times,
+                position=position,
+                velocity=velocity,
+                acceleration=acceleration,
+                force=force[:, k],
+                power=power[:, k],
+                work=effort.work if effort else np.zeros(len(position)),
+                kinetic_energy=kinetic,
+                potential_energy=potential - potential[0],
+                effort=_drive_effort(effort, slides, free) if effort else None,
+            )
+        )
+    return tables
+
+
+def _names(study: Study) -> list[tuple[str, bool]]:
+    """Return the name of every drive in space, and whether it slides."""
+    return [(drive_name(drive), drive.slides) for drive in drive_tables(study)]
+
+
+def positions_in_space(study: Study, solved: InSpace) -> Floats:
+    """Return the displayed positions (T, D)."""
+    return shown_positions(study, solved.dynamics.motion.drives, _names(study))
+
+
+def drives_in_space(study: Study, case: str, solved: InSpace) -> list[plain.DriveTable]:
+    """Return the table of every drive of a case in space."""
+    dynamics = solved.dynamics
+    motion, exerted = dynamics.motion, (dynamics.drive, dynamics.power)
+    course = (positions_in_space(study, solved), motion.speeds, motion.rates)
+    times, moved = dynamics.reactions.times, _names(study)
+    return drives(case, moved, times, course, exerted, solved.energies, solved.efforts)
+
+
+def bodies_in_space(study: Study, case: str, solved: InSpace) -> list[plain.BodyMotion]:
+    """Return the motion and momenta of every body of the study; none of very long motions."""
+    motion = solved.dynamics.motion
+    names = {b.name: k for k, b in enumerate(motion.linkage.bodies)}
+    if len(names) * len(motion) > MAX_BODY_LINES:
+        return []
+    bodies = solved.bodies
+    each = [*(f.name for f in fields(bodies)), "kinetic_energy"]
+    return [
+        plain.BodyMotion(
+            case,
+            name,
+            solved.dynamics.reactions.times,
+            *(getattr(bodies, key)[:, names[name]] for key in each),
+        )
+        for name in space_mechanism(study).body
+    ]
+
+
+def skeleton_in_space(study: Study, case: str, solved: InSpace) -> Skeleton:
+    """Return what is drawn of a linkage."""
+    joints = space_mechanism(study).joint
+    pins = {connection: name for name, joint in joints.items() for connection in joint.connections}
+    axes = {
+        name: pin_axes(joint)[:, 2]
+        for name, joint in joints.items()
+        if joint.axis is not None or joint.pin_axis is not None
+    }
+    return space_skeleton(case, solved.dynamics, pins, axes)
+
+
+def note_in_space(study: Study, solved: InSpace) -> str:
+    """Return the note of a case: its impulses, what its forces depend on, and what is left out."""
+    return " ".join(filter(None, (solved.note, _range(study, solved), NO_TABLES)))
+
+
+def _range(study: Study, solved: InSpace) -> str:
+    """Return sentences on the forces that the unknown stiffness of links decides."""
+    r, variants = solved.reactions, solved.dynamics.range
+    if not variants:
+        return ""
+    size = float(r.magnitudes.max(initial=0.0)) or 1.0
+    every = [solved.dynamics.reactions, *variants.values()]
+    unit, factor = study.system.force, study.system.factor("force")
+    told = []
+    for name, pin in solved.pins.items():
+        peaks = [float(one.magnitudes[:, pin.joint].max()) for one in every]
+        if max(peaks) - min(peaks) > NEGLIGIBLE_RANGE * size:
+            low, high = min(peaks) / factor, max(peaks) / factor
+            told.append(f"{name} {low:,.4g} to {high:,.4g} {unit}")
+    if not told:
+        return ""
+    return (
+        "Statics does not determine all forces; with each link a tenth and ten times as stiff as "
+        f"the others the largest are: {', '.join(told)}."
+    )
+
+
+def _drive_effort(effort: Effort, slides: bool, frictionless: float | None) -> plain.DriveEffort:
+    """Return the effort of a drive over its motion, angles in degrees."""
+    return plain.DriveEffort(
+        effort.largest.value,
+        effort.largest.time,
+        effort.mean,
+        effort.rms,
+        effort.power.value,
+        effort.power.time,
+        effort.stroke if slides else float(np.degrees(effort.stroke)),
+        frictionless,
+    )

@@ -1,0 +1,140 @@
+"""What drawings and animations show of a linkage in space, gathered in SI from its dynamics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from loads.linkage.linkage import GROUND
+from loads.space.dynamics import SpaceDynamics
+from loads.space.kinds import KINDS
+from loads.space.linkage import PointDistance, SpaceJoint, SpaceLinkage
+from loads.space.motion import SpaceMotion
+from pinbase.arrays import Floats
+from pinbase.grouped import grouped
+from reports.data.mechanics import AppliedForce
+from reports.data.skeleton import AppliedCouple, Skeleton, Vector
+
+MIN_STEM = 1e-6  # of the linkage's size: from the only joint of a body to its centre of mass
+
+
+def space_skeleton(
+    case: str, dynamics: SpaceDynamics, pins: Mapping[str, str], axes: Mapping[str, Floats]
+) -> Skeleton:
+    """Return the skeleton of a linkage in space along its motion.
+
+    pins: the pin on which each joint of the linkage is, by the joint's name; joints of other names
+    (welds, say) are not drawn, and neither are bodies that are pins alone or fixed to the ground.
+    axes: directions (3,) as drawn of the pins that have one.
+    """
+    motion = dynamics.motion
+    drawn = [joint for joint in motion.linkage.joints if joint.name in pins]
+    on = grouped((pins[joint.name], joint) for joint in drawn)
+    names = tuple(on)
+    links, still = _links(drawn, pins), _grounded(motion.linkage)
+    bodies = tuple(
+        body.name
+        for body in motion.linkage.bodies
+        if links.get(body.name) and body.name not in still
+    )
+    position = np.stack([_place(motion, joints[0]) for joints in on.values()], axis=1)
+    index = [motion.linkage.index[body] for body in bodies]
+    centre = motion.pose.centre[:, index]
+    return Skeleton(
+        case=case,
+        time=dynamics.reactions.times,
+        bodies=bodies,
+        links=tuple(links[body] for body in bodies),
+        centre=centre,
+        joints=names,
+        ground=tuple(
+            name for name, joints in on.items() if any({j.base, j.moving} & still for j in joints)
+        ),
+        position=position,
+        axes=np.stack(
+            [
+                motion.rotation(joints[0].base) @ axes[name] / np.linalg.norm(axes[name])
+                if name in axes
+                else np.zeros((len(motion), 3))
+                for name, joints in on.items()
+            ],
+            axis=1,
+        ),
+        connections=tuple((joint.name, joint.moving, pins[joint.name]) for joint in drawn),
+        stems=tuple(
+            body
+            for b, body in enumerate(bodies)
+            if len(links[body]) == 1
+            and np.linalg.norm(centre[0, b] - position[0, names.index(links[body][0])])
+            > MIN_STEM * motion.linkage.length_scale
+        ),
+        slides={
+            drive.name: np.stack(
+                [
+                    motion.point(body, end)[0]
+                    for body, end in zip(drive.bodies, drive.ends, strict=True)
+                ],
+                axis=1,
+            )
+            for drive in motion.linkage.drives
+            if isinstance(drive, PointDistance)
+        },
+        **_applied(dynamics, bodies),
+        up=_up(motion.linkage.gravity),
+    )
+
+
+def _links(drawn: list[SpaceJoint], pins: Mapping[str, str]) -> dict[str, tuple[str, ...]]:
+    """Return the pins on each body and on the ground, without bodies that are a pin alone: bases
+    of joints on one pin that move relative to nothing else.
+    """
+    on: dict[str, dict[str, None]] = {}
+    moving = {joint.moving for joint in drawn}
+    for joint in drawn:
+        for body in (joint.base, joint.moving):
+            on.setdefault(body, {})[pins[joint.name]] = None
+    return {
+        body: tuple(names)
+        for body, names in on.items()
+        if len(names) > 1 or body in moving or body == GROUND
+    }
+
+
+def _place(motion: SpaceMotion, joint: SpaceJoint) -> Floats:
+    """Return the place (T, 3) of a joint: where it slides, that of its moving body."""
+    body = joint.base if KINDS[joint.kind].meets else joint.moving
+    return motion.point(body, joint.at)[0]
+
+
+def _grounded(linkage: SpaceLinkage) -> set[str]:
+    """Return the ground and the bodies that are fixed to it, directly or by others."""
+    fixed = [{j.base, j.moving} for j in linkage.joints if j.kind == "fixed"]
+    still = {GROUND}
+    while more := {body for pair in fixed if pair & still for body in pair} - still:
+        still |= more
+    return still
+
+
+def _applied(dynamics: SpaceDynamics, bodies: tuple[str, ...]) -> dict[str, Any]:
+    """Return the forces and the couples on bodies that are drawn."""
+    motion = dynamics.motion
+    pushes = [
+        (push, motion.point(push.body, push.at)[0])
+        for load in dynamics.loads
+        for push in load.pushes(motion)
+        if push.body in bodies
+    ]
+    return {
+        "applied": tuple(AppliedForce(p.body, at, p.force) for p, at in pushes if p.force.any()),
+        "couples": tuple(AppliedCouple(p.body, at, p.couple) for p, at in pushes if p.couple.any()),
+    }
+
+
+def _up(gravity: Vector) -> Vector:
+    """Return the axis that is nearest to the vertical; z without gravity."""
+    steepest = int(np.argmax(np.abs(gravity))) if any(gravity) else 2
+    up = [0.0, 0.0, 0.0]
+    up[steepest] = -1.0 if gravity[steepest] > 0.0 else 1.0
+    return up[0], up[1], up[2]

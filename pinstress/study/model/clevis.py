@@ -1,0 +1,59 @@
+"""Links with two ears: the load of a link as loads of the bands on which its ears bear.
+
+The force acts amid the ears, which share it; a moment across the axis is a couple of forces on
+them, by statics. A force along the axis is that of the ear on the side to which it pushes, as the
+other is held back by it; a torque is shared.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from pinbase.arrays import Floats
+
+
+class Ears(NamedTuple):
+    """The other ear of a clevis.
+
+    name: of its band.
+    z, other_z: middles of the connection's band and of the other's, m.
+    """
+
+    name: str
+    z: float
+    other_z: float
+
+
+def on_ears(
+    connections: Sequence[str], forces: Floats, moments: Floats, ears: Mapping[str, Ears]
+) -> tuple[tuple[str, ...], Floats, Floats]:
+    """The bands, and the forces and moments on them, about their middles.
+
+    forces, moments: (T, C, 3) N and N m of the links, of a clevis amid its ears.
+    """
+    if not ears:
+        return tuple(connections), forces, moments
+    names: list[str] = []
+    of_bands: list[tuple[Floats, Floats]] = []
+    for c, connection in enumerate(connections):
+        force, moment = forces[:, c], moments[:, c]
+        if connection not in ears:
+            names.append(connection)
+            of_bands.append((force, moment))
+            continue
+        other, z, other_z = ears[connection]
+        apart = other_z - z
+        couple = np.stack([moment[:, 1], -moment[:, 0], np.zeros(len(moment))], axis=1) / apart
+        # Along the axis the ear in front bears: the one farther on where the force is positive.
+        to_other = (force[:, 2] > 0.0) == (apart > 0.0)
+        torque = 0.5 * moment * [0.0, 0.0, 1.0]
+        for name, sign, bears in ((connection, -1.0, ~to_other), (other, 1.0, to_other)):
+            part = 0.5 * force + sign * couple
+            part[:, 2] = np.where(bears, force[:, 2], 0.0)
+            names.append(name)
+            of_bands.append((part, torque))
+    of_force, of_moment = zip(*of_bands, strict=True)
+    return tuple(names), np.stack(of_force, axis=1), np.stack(of_moment, axis=1)

@@ -1,0 +1,155 @@
+"""Loads of the ground on a wheel as parts of a reference load, by 14 CFR or by the user."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from loads import Applied, Law, Linkage
+from loads.landing import (
+    GROUND_RULES,
+    GroundedWheel,
+    Landing,
+    WheelForce,
+    at_deflection,
+    spin_up_drag,
+)
+from loads.landing.requirements import MAX_TYRE_FRICTION, GroundRule
+from loads.space.out_of_plane import SideLoad
+from pinstress.study.model.landing import drop, fallen, place, still
+from pinstress.study.model.mechanism.drives import mechanism_of
+from pinstress.study.reading.file import Study
+from pinstress.study.schema.landing import DropCase, FactorTable, GroundCase, Side, SpinUpTable
+
+AS_STATED = (
+    "The leg is as drawn, or as its position says: without a drop the deflection of strut and "
+    "tyres is not known."
+)
+
+
+@dataclass(frozen=True)
+class Grounded:
+    """The forces of the ground in a case.
+
+    clause: what demands them.
+    forces: their components; none where the reference is a drop that was not computed.
+    notes: how the drag of spin-up follows, and what is not known.
+    drives: of the leg at rest.
+    """
+
+    clause: str
+    forces: tuple[WheelForce, ...]
+    notes: tuple[str, ...]
+    drives: tuple[Law, ...]
+
+    def loads(self, study: Study, case: GroundCase, mechanism: Linkage) -> tuple[SideLoad, ...]:
+        """Return the forces on the axle, with their moments about it."""
+        at, z = mechanism.joint(case.at).at, mechanism_of(study).joint[case.at].z
+        return tuple(
+            SideLoad(
+                Applied(case.body, at, force.force[:2], force.couple[2]),
+                z,
+                force.force[2],
+                force.couple[:2],
+            )
+            for force in self.forces
+        )
+
+    def note(self, study: Study) -> str:
+        """Return the clause and the sum of every component."""
+        if not self.forces:
+            return ""
+        unit, factor = study.system.force, study.system.factor("force")
+        sums = [
+            f"{f.component} {f.factor:.4g} × {_digits(f.reference / factor)} = "
+            f"{_digits(f.factor * f.reference / factor)} {unit} {f.towards}, at the {f.place}"
+            for f in self.forces
+        ]
+        parts = f"{self.clause}: {'; '.join(sums)}.", *self.notes
+        return " ".join(filter(None, parts))
+
+
+def _digits(value: float) -> str:
+    """Return a number with at least four digits and without an exponent: "33,750"."""
+    return f"{value:,.0f}" if abs(value) >= 1000.0 else f"{value:.4g}"
+
+
+def grounded(
+    study: Study, name: str, case: GroundCase, mechanism: Linkage, extremes: bool
+) -> Grounded:
+    """Return the forces of the ground in a case.
+
+    extremes: whether a drop that is the reference is computed; without it there are no forces.
+
+    Raises: InputError, LinkageError.
+    """
+    where, rule = place(study, name, case, mechanism), _rule(case)
+    drives: tuple[Law, ...] = tuple(still(where))
+    row = case.factors[0] if case.factors else None
+    reference, spin_up = _own_reference(case, row), case.spin_up
+    by_drop = reference is None
+    if reference is None:
+        assert case.drop is not None
+        if not extremes:
+            return Grounded(rule.clause, (), (), drives)
+        of = study.table.case[case.drop]
+        assert isinstance(of, DropCase)
+        leg, touchdown = drop(study, case.drop, of, mechanism)
+        landing = fallen(study, case.drop, leg)
+        peak = landing.peaks["vertical"]
+        reference, spin_up = peak.value, spin_up or _spin_up(landing)
+        drives = at_deflection(landing, touchdown, peak.time, rule.deflection)
+    rule, spin = _with_spin(study, rule, spin_up, reference)
+    notes = (spin,) if rule.deflection == 1.0 or by_drop else (spin, AS_STATED)
+    braked = row is not None and row.braked
+    wheel = GroundedWheel(where.up, where.aft, case.stands, case.radius, braked)
+    forces = wheel.forces(rule, reference, _side(case, row))
+    return Grounded(rule.clause, forces, notes, drives)
+
+
+def _rule(case: GroundCase) -> GroundRule:
+    if case.rule is not None:
+        return GROUND_RULES[case.rule]
+    (row,) = case.factors
+    base = "reference load"
+    return GroundRule(row.clause, row.vertical, row.drag, row.side, base, row.deflection)
+
+
+def _own_reference(case: GroundCase, row: FactorTable | None) -> float | None:
+    stated = None if row is None else row.reference
+    return stated if stated is not None else case.reference
+
+
+def _side(case: GroundCase, row: FactorTable | None) -> Side:
+    stated = None if row is None else row.toward
+    return stated or case.toward or ("left" if case.stands == "nose" else "inboard")
+
+
+def _spin_up(landing: Landing) -> SpinUpTable | None:
+    wheel, peak = landing.drop.wheel, landing.peaks["vertical"]
+    if wheel is None:
+        return None
+    return SpinUpTable.model_construct(
+        inertia=wheel.inertia, radius=wheel.radius, speed=wheel.speed, time=peak.time
+    )
+
+
+def _with_spin(
+    study: Study, rule: GroundRule, wheel: SpinUpTable | None, reference: float
+) -> tuple[GroundRule, str]:
+    """Return a rule with the drag of its wheel, and how that follows."""
+    if not rule.spins:
+        return rule, ""
+    most = f"the most that is required, {MAX_TYRE_FRICTION:g} of the vertical reaction"
+    if wheel is None:
+        return rule, f"The drag is {most}, as no wheel is given (spin_up, or wheel of the drop)."
+    drag = spin_up_drag(wheel.inertia, wheel.radius, wheel.speed, reference, wheel.time)
+    if drag >= MAX_TYRE_FRICTION * reference:
+        return rule, f"The spin-up drag sqrt(2 I v n F / t) / r is more: it is {most}."
+    system = study.system
+    shown = (
+        f"I = {wheel.inertia:.4g} kg m^2, v = {wheel.speed:.4g} m/s, n = {MAX_TYRE_FRICTION:g}, "
+        f"t = {wheel.time:.4g} s, r = {wheel.radius / system.factor('length'):.4g} {system.length}"
+    )
+    sign = 1.0 if rule.drag > 0.0 else -1.0
+    part = sign * drag / reference
+    return replace(rule, drag=part), f"Spin-up drag sqrt(2 I v n F / t) / r with {shown}."

@@ -1,0 +1,129 @@
+"""Loads of a case out of the plane of its mechanism: where links lie, how stiff they are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from loads import Dynamics, Linkage
+from loads.space.out_of_plane import Links, Offsets, OutOfPlane, SideLoad, variations
+from loads.space.sharing import STIFFNESS_RATIO
+from loads.space.stiffness import LinkStiffness, flat_link, round_link
+from loads.space.straight import straight
+from pinstress.study.model.mechanism.drives import plane_of
+from pinstress.study.model.pins import pin
+from pinstress.study.reading.file import Study
+from pinstress.study.schema.cases import CaseTable, MechanismCase
+from pinstress.study.schema.mechanism import LinkStiffnessTable
+
+OUT_OF_LINE = 1e-6  # of the length scale: what a link may be bent without a word
+RIGID = LinkStiffness(math.inf, math.inf, math.inf, math.inf)
+
+
+@dataclass(frozen=True)
+class Sideways:
+    """Loads and stiffness of a case out of the plane.
+
+    loads: of the case. offsets: of its links. links: their stiffness.
+    note: how the offsets follow where they are not stated.
+    """
+
+    loads: tuple[SideLoad, ...]
+    offsets: Offsets
+    links: Links
+    note: str = ""
+
+    def noted(self, note: str) -> str:
+        """Return a case's note with this one."""
+        return " ".join(filter(None, (note, self.note)))
+
+    def completed(self, dynamics: Dynamics) -> Dynamics:
+        """Return forces in the plane with those out of it.
+
+        Raises: LinkageError where the links of a loop cannot share them.
+        """
+        balance = OutOfPlane(dynamics, self.loads, self.offsets)
+        return replace(dynamics, reactions=balance.reactions(self.links))
+
+    def others(self, dynamics: Dynamics) -> dict[str, Dynamics]:
+        """Return the same for other stiffness of the links, by what is different; nothing where
+        statics determines all forces, or the stiffness of all links is stated.
+        """
+        balance = OutOfPlane(dynamics, self.loads, self.offsets)
+        if not balance.redundancy:
+            return {}
+        return {
+            text: replace(dynamics, reactions=balance.reactions(links))
+            for text, links in variations(
+                dynamics.motion.linkage, self.links, STIFFNESS_RATIO
+            ).items()
+        }
+
+
+def sideways(
+    study: Study, case: CaseTable, mechanism: Linkage, loads: Sequence[SideLoad]
+) -> Sideways | None:
+    """Return what a case has out of the plane; None where everything is in it.
+
+    loads: of the case.
+
+    Raises: InputError for a pin that cannot be built.
+    """
+    table = plane_of(study)
+    placed = any(joint.z is not None for joint in table.joint.values())
+    aside = isinstance(case, MechanismCase) and any(load.out_of_plane for load in case.apply)
+    aside = aside or any(load.force or any(load.couple) for load in loads)
+    if not placed and not aside:
+        return None
+    offsets, note = _offsets(study, mechanism)
+    return Sideways(tuple(loads), offsets, _links(study), note)
+
+
+def _offsets(study: Study, mechanism: Linkage) -> tuple[Offsets, str]:
+    """Return where links lie along z, and in words where nothing states that.
+
+    Links lie at the middles of their bands on the pins. Pins lie where their z says, others so that
+    links are straight.
+    """
+    stated, middles = dict[str, float](), dict[str, float]()
+    for name, joint in plane_of(study).joint.items():
+        if joint.z is not None:
+            stated[name] = joint.z
+        if name in study.table.pin:
+            shape = pin(study, name)
+            on = set(joint.connections) & set(shape.connections)
+            middles |= {c: shape.band(c).middle for c in on}
+    at, askew = straight(mechanism, middles, stated)
+    if len(stated) == len(mechanism.joints):
+        return Offsets(at), ""
+    factor, unit = study.system.factor("length"), study.system.length
+    bent = [
+        f"{body} by {size / factor:.3g} {unit}"
+        for body, size in askew.items()
+        if size > OUT_OF_LINE * mechanism.length_scale
+    ]
+    out = f" ({', '.join(bent)} out of line)" if bent else ""
+    placed = "pins without a z are" if stated else "pins are"
+    return Offsets(at), (
+        f"Offsets of links along the pins count; {placed} placed so that links are straight{out}."
+    )
+
+
+def _links(study: Study) -> Links:
+    """Return the stiffness of the links that state a section."""
+    mechanism = plane_of(study)
+    stated = {name: _stiffness(table) for name, table in mechanism.link_stiffness.items()}
+    for name, body in mechanism.body.items():
+        if body.bar is not None and name not in stated:
+            bar = LinkStiffnessTable(diameter=body.bar.diameter, section=body.bar.section)
+            stated[name] = _stiffness(bar)
+    return Links(stated)
+
+
+def _stiffness(table: LinkStiffnessTable) -> LinkStiffness:
+    if table.section is not None:
+        return flat_link(*table.section, table.youngs_modulus)
+    if table.diameter is not None:
+        return round_link(table.diameter, table.youngs_modulus, table.bore)
+    return RIGID

@@ -1,0 +1,361 @@
+"""Linkage in space of a study's mechanism."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from loads import LinkageError
+from loads.linkage.linkage import Sharing
+from loads.motion.mobility import Mobility, require_driven
+from loads.space.conditions import directions
+from loads.space.equations import SpaceEquations
+from loads.space.linkage import (
+    BodyAngle,
+    Inertia,
+    JointAngle,
+    JointTravel,
+    Measured,
+    PointDistance,
+    RigidBody,
+    SpaceJoint,
+    SpaceLinkage,
+    Vector,
+)
+from pinbase.arrays import Floats
+from pinstress.study.model.mechanism.drives import mechanism_of
+from pinstress.study.model.mechanism.masses import STANDARD_GRAVITY, friction_circle, pin_mass
+from pinstress.study.model.pins import pin
+from pinstress.study.reading.errors import Wrong
+from pinstress.study.reading.file import Study
+from pinstress.study.schema.cases import MechanismCase
+from pinstress.study.schema.mechanism import drive_name
+from pinstress.study.schema.shown import listed
+from pinstress.study.schema.space import (
+    AngleDrive,
+    SpaceBarTable,
+    SpaceBodyTable,
+    SpaceDrive,
+    SpaceJointTable,
+    SpaceMechanismTable,
+    TravelDrive,
+    drivable,
+)
+
+MIN_ACROSS = 1.0 - math.cos(math.radians(1.0))  # part across a bar of a direction that is across
+
+
+@dataclass(frozen=True)
+class SpacePin:
+    """The place of the pin of a connection, and its axes.
+
+    joint: number of its joint in the linkage. carrier: the body that carries the pin, or GROUND.
+    at: the joint's point as drawn, m. axes: (3, 3), the pin's axes as drawn, as columns.
+    """
+
+    joint: int
+    carrier: str
+    at: Vector
+    axes: Floats
+
+
+def space_mechanism(study: Study) -> SpaceMechanismTable:
+    """Return the study's mechanism, which is in space."""
+    mechanism = mechanism_of(study)
+    assert isinstance(mechanism, SpaceMechanismTable)
+    return mechanism
+
+
+def space_contradictions(study: Study) -> tuple[SpaceLinkage | None, list[Wrong]]:
+    """Return the linkage of the study's mechanism in space, or None and all its contradictions."""
+    mechanism = space_mechanism(study)
+    g = math.hypot(*mechanism.gravity) or STANDARD_GRAVITY
+    wrong: list[LinkageError] = []
+    bodies, joints = list[RigidBody](), list[SpaceJoint]()
+    for name, body in mechanism.body.items():
+        try:
+            bodies.append(_body(mechanism, name, body, g))
+        except LinkageError as error:
+            wrong.append(error)
+    for name, joint in mechanism.joint.items():
+        if joint.fixed_in is None:
+            mass = pin_mass(study, name, joint.weight, g)
+            bodies.append(RigidBody(pin_body(name), mass, joint.at))
+        joints += _joints(name, joint, _bands(study, name, joint))
+    centres = {body.name: body.centre for body in bodies}
+    joints += [
+        SpaceJoint(f"weld of {name}", "fixed", body.welded_to, name, centres[name])
+        for name, body in mechanism.body.items()
+        if body.welded_to is not None and name in centres
+    ]
+    if wrong:
+        return None, _located(mechanism, wrong)
+    try:
+        return SpaceLinkage(
+            tuple(bodies),
+            tuple(joints),
+            tuple(_measured(study, mechanism)),
+            tuple(drive_name(drive) for drive in mechanism.drive),
+            mechanism.gravity,
+            sharing=tuple(
+                Sharing(tuple(rule.connections), tuple(rule.stiffness))
+                for rule in mechanism.sharing
+            ),
+        ), []
+    except LinkageError as error:
+        return None, _located(mechanism, error.each)
+
+
+def determined_in_space(study: Study, linkage: SpaceLinkage) -> Mobility:
+    """Return the mobility of a linkage in space whose drives determine every position.
+
+    Raises: InputError where they do not.
+    """
+    try:
+        return require_driven(SpaceEquations(linkage))
+    except LinkageError as error:
+        raise study.errors(_located(space_mechanism(study), error.each)) from None
+
+
+def pins_in_space(study: Study, linkage: SpaceLinkage) -> dict[str, SpacePin]:
+    """Return the pin of every connection of the study's mechanism."""
+    mechanism = space_mechanism(study)
+    of = {c: joint for joint in mechanism.joint.values() for c in joint.connections}
+    return {
+        joint.name: SpacePin(k, joint.base, joint.at, pin_axes(of[joint.name]))
+        for k, joint in enumerate(linkage.joints)
+        if joint.name in of
+    }
+
+
+def pin_axes(joint: SpaceJointTable) -> Floats:
+    """Return the axes of a joint's pin as drawn, (3, 3), as columns.
+
+    z is the pin's or the joint's axis, or else the world's; x is the world's x (y, where z is along
+    x) less its part along z.
+    """
+    axes = directions(joint.pin_axis or joint.axis or (0.0, 0.0, 1.0))
+    return np.stack([axes["u"], axes["v"], axes["w"]], axis=1)
+
+
+def pin_body(joint: str) -> str:
+    """Return the name of the body that is a joint's floating pin."""
+    return f"pin {joint}"
+
+
+def carrier(mechanism: SpaceMechanismTable, joint: str) -> str:
+    """Return the body with which the pin of a joint moves."""
+    return mechanism.joint[joint].fixed_in or pin_body(joint)
+
+
+def place(mechanism: SpaceMechanismTable, end: str | Vector) -> Vector:
+    """Return a point as drawn, m: of a joint, or stated."""
+    return mechanism.joint[end].at if isinstance(end, str) else end
+
+
+def length_name(joints: tuple[str, str]) -> str:
+    """Return the name of the measured distance between two joints."""
+    return f"length {joints[0]} {joints[1]}"
+
+
+def _bands(study: Study, name: str, table: SpaceJointTable) -> dict[str, float]:
+    """Return where links lie along the pin's z from the joint's point, m, by connection.
+
+    The pin is that of the joint's name, or the one on whose bands these connections are.
+
+    Raises: InputError for a pin that cannot be built, and where several could be meant.
+    """
+    if table.z is None:
+        return {}
+    named = [name] if name in study.table.pin else list(study.table.pin)
+    shapes = [pin(study, n) for n in named]
+    shapes = [x for x in shapes if not table.connections.keys().isdisjoint(x.connections)]
+    if len(shapes) > 1:
+        which = listed(x.name for x in shapes)
+        raise study.error(
+            f"mechanism.joint.{name}.z: may be the start of any of the pins {which}",
+            code="ambiguous-pin",
+        )
+    return {
+        c: table.z + sum(x.band(c).middle for x in shapes if c in x.connections)
+        for c in table.connections
+    }
+
+
+def _joints(name: str, table: SpaceJointTable, bands: dict[str, float]) -> Iterator[SpaceJoint]:
+    """Yield a joint for every connection; a floating pin is fixed to its first one's body.
+
+    bands: as of `_bands`.
+    """
+    base, along = table.fixed_in or pin_body(name), pin_axes(table)[:, 2]
+    for connection, body in table.connections.items():
+        x, y, z = (np.array(table.at) + bands.get(connection, 0.0) * along).tolist()
+        if connection not in drivable(table):
+            yield SpaceJoint(connection, "fixed", base, body, (x, y, z))
+            continue
+        yield SpaceJoint(
+            connection,
+            table.kind,
+            base,
+            body,
+            (x, y, z),
+            table.axis,
+            table.second_axis,
+            friction_circle(table.friction, table.diameter),
+        )
+
+
+def _body(mechanism: SpaceMechanismTable, name: str, b: SpaceBodyTable, g: float) -> RigidBody:
+    stated = None if b.inertia is None else _tensor(b.inertia)
+    if b.bar is not None:
+        first, second = (np.array(mechanism.joint[j].at) for j in b.bar.joints)
+        mass, inertia = _bar(name, b.bar, second - first)
+        centre: Vector = tuple((0.5 * (first + second)).tolist())
+        return RigidBody(name, mass, centre, inertia if stated is None else stated)
+    mass = b.mass if b.mass is not None else (b.weight or 0.0) / g
+    middle = b.centre
+    if middle is None:
+        on = [
+            joint.at
+            for joint in mechanism.joint.values()
+            if name in (joint.fixed_in, *joint.connections.values())
+        ]
+        if len(on) not in (1, 2):
+            raise LinkageError(
+                f"body {name}: a body with {len(on)} joints needs a centre = [x, y, z]",
+                "missing-centre",
+                ("body", name),
+            )
+        middle = tuple(np.mean(on, axis=0).tolist())
+    body = RigidBody(name, mass, middle)
+    return body if stated is None else replace(body, inertia=stated)
+
+
+def _tensor(entries: list[float]) -> Inertia:
+    xx, yy, zz, xy, xz, yz = (*entries, 0.0, 0.0, 0.0)[:6]
+    return (xx, xy, xz), (xy, yy, yz), (xz, yz, zz)
+
+
+def _bar(name: str, bar: SpaceBarTable, along: Floats) -> tuple[float, Inertia]:
+    """Return mass (kg) and inertia (kg m^2, world axes as drawn) of a bar from its first to its
+    second joint, `along` (3,) m.
+    """
+    length = float(np.linalg.norm(along))
+    if not length:
+        raise LinkageError(
+            f"body {name}: the two joints of its bar coincide", "same-joint", ("body", name)
+        )
+    e = along / length
+    if bar.section is None or bar.depth_along is None:
+        d = bar.diameter or 0.0
+        mass = bar.density * math.pi / 4.0 * d**2 * length
+        axial, across = mass * d**2 / 8.0, mass * (length**2 / 12.0 + d**2 / 16.0)
+        return mass, _rows(axial * np.outer(e, e) + across * (np.eye(3) - np.outer(e, e)))
+    depth, width = bar.section
+    mass = bar.density * depth * width * length
+    a = np.array(bar.depth_along) / np.linalg.norm(bar.depth_along)
+    a = a - (a @ e) * e
+    if not np.linalg.norm(a) > MIN_ACROSS:
+        raise LinkageError(
+            f"body {name}: depth_along is along the bar; give a direction across it",
+            "no-direction",
+            ("body", name),
+        )
+    a = a / np.linalg.norm(a)
+    b = np.cross(e, a)
+    squares = {"e": depth**2 + width**2, "a": length**2 + width**2, "b": length**2 + depth**2}
+    tensor = sum(
+        mass / 12.0 * squares[key] * np.outer(axis, axis)
+        for key, axis in (("e", e), ("a", a), ("b", b))
+    )
+    return mass, _rows(np.asarray(tensor))
+
+
+def _rows(tensor: Floats) -> Inertia:
+    xx, yy, zz = (tuple(row) for row in tensor.tolist())
+    return xx, yy, zz
+
+
+def _measured(study: Study, mechanism: SpaceMechanismTable) -> Iterator[Measured]:
+    """Yield the coordinates of drives and springs, and those on which loads of cases depend."""
+    for drive in mechanism.drive:
+        yield _driven(mechanism, drive)
+    for name, spring in mechanism.spring.items():
+        if spring.slide is not None:
+            (joint,) = drivable(mechanism.joint[spring.slide])
+            yield JointTravel(spring_name(name), joint)
+        elif spring.bodies is not None and spring.joints is not None:
+            yield _span(mechanism, spring_name(name), spring.bodies, spring.joints)
+    for name, torsion in mechanism.torsion_spring.items():
+        along = spring_name(name, "torsion spring")
+        yield _angle(mechanism, along, torsion.joint, torsion.connection)
+    lengths: dict[str, tuple[str, str]] = {}
+    for case in study.table.case.values():
+        for load in case.apply if isinstance(case, MechanismCase) else ():
+            for law in (load.force_law, load.couple_law):
+                if law is not None and law.length_between is not None:
+                    lengths[length_name(law.length_between)] = law.length_between
+    for name, ends in lengths.items():
+        bodies = (carrier(mechanism, ends[0]), carrier(mechanism, ends[1]))
+        yield _span(mechanism, name, bodies, ends)
+
+
+def spring_name(name: str, kind: str = "spring") -> str:
+    """Return the name of the coordinate along which a spring acts."""
+    return f"{kind} {name}"
+
+
+def _driven(mechanism: SpaceMechanismTable, drive: SpaceDrive) -> Measured:
+    name = drive_name(drive)
+    if isinstance(drive, AngleDrive):
+        return _angle(mechanism, name, drive.joint, drive.connection)
+    if isinstance(drive, TravelDrive):
+        return JointTravel(name, _connection(mechanism, drive.slide, drive.connection))
+    return _span(mechanism, name, drive.bodies, drive.between)
+
+
+def _angle(
+    mechanism: SpaceMechanismTable, name: str, joint: str, stated: str | None
+) -> JointAngle | BodyAngle:
+    """Return the angle of a connection at a joint; at a floating pin that of the two bodies, so
+    that a couple along it does not go through the pin.
+    """
+    table, connection = mechanism.joint[joint], _connection(mechanism, joint, stated)
+    if table.fixed_in is not None or table.axis is None:
+        return JointAngle(name, connection)
+    first = next(iter(table.connections.values()))
+    return BodyAngle(name, first, table.connections[connection], table.axis)
+
+
+def _connection(mechanism: SpaceMechanismTable, joint: str, stated: str | None) -> str:
+    return stated or drivable(mechanism.joint[joint])[0]
+
+
+def _span(
+    mechanism: SpaceMechanismTable,
+    name: str,
+    bodies: tuple[str, str],
+    ends: tuple[str | Vector, str | Vector],
+) -> PointDistance:
+    known = partial(place, mechanism)
+    return PointDistance(name, bodies, (known(ends[0]), known(ends[1])))
+
+
+def _located(mechanism: SpaceMechanismTable, errors: Sequence[LinkageError]) -> list[Wrong]:
+    """Return errors at their keys: those of a connection at its joint."""
+    of = {c: name for name, joint in mechanism.joint.items() for c in joint.connections}
+    of |= {pin_body(name): name for name in mechanism.joint}
+    out = []
+    for error in errors:
+        kind, *names = (str(part) for part in error.at) if error.at else ("",)
+        if names and names[0] in of and names[0] not in mechanism.body:
+            kind, names = "joint", [of[names[0]]]
+        if kind == "drive" and len(mechanism.drive) < 2:
+            names = []
+        at = ".".join(filter(None, ("mechanism", kind, *names)))
+        out.append(Wrong(f"mechanism: {error}", at=at, code=error.code))
+    return out

@@ -1,0 +1,202 @@
+"""Cases of a linkage in space: wrenches on its pins, in their axes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import chain
+
+import numpy as np
+
+from loads import Effort, Law, PeakForces, Reactions, StateDrive
+from loads.space.acting import MeasuredFactor, SpaceForce, SpaceLoad
+from loads.space.dynamics import SpaceDynamics, space_reactions
+from loads.space.ground import BodyMomenta, GroundInertia, body_momenta
+from loads.space.linkage import SpaceLinkage
+from loads.space.motion import SpaceCourse, space_move
+from loads.space.over_time import space_over_time
+from pinbase.arrays import Floats
+from pinstress.study.model.impulses import impulse_notes
+from pinstress.study.model.mechanism.space import SpacePin, pins_in_space
+from pinstress.study.model.moving_loads import Acting, MovingLoads
+from pinstress.study.model.space_forces import (
+    applied_in_space,
+    ground_inertia,
+    load_in_space,
+    springs_in_space,
+)
+from pinstress.study.reading.file import Study
+from pinstress.study.schema.cases import InstantCase, MotionCase, StaticCase
+
+POWER_BALANCE = 1e-6  # of the largest power of a drive: a larger violation is noted
+
+
+@dataclass(frozen=True)
+class InSpace:
+    """A case of a linkage in space, solved at some instants.
+
+    dynamics: of all joints. pins: by connection.
+    reactions: at the pins alone, in the study's order.
+    ground: inertia by the motion of the ground, if that moves.
+    note: how the loads came about.
+    peaks, efforts: over the whole motion, with every drive's work at the instants.
+    """
+
+    dynamics: SpaceDynamics
+    pins: dict[str, SpacePin]
+    reactions: Reactions
+    ground: GroundInertia | None = None
+    note: str = ""
+    peaks: PeakForces | None = None
+    efforts: tuple[Effort, ...] | None = None
+
+    @property
+    def gravity(self) -> Floats:
+        """Acceleration of free fall, (3,) m/s^2."""
+        return np.array(self.dynamics.motion.linkage.gravity)
+
+    @property
+    def accelerations(self) -> Floats:
+        """Accelerations of the pins at all connections, (T, C, 3) m/s^2: less these, gravity is
+        what the pins feel, also on a moving ground.
+        """
+        motion = self.dynamics.motion
+        each = [motion.point(pin.carrier, pin.at) for pin in self.pins.values()]
+        place, velocity, acceleration = (np.stack(x, axis=1) for x in zip(*each, strict=True))
+        if self.ground is None:
+            return acceleration
+        return np.asarray(acceleration - self.ground.felt(motion, place, velocity))
+
+    @property
+    def bodies(self) -> BodyMomenta:
+        """Motion and momenta of all bodies as seen from outside, in the mechanism's axes."""
+        return body_momenta(self.dynamics.motion, self.ground.ground if self.ground else None)
+
+    @property
+    def energies(self) -> tuple[Floats, Floats]:
+        """Kinetic and potential energy, (T,) J each."""
+        motion = self.dynamics.motion
+        heights = motion.pose.centre[:, :-1] @ self.gravity
+        return motion.kinetic_energy, -heights @ motion.masses
+
+
+def _at_pins(
+    dynamics: SpaceDynamics, pins: dict[str, SpacePin], ground: GroundInertia | None, note: str
+) -> InSpace:
+    """Return the reactions of the connections, with the axes of their pins."""
+    r, motion = dynamics.reactions, dynamics.motion
+    which = [pin.joint for pin in pins.values()]
+    turns = [motion.rotation(pin.carrier) @ pin.axes for pin in pins.values()]
+    reactions = Reactions(
+        r.case,
+        r.times,
+        tuple(pins),
+        tuple(r.bodies[k] for k in which),
+        r.forces[:, which],
+        r.moments[:, which],
+        np.stack(turns, axis=1),
+    )
+    return InSpace(dynamics, pins, reactions, ground, note)
+
+
+@dataclass(frozen=True)
+class MovedInSpace:
+    """A motion in space at any times (T,) s.
+
+    A class instead of closures, since it is sent to processes that are started anew.
+    """
+
+    name: str
+    course: SpaceCourse
+    loads: tuple[SpaceLoad, ...]
+    pins: dict[str, SpacePin]
+    ground: GroundInertia | None
+    note: str
+
+    def solve(self, times: Floats) -> InSpace:
+        """Return the case at times (T,) s."""
+        loads = (*self.loads, *((self.ground,) if self.ground else ()))
+        dynamics = space_reactions(self.name, self.course.at(times), loads)
+        return _at_pins(dynamics, self.pins, self.ground, self.note)
+
+    def reactions(self, times: Floats) -> Reactions:
+        """Return the reactions at times (T,) s."""
+        return self.solve(times).reactions
+
+    def acting(self, times: Floats) -> Acting:
+        """Return reactions, and accelerations of the pins (T, C, 3) m/s^2, at times (T,) s."""
+        solved = self.solve(times)
+        return solved.reactions, solved.accelerations
+
+    @property
+    def corners(self) -> Floats:
+        """Times at which a force may jump or has a kink, s."""
+        course, out = self.course, [*self.course.corners]
+        for load in self.loads:
+            if isinstance(load, SpaceForce):
+                out += [load.begin, load.end]
+                if isinstance(load.times, MeasuredFactor) and load.times.measured is None:
+                    out += load.times.table.x
+        return np.unique([t for t in out if course.first < t < course.last])
+
+    def solved(self, samples: int, extremes: bool) -> InSpace:
+        """Return the case at equally spaced instants; where asked, with its extremes."""
+        solved = self.solve(np.linspace(self.course.first, self.course.last, samples))
+        if not extremes:
+            self.solve(self.course.path.nodes)
+            return solved
+        over = space_over_time(self.course, self.solve, solved, self.corners)
+        note = self.note
+        if over.violation > POWER_BALANCE:
+            note += f" The balance of power is violated by {over.violation:.1e} of the largest."
+        return replace(solved, peaks=over.peaks, efforts=over.drives, note=note.strip())
+
+
+def motion_in_space(
+    study: Study,
+    name: str,
+    case: MotionCase,
+    linkage: SpaceLinkage,
+    laws: Sequence[Law],
+    end: float,
+) -> MovedInSpace:
+    """Return the motion of a case under the laws of its drives, until `end`, s."""
+    course = SpaceCourse(linkage, laws, 0.0, end)
+    applied = chain.from_iterable(applied_in_space(study, name, case, linkage))
+    loads: tuple[SpaceLoad, ...] = (*springs_in_space(study, linkage), *applied)
+    note = impulse_notes(study, case)
+    pins, ground = pins_in_space(study, linkage), ground_inertia(case)
+    return MovedInSpace(name, course, loads, pins, ground, note)
+
+
+def moving_in_space(moved: MovedInSpace, solved: InSpace) -> MovingLoads:
+    """Return the loads on the pins at any time."""
+    return MovingLoads(moved.acting, solved.dynamics.motion.times, moved.corners)
+
+
+def at_rest_in_space(
+    study: Study,
+    name: str,
+    case: StaticCase | InstantCase,
+    linkage: SpaceLinkage,
+    states: Sequence[tuple[float, float, float]],
+) -> Callable[..., InSpace]:
+    """Return what gives a case at one instant: `solve()` as stated, `solve(which, size)` with an
+    impulse of another size (N) in the load of that number.
+
+    states: position, velocity and acceleration of every drive, SI.
+    """
+    motion = space_move(linkage, [StateDrive(*values) for values in states], np.zeros(1))
+    springs, pins = springs_in_space(study, linkage), pins_in_space(study, linkage)
+    applied = applied_in_space(study, name, case, linkage)
+    note, ground = impulse_notes(study, case), ground_inertia(case)
+
+    def solve(which: int | None = None, size: float | None = None) -> InSpace:
+        loads = list(applied)
+        if which is not None:
+            loads[which] = load_in_space(study, name, which, case.apply[which], linkage, size)
+        every: list[SpaceLoad] = [*springs, *chain.from_iterable(loads)]
+        every += [ground] if ground else []
+        return _at_pins(space_reactions(name, motion, every, timed=False), pins, ground, note)
+
+    return solve

@@ -1,0 +1,116 @@
+"""References by name within a mechanism in space, and what its cases cannot have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pinstress.study.reading.errors import Wrong
+from pinstress.study.reading.names import known_name, two_bodies
+from pinstress.study.schema.cases import StaticCase
+from pinstress.study.schema.landing import AtWheel
+from pinstress.study.schema.shown import as_text, listed
+from pinstress.study.schema.space import (
+    AngleDrive,
+    LengthDrive,
+    SpaceMechanismTable,
+    TravelDrive,
+    drivable,
+    has_motion,
+)
+from pinstress.study.schema.tables import StudyTable
+
+
+def of_space(mechanism: SpaceMechanismTable) -> Iterator[Wrong]:
+    """Yield the references of a mechanism in space to things that do not exist."""
+    bodies = dict.fromkeys(["ground", *mechanism.body])
+    names: dict[str, str] = {}
+    for name, joint in mechanism.joint.items():
+        where = f"mechanism.joint.{name}"
+        if joint.fixed_in is not None:
+            yield from known_name(f"{where}.fixed_in", "body", joint.fixed_in, bodies)
+        for connection, body in joint.connections.items():
+            key = f"{where}.connections.{connection}"
+            yield from known_name(key, "body", body, bodies)
+            if body == joint.fixed_in:
+                text = f"{key}: {as_text(body)} carries the pin; name the body that moves on it"
+                yield Wrong(text, code="fixed-and-turning")
+            if connection in names:
+                text = f"{key}: joint {names[connection]} has this connection too; rename one"
+                yield Wrong(text, code="duplicate-name")
+            names[connection] = name
+    for name, part in mechanism.body.items():
+        where = f"mechanism.body.{name}"
+        yield from known_name(f"{where}.welded_to", "body", part.welded_to or "ground", bodies)
+        for end in part.bar.joints if part.bar is not None else ():
+            yield from known_name(f"{where}.bar.joints", "joint", end, mechanism.joint)
+    for i, drive in enumerate(mechanism.drive, 1):
+        where = "mechanism.drive" + (f"[{i}]" if len(mechanism.drive) > 1 else "")
+        match drive:
+            case AngleDrive():
+                yield from _moved(f"{where}.joint", mechanism, drive.joint, drive.connection, False)
+            case TravelDrive():
+                yield from _moved(f"{where}.slide", mechanism, drive.slide, drive.connection, True)
+            case LengthDrive():
+                yield from two_bodies(where, drive.bodies, bodies)
+                yield from _points(f"{where}.between", drive.between, mechanism)
+    for name, spring in mechanism.spring.items():
+        where = f"mechanism.spring.{name}"
+        yield from two_bodies(where, spring.bodies, bodies)
+        yield from _points(f"{where}.joints", spring.joints or (), mechanism)
+        if spring.slide is not None:
+            yield from _moved(f"{where}.slide", mechanism, spring.slide, None, True)
+    for name, torsion in mechanism.torsion_spring.items():
+        where = f"mechanism.torsion_spring.{name}.joint"
+        yield from _moved(where, mechanism, torsion.joint, torsion.connection, False)
+    for i, rule in enumerate(mechanism.sharing, 1):
+        for connection in rule.connections:
+            where = f"mechanism.sharing[{i}].connections"
+            yield from known_name(where, "connection", connection, names)
+
+
+def _points(
+    where: str, ends: tuple[object, ...], mechanism: SpaceMechanismTable
+) -> Iterator[Wrong]:
+    for end in ends:
+        if isinstance(end, str):
+            yield from known_name(where, "joint", end, mechanism.joint)
+
+
+def _moved(
+    where: str, mechanism: SpaceMechanismTable, name: str, connection: str | None, slides: bool
+) -> Iterator[Wrong]:
+    """Yield an error unless a joint has an angle, or travel, of one connection."""
+    yield from known_name(where, "joint", name, mechanism.joint)
+    if (joint := mechanism.joint.get(name)) is None:
+        return
+    if not has_motion(joint.kind, slides):
+        what, kinds = ("travel", "prismatic") if slides else ("angle", "revolute")
+        text = (
+            f"{where}: joint {name} is {joint.kind} and has no {what}; name one that is {kinds} "
+            "or cylindrical"
+        )
+        yield Wrong(text, code="joint-kind")
+    choices = drivable(joint)
+    key = f"{where.rpartition('.')[0]}.connection"
+    if connection is not None:
+        yield from known_name(key, "connection that moves on the pin", connection, choices)
+    elif len(choices) > 1:
+        text = f"{where}: several bodies move on joint {name}; give connection, of {{}}"
+        yield Wrong(text.format(listed(choices)), code="missing-key")
+
+
+def cases_in_space(table: StudyTable) -> Iterator[Wrong]:
+    """Yield errors for what cases of a linkage in space cannot have."""
+    for name, case in table.case.items():
+        if isinstance(case, AtWheel):
+            text = (
+                f"case.{name}: kind {case.kind!r} needs a linkage in a plane; in space apply the "
+                'forces in a case of kind "static"'
+            )
+            yield Wrong(text, code="wrong-dimension")
+        if isinstance(case, StaticCase) and case.hold is not None:
+            text = f"case.{name}.hold: in space all drives hold; remove it"
+            yield Wrong(text, code="wrong-dimension")
+    if table.motion_check is not None:
+        text = "motion_check: it needs a linkage in a plane; remove it"
+        yield Wrong(text, code="wrong-dimension")

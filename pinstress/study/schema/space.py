@@ -1,0 +1,384 @@
+"""The study file's form: a mechanism in space."""
+
+import math
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Discriminator, Field, Tag, field_validator, model_validator
+
+from loads.space.kinds import KINDS, Kind
+from loads.space.linkage import RIGHT_ANGLE_TOLERANCE
+from pinbase.errors import ArgumentError
+from pinstress.study.schema.forces import LineLawTable, TorsionLawTable, require_both, require_one
+from pinstress.study.schema.mechanism import (
+    BarTable,
+    LawTable,
+    Ratios,
+    require_few_turns,
+    require_one_mass,
+)
+from pinstress.study.schema.types import (
+    Acceleration,
+    Angle,
+    Length,
+    Mass,
+    Number,
+    PositiveLength,
+    SignedInertia,
+    StrictTable,
+    Weight,
+    one_or_several,
+)
+
+Point3 = tuple[Length, Length, Length]
+Direction = tuple[Number, Number, Number]
+JointOrPoint3 = Annotated[
+    Annotated[str, Tag("<joint>")] | Annotated[Point3, Tag("<point>")],
+    Discriminator(lambda value: "<joint>" if isinstance(value, str) else "<point>"),
+]
+
+PLANAR_PARTS = {  # of a mechanism, and what stands for them in space
+    "slider": 'use a joint of kind = "prismatic" between its two bodies',
+    "stop": "a hold of a drive or lock is not known in space; drive the joint instead",
+    "gear": "gears are only known in a plane; drive both bodies",
+    "rack": "racks are only known in a plane; drive both bodies",
+    "point": "paths of points are only known in a plane",
+}
+
+
+def _with_three(data: Any, *keys: str) -> None:
+    """Raise ArgumentError for a key that has two numbers instead of three."""
+    for key in keys:
+        if isinstance(data, dict) and isinstance(value := data.get(key), list) and len(value) == 2:
+            text = f"{key} has two numbers; in space (dimension = 3) give {key} = [x, y, z]"
+            raise ArgumentError(text, "wrong-dimension")
+
+
+class SpaceJointTable(StrictTable):
+    """A pin, ball or slide of a mechanism in space as drawn, and the body on each of its
+    connections.
+    """
+
+    at: Point3
+    """Position in the drawing, about which the moments of its connections are stated."""
+    kind: Kind = "revolute"
+    """Which motions it leaves free: "revolute" (about its axis), "spherical" (any rotation),
+    "universal" (about two axes, a cross), "cylindrical" (about and along its axis), "prismatic"
+    (along its axis), "planar" (in the plane across its axis), "point-on-line" (any rotation, and
+    along its axis), or none ("fixed")."""
+    axis: Direction | None = None
+    """Its axis as drawn; a vector of any length but 0. Of a universal joint the axis of the cross
+    that is fixed in the body that carries the pin; of a planar joint the normal. Spherical and
+    fixed joints have none."""
+    second_axis: Direction | None = None
+    """The other axis of a universal joint, in the bodies of its connections, at a right angle to
+    `axis`."""
+    pin_axis: Direction | None = None
+    """Direction of the z of the pin as drawn. Default: `axis`, or else the world's z. The pin's x
+    is the world's x less its part along z (the world's y where z is within 1 degree of the world's
+    x); all three turn with the body that carries the pin."""
+    connections: Annotated[dict[str, str], Field(min_length=1)]
+    """For each connection, the body that moves on the pin. Names of connections are unique in the
+    study."""
+    fixed_in: str | None = None
+    """The body that carries the pin, or "ground". Default: none, a floating pin, which is fixed in
+    the body of its first connection."""
+    weight: Weight | None = None
+    """Weight of a floating pin. Default: the weight of its profile."""
+    z: Length | None = None
+    """Position of the start of the pin's profile along the pin's z, from `at`: every link then
+    moves about the middle of its band, about which its moment is stated. Default: all links at
+    `at`."""
+    friction: Annotated[Number, Field(ge=0.0, le=10.0)] | None = None
+    """Coefficient of Coulomb friction between the pin and the bodies that turn on it; needs
+    `diameter` and `fixed_in`, of a revolute joint."""
+    diameter: PositiveLength | None = None
+    """Diameter of the pin, for friction."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _in_space(cls, data: Any) -> Any:
+        _with_three(data, "at", "axis", "second_axis", "pin_axis")
+        if isinstance(data, dict) and isinstance(data.get("at"), dict):
+            raise ArgumentError("at: in space (dimension = 3) give [x, y, z]", "wrong-dimension")
+        return data
+
+    @model_validator(mode="after")
+    def _complete(self) -> "SpaceJointTable":
+        require_both("friction and diameter", self.friction, self.diameter)
+        if self.friction and self.fixed_in is None:
+            raise ArgumentError(
+                "a floating pin cannot have friction; give fixed_in", "friction-floats"
+            )
+        if self.fixed_in is None and len(self.connections) < 2:
+            raise ArgumentError(
+                "a floating pin needs two connections or more; give fixed_in, or another one",
+                "too-few-connections",
+            )
+        for key in ("axis", "second_axis", "pin_axis"):
+            if (value := getattr(self, key)) is not None and not any(value):
+                raise ArgumentError(f"{key} must not be zero", "no-direction")
+        _require_axes(self)
+        return self
+
+
+def _require_axes(joint: SpaceJointTable) -> None:
+    """Raise ArgumentError unless a joint has the directions that its kind needs."""
+    axes = {"axis": joint.axis, "second_axis": joint.second_axis}
+    for (key, given), need in zip(axes.items(), (1, 2), strict=True):
+        needs = KINDS[joint.kind].axes >= need
+        if needs and given is None:
+            raise ArgumentError(f"a {joint.kind} joint needs {key} = [x, y, z]", "no-direction")
+        if given is not None and not needs:
+            raise ArgumentError(f"a {joint.kind} joint has no {key}; remove it", "no-direction")
+    if joint.axis is not None and joint.second_axis is not None:
+        product = sum(a * b for a, b in zip(joint.axis, joint.second_axis, strict=True))
+        cosine = product / (math.hypot(*joint.axis) * math.hypot(*joint.second_axis))
+        if abs(cosine) > RIGHT_ANGLE_TOLERANCE:
+            raise ArgumentError(
+                f"axis and second_axis of a universal joint are those of its cross, at a right "
+                f"angle; they are {math.degrees(math.acos(max(-1.0, min(1.0, cosine)))):.4g} deg "
+                "apart",
+                "axes-not-square",
+            )
+
+
+class SpaceBarTable(BarTable):
+    """A uniform straight bar in space between two joints, round or rectangular."""
+
+    depth_along: Direction | None = None
+    """Direction of the depth of a rectangular bar as drawn; its part across the bar counts."""
+
+    @model_validator(mode="after")
+    def _known_depth(self) -> "SpaceBarTable":
+        if (self.section is None) != (self.depth_along is None) or not any(
+            self.depth_along or (1.0,)
+        ):
+            raise ArgumentError(
+                "a rectangular bar needs depth_along = [x, y, z], the direction of its depth; a "
+                "round one has none",
+                "give-both",
+            )
+        return self
+
+
+class SpaceBodyTable(StrictTable):
+    """A rigid body in space."""
+
+    weight: Weight | None = None
+    """Weight. Give one of `weight`, `mass` or `bar`."""
+    mass: Mass | None = None
+    """Mass."""
+    bar: SpaceBarTable | None = None
+    """A uniform straight bar, which determines mass, centre and inertia."""
+    centre: Point3 | None = None
+    """Centre of mass in the drawn position. Default: midway between the joints, if there are
+    two."""
+    inertia: Annotated[list[SignedInertia], Field(min_length=3, max_length=6)] | None = None
+    """Inertia about the centre of mass along the world's axes as drawn: [xx, yy, zz] or [xx, yy,
+    zz, xy, xz, yz], the entries of the tensor, so that xy is minus the integral of x y dm. Default:
+    that of the bar; without a bar none, the body's mass being in its centre."""
+    welded_to: str | None = None
+    """Body, or "ground", to which it is fixed."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _in_space(cls, data: Any) -> Any:
+        _with_three(data, "centre")
+        if isinstance(data, dict) and "inertia" in data and not isinstance(data["inertia"], list):
+            raise ArgumentError(
+                "inertia: in space (dimension = 3) give [xx, yy, zz], with [.., xy, xz, yz] if "
+                "there are products",
+                "wrong-dimension",
+            )
+        return data
+
+    @model_validator(mode="after")
+    def _one_mass(self) -> "SpaceBodyTable":
+        require_one_mass(self.mass, self.weight, self.bar, self.centre)
+        if self.inertia is not None and len(self.inertia) not in (3, 6):
+            raise ArgumentError(
+                "inertia: give 3 moments, [xx, yy, zz], or 6 numbers, [xx, yy, zz, xy, xz, yz]",
+                "bad-shape",
+            )
+        return self
+
+
+class AngleDrive(LawTable):
+    """A drive of the angle of a revolute or cylindrical joint: of the body on a connection about
+    the joint's axis, right-handed, zero as drawn.
+    """
+
+    joint: str
+    """The joint."""
+    connection: str | None = None
+    """The driven one of its connections. Default: the only one that moves on the pin."""
+    start: Angle | None = None
+    """Angle at the start."""
+    end: Angle | None = None
+    """Angle at the end."""
+
+    slides: ClassVar[bool] = False
+
+    @model_validator(mode="after")
+    def _few_turns(self) -> "AngleDrive":
+        require_few_turns(self.start, self.end)
+        return self
+
+
+class TravelDrive(LawTable):
+    """A drive of the travel of a prismatic or cylindrical joint: of the body on a connection along
+    the joint's axis, zero as drawn.
+    """
+
+    slide: str
+    """The joint."""
+    connection: str | None = None
+    """The driven one of its connections. Default: the only one that moves on the pin."""
+    start: Length | None = None
+    """Travel at the start."""
+    end: Length | None = None
+    """Travel at the end."""
+    position_offset: Length = 0.0
+    """Offset that plots subtract from the travel."""
+
+    slides: ClassVar[bool] = True
+
+
+class LengthDrive(LawTable):
+    """A drive of the distance between two points of two bodies, between which it pulls and pushes.
+    An actuator whose pins are of interest has bodies and joints of its own, and drives its travel.
+    """
+
+    between: tuple[JointOrPoint3, JointOrPoint3]
+    """A point of each body, a joint or [x, y, z]; pins are not loaded at these joints."""
+    bodies: tuple[str, str]
+    """The two bodies; one may be "ground"."""
+    start: Length | None = None
+    """Distance at the start."""
+    end: Length | None = None
+    """Distance at the end."""
+    position_offset: Length = 0.0
+    """Offset that plots subtract from the distance."""
+
+    slides: ClassVar[bool] = True
+
+    @model_validator(mode="after")
+    def _named(self) -> "LengthDrive":
+        if self.name is None:
+            raise ArgumentError("a drive between two points needs a name", "missing-key")
+        return self
+
+
+SpaceDrive = AngleDrive | TravelDrive | LengthDrive
+_KEYS_OF_DRIVES = {"slide": "<travel>", "between": "<length>"}
+
+
+def _kind_of_drive(value: object) -> str:
+    keys = value if isinstance(value, dict) else {}
+    return next((tag for key, tag in _KEYS_OF_DRIVES.items() if key in keys), "<angle>")
+
+
+AnySpaceDrive = Annotated[
+    Annotated[AngleDrive, Tag("<angle>")]
+    | Annotated[TravelDrive, Tag("<travel>")]
+    | Annotated[LengthDrive, Tag("<length>")],
+    Discriminator(_kind_of_drive),
+]
+
+
+class SpaceSpringTable(LineLawTable):
+    """A spring, damper or gas spring along a joint's axis, or between two points. Its force,
+    positive where it pushes them apart, is preload - stiffness (length - reference) - damping
+    velocity, and what the tables add.
+    """
+
+    slide: str | None = None
+    """The prismatic or cylindrical joint along which it acts, its length being the travel. Give
+    either `slide`, or `bodies` and `joints`."""
+    bodies: tuple[str, str] | None = None
+    """The two bodies between which it acts; one may be "ground"."""
+    joints: tuple[JointOrPoint3, JointOrPoint3] | None = None
+    """A point of each, a joint or [x, y, z]; pins are not loaded at these joints."""
+
+    @model_validator(mode="after")
+    def _between(self) -> "SpaceSpringTable":
+        require_one("either slide, or bodies and joints", self.slide, self.bodies)
+        require_both("bodies and joints", self.bodies, self.joints)
+        return self
+
+
+class SpaceTorsionSpringTable(TorsionLawTable):
+    """A spring or damper about the axis of a revolute or cylindrical joint. Its couple on the body
+    of the connection, right-handed about the axis, is preload - stiffness (angle - reference) -
+    damping angular velocity, and what the tables add; the angle is zero as drawn.
+    """
+
+    joint: str
+    """The joint."""
+    connection: str | None = None
+    """Which of its connections. Default: the only one that moves on the pin."""
+
+
+class SpaceSharingTable(StrictTable):
+    """How redundant connections share their load, as springs in parallel."""
+
+    connections: Annotated[list[str], Field(min_length=1)]
+    """The redundant connections."""
+    stiffness: Ratios
+    """Stiffness of each; only the ratios matter."""
+
+    @model_validator(mode="after")
+    def _one_for_each(self) -> "SpaceSharingTable":
+        if len(self.connections) != len(self.stiffness):
+            raise ArgumentError("give one number for each name", "lengths-differ")
+        return self
+
+
+class SpaceMechanismTable(StrictTable):
+    """A linkage in space, drawn in one position, with one or several drives, or a structure."""
+
+    dimension: Literal[3]
+    """A linkage in space; without this key it is in a plane."""
+    gravity: Annotated[
+        tuple[Acceleration, Acceleration, Acceleration],
+        Field(json_schema_extra={"default": ["0 m/s^2", "0 m/s^2", "-9.80665 m/s^2"]}),
+    ] = (0.0, 0.0, -9.80665)
+    """Acceleration of gravity [gx, gy, gz]; [0, 0, 0] switches it off."""
+    joint: Annotated[dict[str, SpaceJointTable], Field(min_length=1)]
+    """Joints by name."""
+    body: Annotated[dict[str, SpaceBodyTable], Field(min_length=1)]
+    """Bodies by name, except the ground."""
+    drive: list[AnySpaceDrive] = []
+    """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom; none
+    for a structure."""
+    spring: dict[str, SpaceSpringTable] = {}
+    """Springs and dampers by name; they act in all cases."""
+    torsion_spring: dict[str, SpaceTorsionSpringTable] = {}
+    """Torsion springs and dampers by name; they act in all cases."""
+    sharing: list[SpaceSharingTable] = []
+    """Redundant connections, and how they share their load. Default: as all links of one section
+    would, with the range over links a tenth and ten times as stiff."""
+
+    _listed = field_validator("drive", mode="before")(one_or_several)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _parts_in_space(cls, data: Any) -> Any:
+        for key, instead in PLANAR_PARTS.items():
+            if isinstance(data, dict) and key in data:
+                text = f"{key} is for linkages in a plane; in space (dimension = 3) {instead}"
+                raise ArgumentError(text, "wrong-dimension")
+        _with_three(data, "gravity")
+        return data
+
+
+def drivable(joint: SpaceJointTable) -> list[str]:
+    """Return the connections of a joint that move on its pin: all but the first of a floating one,
+    in whose body it is fixed.
+    """
+    return list(joint.connections)[joint.fixed_in is None :]
+
+
+def has_motion(kind: Kind, slides: bool) -> bool:
+    """Return whether joints of a kind have a travel, or else an angle."""
+    return KINDS[kind].travel if slides else KINDS[kind].angle

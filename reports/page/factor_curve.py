@@ -1,0 +1,67 @@
+"""The factor of a pin against its diameter, as an SVG drawing."""
+
+from __future__ import annotations
+
+import math
+from html import escape
+
+from reports.data.overview import MAX_LUG_SHARE, PinLine, factor_at
+from reports.format.numbers import engineering, short
+from reports.tables.strength.overview import FactorAxis
+
+WIDTH, HEIGHT = 260.0, 62.0
+POINTS, REACH = 24, 1.25  # points; ratio of scales beyond the needed one
+LEFT, ABOVE, RIGHT, BELOW = 40.0, 18.0, 10.0, 20.0  # margins, for the texts
+
+
+def draw_factor_curve(line: PinLine, unit: str) -> str | None:
+    """Return the lowest factor, with its error and beneath contact, against the diameter of a pin,
+    by the law of its section, as an <svg> element; None where no diameter is estimated.
+
+    unit: of lengths. Colours: reports/templates/overview.css.
+    """
+    d = line.diameter
+    if d is None or d.needed is None:
+        return None
+    most = REACH * d.needed / d.given
+    scales = [most ** (k / (POINTS - 1)) for k in range(POINTS)]
+    factors = [factor_at(line.row, scale) for scale in scales]
+    required = line.row.required or 1.0
+    axis = FactorAxis(min(factors) / 1.1, max(factors) * 1.1, required)
+    across = [WIDTH * k / (POINTS - 1) for k in range(POINTS)]
+    points = " ".join(f"{x:.1f},{_down(axis, f):.1f}" for x, f in zip(across, factors, strict=True))
+    needed, at = _across(d.needed / d.given, most), _down(axis, required)
+    title = f"Pin {line.pin}: estimated lowest factor of all places"
+    parts = [
+        f'<path class="frame" d="M0 0V{HEIGHT}H{WIDTH}"/>',
+        f'<path class="limit" d="M0 {at:.1f}H{WIDTH}M{needed:.1f} {at:.1f}V{HEIGHT}"/>',
+        f'<polyline points="{points}"/>',
+        _text(0.0, HEIGHT + 15.0, f"{engineering(d.given, 3)} {unit}"),
+        _text(needed, HEIGHT + 15.0, f"{engineering(d.needed, 3)} {unit}", "middle"),
+        _text(-5.0, at + 4.0, short(required), "end"),
+        _text(-5.0, _down(axis, factors[0]) + 4.0, engineering(factors[0], 3), "end"),
+        _text(5.0 - LEFT, -7.0, title),
+    ]
+    if d.eye and d.too_large(d.needed):
+        lug = _across(MAX_LUG_SHARE * d.eye / d.given, most)
+        parts += [
+            f'<path class="lug" d="M{lug:.1f} 0V{HEIGHT}"/>',
+            _text(lug + 4.0, HEIGHT - 4.0, "too large for its lug"),
+        ]
+    box = f"{-LEFT} {-ABOVE} {LEFT + WIDTH + RIGHT} {ABOVE + HEIGHT + BELOW}"
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" class="curve" viewBox="{box}" role="img" '
+        f'aria-label="{escape(title)}">{"".join(parts)}</svg>'
+    )
+
+
+def _across(scale: float, most: float) -> float:
+    return WIDTH * math.log(scale) / math.log(most)
+
+
+def _down(axis: FactorAxis, factor: float) -> float:
+    return HEIGHT * (1.0 - axis.at(factor))
+
+
+def _text(x: float, y: float, text: str, anchor: str = "start") -> str:
+    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{escape(text)}</text>'

@@ -1,0 +1,67 @@
+"""The table of the forces of the ground on wheels: parts of reference loads, by regulation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from reports.data.mechanics import ReactionTable, WheelLoad
+from reports.data.results import Results, Units
+from reports.format.numbers import short
+from reports.tables.column import Column, Table, texts, unit_columns
+
+WHEEL_NOTE = (
+    "Each force is factor times reference load. Direction and point are in world axes: x and y in "
+    "the plane of the mechanism, z across it."
+)
+
+
+@dataclass(frozen=True)
+class WheelRow:
+    """A force on a wheel, in a case by a clause."""
+
+    of: ReactionTable
+    load: WheelLoad
+    units: Units
+
+    @property
+    def paragraph(self) -> str:
+        """The clause without its content: "14 CFR 25.479(d)(2)"."""
+        return self.of.clause.partition(":")[0]
+
+
+def _along(axis: int) -> Column[WheelRow]:
+    name = "xyz"[axis]
+    return Column(f"direction_{name}", lambda row: row.load.direction[axis])
+
+
+def _at(axis: int) -> Column[WheelRow]:
+    return Column(f"at_{'xyz'[axis]}", lambda row: row.load.point[axis], "length")
+
+
+def _factor(row: WheelRow) -> str:
+    return short(float(f"{row.load.factor:.4g}"))
+
+
+COLUMNS: list[Column[WheelRow]] = [
+    *texts("case=of.case"),
+    Column("clause", lambda row: row.of.clause),
+    Column("", lambda row: row.paragraph, "", "paragraph", numeric=False),
+    *texts("component=load.component"),
+    Column("factor", lambda row: row.load.factor, "", "factor", text=_factor),
+    Column("reference", lambda row: row.load.reference, "force", "reference"),
+    Column("force", lambda row: row.load.force, "force", "force"),
+    *texts("towards=load.towards place=load.place"),
+    *map(_along, range(3)),
+    *map(_at, range(3)),
+    *unit_columns("force length"),
+]
+
+
+def wheel_table(results: Results) -> Table[WheelRow]:
+    """Return a line for each force of the ground on a wheel in a case by a regulation."""
+    rows = [
+        WheelRow(table, load, results.units)
+        for table in results.reactions
+        for load in table.wheel_loads
+    ]
+    return Table("wheel_loads", COLUMNS, rows)

@@ -1,0 +1,146 @@
+"""Light loads find their contact in loose lugs, where hardly more cells touch than hold the pin."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from fea.core.linear_solver import SolveError
+from fea.core.pin_loads import Floats
+from fea.support.contact.contact import ContactProblem, ContactState, rotation
+from fea.support.contact.least_energy import least_energy_cells
+from pinbase.arrays import Mask
+from tests.fea.support.contact.test_contact import resultants, small_and_loose
+
+GUIDED, ELASTIC = (math.inf, math.inf), (2e6, 2e6)
+
+
+def edged(
+    sectors: int, rings: int, gap: float, rounding: float, tilt: tuple[float, float]
+) -> ContactProblem:
+    """Two loose lugs of other tilt stiffness whose rims are further away by their rounding, m."""
+    x = (np.arange(rings) + 0.5) / rings
+    rim = rounding * (np.maximum(0.0, np.abs(x - 0.5) - 0.35) / 0.15) ** 2
+    return small_and_loose(sectors, rings).changed(gap + np.tile(rim, 2), tilt)
+
+
+def assert_contact(
+    contact: ContactProblem,
+    state: ContactState,
+    forces: Floats,
+    couple: tuple[float, float] = (0.0, 0.0),
+) -> None:
+    """Check all conditions of contact, the gaps computed again from the forces and motions."""
+    force = state.pressure.ravel() * contact.area
+    motion, *_ = np.linalg.lstsq(
+        contact._motions[state.active.ravel()],
+        -(contact._open + contact._compliance @ force)[state.active.ravel()],
+    )
+    size = np.abs(contact._open).max() + np.abs(contact._compliance @ force).max()
+    again = contact._open + contact._compliance @ force + contact._motions @ motion
+    assert force.min() >= 0.0
+    assert np.abs(again[force > 0.0]).max() < 1e-9 * size
+    assert state.gap.min() >= 0.0
+    if np.linalg.matrix_rank(contact._motions[force > 0.0]) == contact._motions.shape[1]:
+        assert again.min() > -1e-9 * size  # (otherwise motions are not unique)
+    ring, rings = resultants(contact, state), len(contact.bands.z) // 2
+    load = np.abs(forces).max()
+    assert np.add.reduceat(ring, [0, rings]) == pytest.approx(forces, abs=1e-9 * load)
+    z = contact.bands.z
+    x, y = (z - 0.5 * (z.min() + z.max())) @ ring
+    assert (x + couple[1], couple[0] - y) == pytest.approx((0.0, 0.0), abs=1e-9 * load)
+
+
+CIRCLES = {
+    "tilting": (edged(24, 6, 99.7e-6, 6.4e-6, ELASTIC), [[64.735, 0.0], [-64.808, 0.104]]),
+    "guided": (edged(24, 6, 35.5e-6, 83.8e-6, GUIDED), [[676.33, 0.0], [-675.62, -0.1724]]),
+    "fine": (edged(48, 12, 35.7e-6, 0.39e-3, GUIDED), [[163.8441, 0.0], [-163.8438, 5.43e-5]]),
+}
+
+
+@pytest.mark.parametrize("name", CIRCLES)
+def test_active_sets_that_run_in_circles(name: str) -> None:
+    """Pins whose own weight is part of the load: the active set alone does not find their contact,
+    from no larger load either.
+    """
+    contact, forces = CIRCLES[name]
+    at = np.array(forces)
+    assert (
+        contact._settled(
+            contact.required_resultants(at), contact._facing(contact._acting(at, None))
+        )
+        is None
+    )
+    assert_contact(contact, contact.solve(at), at)
+
+
+def test_random_light_loads_find_their_contact() -> None:
+    """Between 0.1 N and 100 kN, out of balance by up to a third or by next to nothing, also with
+    couples, in lugs loose by 10 to 200 um.
+    """
+    random = np.random.default_rng(7)
+    for _ in range(40):
+        tilt = (GUIDED, ELASTIC, (math.inf, 2e6))[random.integers(3)]
+        gap, rounding = 10.0 ** random.uniform((-5.3, -6.0), (-4.0, -3.3))
+        contact = edged(*((24, 6), (32, 8))[random.integers(2)], gap, rounding, tilt)
+        load = 10.0 ** random.uniform(-1.0, 5.0)
+        forces = load * np.array([[1.0, 0.0], [-1.0, 0.0]])
+        forces[1] += load * 10.0 ** random.uniform(-6.0, -0.5) * random.normal(size=2)
+        forces = forces @ rotation(random.choice([0.0, random.uniform(0.0, 6.0)]))
+        arm = random.choice([0.0, 1e-2]) * 10.0 ** random.uniform(-6.0, 0.0)
+        mx, my = load * arm * random.normal(size=2)
+        state = contact.solve(forces, (mx, my))
+        assert_contact(contact, state, forces, (mx, my))
+
+
+def test_a_first_guess_that_holds_a_lug_by_one_cell() -> None:
+    """Whose force no other cell takes, beside a lug that tilts easily: such a set of cells settles
+    out of balance, and must not be taken for a couple that no lug reacts.
+    """
+    random = np.random.default_rng(5)
+    contact = edged(24, 6, 50e-6, 20e-6, (math.inf, 2.0))
+    forces = np.array([[1e3, 0.0], [-1e3, 0.0]])
+    alone = 0
+    for _ in range(40):
+        start = np.zeros((12, 24), dtype=bool)
+        start[6:] = random.random((6, 24)) < random.choice([0.02, 0.5])
+        start[random.integers(6), random.integers(24)] = True
+        settled = contact._settled(contact.required_resultants(forces), start.ravel().copy())
+        alone += settled is None
+        assert_contact(contact, contact.solve(forces, start=start), forces)
+    assert alone  # some of them do not settle by themselves
+
+
+@pytest.mark.parametrize("load", [1.0, 1e3])
+def test_a_couple_that_no_lug_reacts_is_told(load: float) -> None:
+    """Of lugs free to tilt in single shear; the descent is asked, too, since it may be the one to
+    find out.
+    """
+    contact = edged(24, 6, 50e-6, 20e-6, (0.0, 0.0))
+    forces = load * np.array([[1.0, 0.0], [-1.0, 0.0]])
+    with pytest.raises(SolveError, match="no lug reacts"):
+        contact.solve(forces)
+    with pytest.raises(SolveError, match="no lug reacts"):
+        contact._by_energy(contact.required_resultants(forces))
+
+
+def test_least_energy_is_that_of_nonnegative_least_squares() -> None:
+    """|A x - b| over x >= 0 against SciPy, from zero and from a start."""
+    from scipy.optimize import nnls
+
+    random = np.random.default_rng(3)
+    for _ in range(20):
+        A, b = random.normal(size=(30, 25)), random.normal(size=30)
+
+        def least(active: Mask, A: Floats = A, b: Floats = b) -> tuple[Floats, Floats]:
+            x = np.zeros(A.shape[1])
+            x[active] = np.linalg.lstsq(A[:, active], b)[0]
+            return x, np.where(active, 0.0, A.T @ (A @ x - b))
+
+        exact, _ = nnls(A, b)
+        for start in (np.zeros(25), random.uniform(size=25)):
+            active, force = least_energy_cells(start, least, lambda _, overlaps, __: overlaps)
+            assert force == pytest.approx(exact, abs=1e-10)
+            assert (active == (exact > 0.0)).all()

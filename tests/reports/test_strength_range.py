@@ -1,0 +1,132 @@
+"""The range of a yield strength: what it decides alone, and with other ranges, and what is told.
+
+A factor is in proportion to the strength; the made-up rows require 1.5.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import pinstress
+from assess.judgement import DEPENDS, FAILS, SAFE
+from assess.strength.model_stress import YIELD_METHOD
+from pinstress.study.reading.errors import InputError
+from reports.data.dependence import TOGETHER, YIELD_STRENGTH, depends_on
+from reports.data.results import PinResult, Units
+from reports.data.unknowns import factor_spread, unknowns
+from reports.text.overview import flips, flips_words, measure_first, range_words
+from tests.reports.test_unknowns import pin
+
+UNITS = Units("in", "lbf", "psi", "s")
+STUDY = """
+title = "A pin of a steel whose yield strength lies between two values"
+units = "mm-N-s"
+[material.steel]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+yield_strength = "900 MPa"
+range = { yield_strength = ["LOW MPa", "1000 MPa"] }
+[analysis]
+required_safety_factor = 2.3
+tolerance = 0.05
+[case.pull]
+kind = "given"
+forces = { L = [0, 50000] }
+[pin.P]
+material = "steel"
+clamp = ["start"]
+fillet = 3
+profile = [{ length = 20, diameter = 60 }, { length = 40, diameter = 40, connection = "L" }]
+"""
+
+
+def over(row: PinResult, low: float, high: float) -> PinResult:
+    """A row whose strength lies between `low` and `high` times that of the study."""
+    strength = row.yield_strength or 0.0
+    row = replace(row, strength_range=(low * strength, high * strength))
+    return replace(row, depends_on=depends_on(row))
+
+
+def test_a_strength_that_alone_changes_the_outcome() -> None:
+    """2.0 * 0.7 = 1.4 is too low: from the strength at which the upper end of the error is 1.5."""
+    row = over(pin(2.0, None), 0.7, 1.1)
+    assert row.outcome == DEPENDS
+    (d,) = row.depends_on
+    stress, error, strength = row.max_von_mises, row.error_estimate, row.yield_strength
+    assert stress and error is not None and strength  # noqa: PT018
+    assert (d.what, d.over) == (YIELD_STRENGTH, "strength")
+    assert d.factor == pytest.approx(1.4)
+    assert d.at == pytest.approx(0.7 * strength)
+    assert d.flips_at == pytest.approx(1.5 * (stress + error))
+    assert over(pin(2.0, None), 0.8, 1.1).outcome == SAFE
+
+
+def test_a_pin_that_fails_is_safe_with_more_strength() -> None:
+    stronger = over(pin(1.2, None), 0.9, 1.5)
+    assert stronger.outcome == FAILS
+    assert [d.factor for d in stronger.depends_on] == pytest.approx([1.8])
+    assert over(pin(1.2, None), 0.9, 1.2).depends_on == ()
+
+
+def test_strength_and_joint_that_change_an_outcome_only_together() -> None:
+    """2.0 * 0.85 = 1.7 and 2.0 / 1.2 = 1.67 are enough, 2.0 * 0.85 / 1.2 = 1.42 is not."""
+    row = over(pin(2.0, (0.9, 1.2)), 0.85, 1.0)
+    assert row.outcome == DEPENDS
+    (d,) = row.depends_on
+    assert (d.what, d.over) == (TOGETHER, "strength and joint")
+    assert d.factor == pytest.approx(2.0 * 0.85 / 1.2)
+    assert flips(row, UNITS) == "the combined strength and joint range"
+    assert over(pin(2.0, (0.9, 1.2)), 0.95, 1.0).outcome == SAFE
+
+
+def test_the_strength_is_told_among_what_is_open() -> None:
+    row = over(pin(2.0, (0.9, 1.1)), 0.7, 1.2)
+    assert factor_spread(row) == pytest.approx((2.0 * 0.7 / 1.1, 2.0 * 1.2 / 0.9))
+    first, tilt = unknowns([row])
+    assert (first.what, tilt.what) == (YIELD_STRENGTH, "tilt")
+    ((_, value),) = first.rows
+    assert (value.low, value.high) == pytest.approx((1.4, 2.4))
+    assert flips_words(first, UNITS).startswith("yes: A may fail below 88,900 psi")
+    assert range_words(first, UNITS).endswith(" psi")
+    assert measure_first([first, tilt]) == ["Measure first: yield strength (A)."]
+
+
+def test_a_study_states_the_range(tmp_path: Path) -> None:
+    """367 MPa with an error below 5 %: 2.3 needs 844 to 886 MPa."""
+    path = tmp_path / "study.toml"
+    path.write_text(STUDY.replace("LOW", "800"))
+    (row,) = pinstress.run(pinstress.load_study(path)).pins
+    assert row.outcome == DEPENDS
+    (d,) = row.depends_on
+    assert d.given == pytest.approx(900.0)
+    assert 840.0 < (d.flips_at or 0.0) < 890.0
+    path.write_text(STUDY.replace("LOW", "890"))
+    assert pinstress.run(pinstress.load_study(path)).pins[0].outcome == SAFE
+    path.write_text(STUDY.replace("LOW", "950"))
+    with pytest.raises(InputError, match="between its lower and its upper end"):
+        pinstress.load_study(path)
+
+
+def test_checks_by_formula_hold_at_the_lower_end(tmp_path: Path) -> None:
+    """As if the study stated the lower end alone; the row's own margin against yield stays at the
+    value given, since the row depends on its range.
+    """
+    path = tmp_path / "study.toml"
+
+    def margins(text: str) -> dict[str, float | None]:
+        path.write_text(text)
+        (row,) = pinstress.run(pinstress.load_study(path)).pins
+        return {m.method: m.margin for m in row.worst}
+
+    ranged = margins(STUDY.replace("LOW", "800"))
+    alone = STUDY.replace('range = { yield_strength = ["LOW MPa", "1000 MPa"] }', "")
+    given, low = margins(alone), margins(alone.replace("900 MPa", "800 MPa"))
+    assert ranged.keys() == given.keys() == low.keys()
+    differ = {name for name in given if given[name] != low[name]}
+    assert len(differ) > 1
+    for name in differ:
+        expected = given if name == YIELD_METHOD else low
+        assert ranged[name] == pytest.approx(expected[name])
