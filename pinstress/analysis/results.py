@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -56,6 +56,13 @@ class RunResults(Results):
         Raises: KeyError that says which pins and cases there are.
         """
         return Row.of(super().__getitem__(row), self, self.to_pyvista)
+
+    def __len__(self) -> int:
+        return len(self.pins)
+
+    def __iter__(self) -> Iterator[Row]:
+        """Iterate over all rows, a pin in a case each."""
+        return (self[row.pin, row.case] for row in self.pins)
 
     def _repr_html_(self) -> str:
         return safety_factors_html(self)

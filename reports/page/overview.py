@@ -48,7 +48,7 @@ LABEL_AT_END = 12.0  # per cent of the axis: nearer to its left end, the label b
 LABEL_WIDTH = 20.0  # of "1.5 required", per cent of the axis: no tick is written so near to it
 MAX_CHECKS = 3  # of a row of the matrix by name
 MAX_MATRIX_PINS = 14  # columns of the matrix of requirements; of more pins it is left out here
-LONG_NAME = 16  # characters: longer names wrap, or stand upright, so that they do not push columns out
+LONG_NAME = 16  # characters: longer names wrap, or stand upright above a column
 MARKS = {
     FAILS: "✕", YIELDS: "✕", SAFE: "✓", BELOW_YIELD: "✓", DEPENDS: "◐", NOT_DECIDED: "?",
     "met": "✓", "missed": "✕", "not checked": "?",

@@ -42,10 +42,13 @@ return [...document.querySelectorAll("table.lines tbody tr")].map((tr) => ({
 """
 
 # Names as drawings have them, with and without spaces.
-LONG = {"pin.B": 'pin."Drag brace upper attachment pin LH-3221-0047-A"'}, {
-    "pin.B": 'pin."Hubzylinderlagerungsbolzen_am_Ausleger_Nr_0815"',
-    "case.landing": 'case."maximum braked landing, 25.493(b), aft centre of gravity"',
-}
+LONG = (
+    {"pin.B": 'pin."Drag brace upper attachment pin LH-3221-0047-A"'},
+    {
+        "pin.B": 'pin."Hubzylinderlagerungsbolzen_am_Ausleger_Nr_0815"',
+        "case.landing": 'case."maximum braked landing, 25.493(b), aft centre of gravity"',
+    },
+)
 # Texts of the table of pins that lie on a neighbour's.
 OVERLAPS = """
 const faults = [];
@@ -56,7 +59,8 @@ for (const tr of document.querySelectorAll("table.lines tbody tr")) {
     return range.getBoundingClientRect();
   });
   for (const [i, a] of rects.entries()) for (const b of rects.slice(i + 1))
-    if (a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1)
+    if (a.left < b.right - 1 && b.left < a.right - 1
+      && a.top < b.bottom - 1 && b.top < a.bottom - 1)
       faults.push(tr.textContent.slice(0, 60));
 }
 return faults;
