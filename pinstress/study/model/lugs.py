@@ -283,10 +283,10 @@ def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Mater
         middle if given.clearance is None else given.clearance,
         given.edge_radius,
         tilt,
-        bushing,
-        _range(given.range, fit),
-        None if given.shank is None else _shank(given.shank, outer),
-        given.friction,
+        bushing=bushing,
+        range=_range(given.range, fit),
+        shank=None if given.shank is None else _shank(given.shank, outer),
+        friction=given.friction,
         axial=(given.axial, given.axial) if isinstance(given.axial, str) else given.axial,
     )
 
