@@ -110,9 +110,12 @@ class RunResults(Results):
         import pyvista
 
         from reports.vtk.fields import block
+        from reports.vtk.index import origin_data
         from reports.vtk.writer import grid
 
         content = block(self._field(pin, case), self.units)
+        whole = {**content.whole, **origin_data(self, self[pin, case])}
+        content = dataclasses.replace(content, whole=whole)
         mesh: pyvista.UnstructuredGrid = pyvista.wrap(grid(content))
         return mesh
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from shutil import copyfileobj
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
@@ -97,6 +98,48 @@ def _array(name: str, values: NDArray[Any] | Sequence[str], seven: bool) -> Any:
 def _numbers(values: NDArray[Any]) -> NDArray[Any]:
     kind = np.float32 if values.dtype == np.float64 else None
     return np.ascontiguousarray(values, dtype=kind)
+
+
+def add_field_data(path: Path, data: Data) -> None:
+    """Add data of the whole to a VTU or VTM file of this module.
+
+    Raises: OSError.
+    """
+    arrays = "".join(map(_field_array, data, data.values()))
+    whole = f"<FieldData>\n{arrays}</FieldData>\n"
+    extended = path.with_name(path.name + ".extended")
+    with (
+        path.open(encoding="utf-8") as old,
+        extended.open("w", encoding="utf-8", newline="\n") as new,
+    ):
+        for line in old:
+            match line.strip():
+                case "<FieldData>":
+                    new.write(line + arrays)
+                    break
+                case "</VTKFile>":  # of a VTM file
+                    new.write(whole + line)
+                    break
+                case text if text.startswith("<Piece "):
+                    new.write(whole + line)
+                    break
+            new.write(line)
+        copyfileobj(old, new)
+    extended.replace(path)
+
+
+def _field_array(name: str, values: NDArray[Any] | Sequence[str]) -> str:
+    """Return an array of field data as VTK writes it in ASCII: of texts their signed bytes."""
+    if isinstance(values, np.ndarray):
+        tag, kind, numbers = "DataArray", "Float64", [repr(float(x)) for x in values]
+    else:
+        tag, kind = "Array", "String"
+        content = b"".join(text.encode() + b"\0" for text in values)
+        numbers = [str(x) for x in np.frombuffer(content, np.int8)]
+    return (
+        f"<{tag} type={quoteattr(kind)} Name={quoteattr(name)} "
+        f'NumberOfTuples="{len(values)}" format="ascii">{" ".join(numbers)}</{tag}>\n'
+    )
 
 
 def write_multiblock(blocks: Mapping[str, str], path: Path) -> None:
