@@ -439,8 +439,8 @@ class Circumference:
         return value, angle
 
     def crests(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
-        """As `round` at points that are read all round; to the last bit the same whichever other
-        pairs are evaluated.
+        """The same as `round` at points that are read all round, but to the last bit the same
+        whichever other pairs are evaluated.
         """
         n = self._n[[wave.start for wave in self._waves]]
         back, forth = self._waves_apart(points, instants)
@@ -458,7 +458,7 @@ class Circumference:
         return Circumference(self.fields, self._loads.at(np.array([instant])), self.region)
 
     def _waves_apart(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
-        """As `_pair_waves` of all harmonics, each pair summed by itself."""
+        """The factors of `_pair_waves` for all harmonics, each pair summed by itself."""
         five, starts = self._five[points], [wave.start for wave in self._waves]
         summed = (
             np.add.reduceat(five * x[instants][:, None], starts, axis=2)
