@@ -47,7 +47,7 @@ class Beneath:
 class Away:
     """The part of the circumference farther than BENEATH_DISTANCE diameters from pressed cells.
 
-    points: (S, 2) m. It is a Region of fea.harmonic.superposition.
+    points: (S, 2) m. It is a Region of fea.harmonic.superposed_stress.
     """
 
     def __init__(self, points: Floats, pressed: PressedArcs) -> None:

@@ -23,7 +23,8 @@ import numpy as np
 from fea.core.pin_loads import Loads
 from fea.core.pressed import ARC_ANGLES, ARC_COUNT, RING_END_TOLERANCE, PressedArcs, Rings
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.superposition import ALL_INSTANTS, Circumference
+from fea.harmonic.superposed_stress import ALL_INSTANTS
+from fea.harmonic.superposition import Circumference
 from fea.harmonic.surface_stress import EDGE_STATIONS
 from pinbase.arrays import Floats, Ints, Mask
 

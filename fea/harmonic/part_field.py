@@ -44,7 +44,7 @@ class PartMaximum:
 
 class BeneathFree:
     """The part of the circumference beneath free surface: within a band on no arc that its lug
-    presses anywhere along it, or one sector beside it (fea.harmonic.superposition.Region).
+    presses anywhere along it, or one sector beside it (fea.harmonic.superposed_stress.Region).
 
     points: (S, 2) m.
     away: the part farther than BENEATH_DISTANCE diameters from pressed cells, and from the ends of

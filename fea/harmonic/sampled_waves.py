@@ -43,7 +43,7 @@ def crest_all_round(n: Ints, back: Floats, forth: Floats, beat: Floats) -> tuple
 
 
 def steady_crests(n: Ints, back: Floats, forth: Floats) -> tuple[Floats, Floats]:
-    """As `crest_all_round`, to the last bit the same whatever rows are found with it.
+    """Return what `crest_all_round` does, to the last bit the same whatever rows are given with it.
 
     Each row takes the same operations in the same order: sums over its own samples, and a fixed
     number of Newton's steps from all of its samples that may be next to the highest crest.

@@ -40,7 +40,7 @@ USUAL_AROUND = 96  # elements and sectors around the bore
 
 @dataclass(frozen=True)
 class LugLoad:
-    """What the joint does to one lug in one case, at T instants.
+    """The load of a joint on one lug in one case, at T instants.
 
     force: of the pin on the lug, (T, 2) N in the pin's axes.
     pressure: harmonics (N + 1, T, R, 2) Pa of the pressure on its R rings, in the pin's axes.

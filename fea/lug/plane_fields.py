@@ -42,7 +42,7 @@ class Elasticity:
 
 @dataclass(frozen=True)
 class Wall:
-    """What a cylindrical wall does under K unit loads, at points around it.
+    """The stresses of a cylindrical wall under K unit loads, at points around it.
 
     angles: (P,) rad, equally spaced from 0 on.
     hoop, radial, shear: stresses (K, P), per pressure; of the last load, the misfit, per strain

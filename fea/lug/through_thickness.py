@@ -38,7 +38,7 @@ class EyeStress:
     hole: Floats | None = None
 
     def added(self, waves: Floats, length: Floats, hole: bool = False) -> Floats:
-        """What is added to the stress of a plane eye under the mean pressure, (N + 1, T, R, 2) Pa
+        """The addition to the stress of a plane eye under the mean pressure, (N + 1, T, R, 2) Pa
         by phase; its mean through the thickness is zero under an even pressure.
 
         waves: harmonics (N + 1, T, R, 2) of the pressures, Pa. length: of the rings, (R,) m.

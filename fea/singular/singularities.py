@@ -254,7 +254,7 @@ def _shearing(pin: Pin, case: PinLoads) -> Iterator[UnitLoad]:
 
 
 def _load_advice(pin: Pin, zone: Zone, acting: Collection[UnitLoad]) -> str:
-    """What would make stress finite at the edge of a load, by the loads on its band, for people."""
+    """Return what would make stress finite at the edge of a load, by the loads on its band."""
     here = {load for load in acting if pin.surface(load.surface) in zone.between}
     causes = {
         _TRACTION_ADVICE: any(x.kind == "force" and x.n == 1 for x in here),

@@ -112,8 +112,8 @@ class PinProblem:
         return tuple(out)
 
     def _seats(self) -> dict[str, tuple[str, str]]:
-        """Where the axial forces of links in lugs enter, of all that exert some; a pin with cuts
-        takes them on the bands alone.
+        """The seats at which axial forces of links in lugs enter, by the links that exert some; a
+        pin with cuts takes them on the bands alone.
         """
         pin = body_of_revolution(self.pin)
         if pin is None or not self.lugs:

@@ -83,7 +83,7 @@ class Equations(Protocol):
 
     @property
     def besides_lengths(self) -> tuple[tuple[str, str], ...]:
-        """What decides besides lengths whether redundant links close, and where it is described."""
+        """The needs of redundant links to close, besides their lengths, and what describes each."""
         ...
 
     def moving(self, pose: Any, rates: Floats, least: float = MIN_PARTICIPATION) -> tuple[str, ...]:

@@ -23,7 +23,7 @@ class PlanarEquations(Loops):
 
     @property
     def besides_lengths(self) -> tuple[tuple[str, str], ...]:
-        """What decides besides lengths whether redundant links close, and where it is described."""
+        """The needs of redundant links to close, besides their lengths, and what describes each."""
         return CLOSING_GEARS * bool(self.linkage.teeth)
 
     @cached_property

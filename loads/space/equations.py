@@ -293,7 +293,7 @@ class SpaceEquations:
 
     @property
     def besides_lengths(self) -> tuple[tuple[str, str], ...]:
-        """What decides besides lengths whether redundant links close, and where it is described."""
+        """The needs of redundant links to close, besides their lengths, and what describes each."""
         axes = ("the directions of its axes", "their axes")
         return axes, *CLOSING_GEARS * bool(self.linkage.ratios)
 

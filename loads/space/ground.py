@@ -142,7 +142,7 @@ def body_momenta(motion: SpaceMotion, ground: Ground | None = None) -> BodyMomen
 
 @dataclass(frozen=True)
 class GroundInertia:
-    """What the motion of the ground adds to inertia and weight of all bodies, as a load."""
+    """The inertia and weight that the motion of the ground adds to all bodies, as a load."""
 
     ground: Ground
 

@@ -68,7 +68,7 @@ def _skeleton(text: bytes) -> bytes:
 
 
 def _repeated(skeleton: bytes, row: bytes) -> int:
-    """How often a row stands at the end."""
+    """Return how often a row stands at the end."""
     count, end = 0, len(skeleton)
     while skeleton.endswith(row, 0, end):
         count, end = count + 1, end - len(row)

@@ -141,7 +141,7 @@ class _Solver:
         return _Iterate(x, np.zeros(rows), centre, scale * centre, many)
 
     def residuals(self, now: _Iterate) -> Residuals:
-        """What is left of the rows (R,); of no change of volume (N,); of the strain rates (2, N);
+        """The residuals of the rows (R,), of constant volume (N,), of the strain rates (2, N) and
         of the loads' velocities (L,).
         """
         n, back = self.points, self.transposed @ now.y

@@ -40,8 +40,8 @@ FALL = 0.015  # of the largest load: then it has been passed
 
 @dataclass(frozen=True)
 class PullCurve:
-    """How a pin is pulled: its way (S,), the load per thickness (S,) and the largest equivalent
-    plastic strain (S,).
+    """The pull of a pin: its displacement (S,), the load per thickness (S,) and the largest
+    equivalent plastic strain (S,).
     """
 
     pin: Lengths

@@ -130,7 +130,7 @@ def _stated(pin: Pin, lug: Lug, side: int) -> str:
 
 
 def seats_note(links: PinLoads, lugs: Sequence[Lug]) -> Reason | None:
-    """What takes the axial forces of a case, as the end of a note; None without any."""
+    """Return what takes the axial forces of a case, as the end of a note; None without any."""
     names = {lug.connection for lug in lugs}
     parts = []
     for c, name in enumerate(links.surfaces):

@@ -82,17 +82,19 @@ class Damage:
         """The removed keys or elements of a table or list."""
         return [p[-1] for p in self.places if p[:-1] == place]
 
-    def shortened(self, place: Place) -> list[str | int]:
-        """The keys of a table whose lists have lost elements."""
-        depth = len(place)
-        lost = (p for p in self.places if p[:depth] == place and len(p) == depth + 2)
-        return [p[depth] for p in lost if isinstance(p[-1], int)]
+    def reduced(self, place: Place, by_any: bool) -> list[str | int]:
+        """The keys of a table, or elements of a list, that have lost all that was in them.
 
-    def emptied(self, place: Place) -> list[str]:
-        """The keys of a table whose own tables or lists have lost all that was in them."""
-        table = self.part(place)
-        inner = table.items() if isinstance(table, dict) else ()
-        return [k for k, v in inner if v and self._without(v, (*place, k)) in ({}, [])]
+        by_any: also of lists that have lost any element.
+        """
+        node = self.part(place)
+        listed = dict(enumerate(node)) if isinstance(node, list) else {}
+        return [
+            k
+            for k, v in (node if isinstance(node, dict) else listed).items()
+            if (v and self._without(v, (*place, k)) in ({}, []))
+            or (by_any and isinstance(v, list) and self.children((*place, k)))
+        ]
 
     def remainder(self) -> Any:
         """The study without the removed parts."""

@@ -99,9 +99,7 @@ def _follows(item: dict[str, Any], place: Place, damage: Damage) -> bool:
     if damage.touches(DIMENSION) and place[:1] == DIMENSION[:1]:
         return True  # which of a plane or of space the linkage is read as
     table = place[:-1] if item["type"] == "missing" else place
-    removed = [*damage.children(table), *damage.emptied(table)]
-    if item["type"] == "value_error":
-        removed += damage.shortened(table)
+    removed = [*damage.children(table), *damage.reduced(table, item["type"] == "value_error")]
     if place in damage.places or any(isinstance(child, int) for child in removed):
         return True
     if not removed:

@@ -52,7 +52,7 @@ class FkmTable(StrictTable):
 
 
 class FatigueTable(StrictTable):
-    """How often cases occur, and how fatigue is assessed."""
+    """The numbers of occurrences of cases, and the method by which fatigue is assessed."""
 
     unit: str = "flight"
     """Name of what occurrences are counted in."""

@@ -241,7 +241,7 @@ class FactorTable(StrictTable):
 
 
 class SpinUpTable(StrictTable):
-    """What the spin-up drag of appendix D to part 23 depends on."""
+    """The data from which appendix D to part 23 finds the spin-up drag."""
 
     inertia: Annotated[Inertia, POSITIVE]
     """Moment of inertia of the wheel about the axle."""
@@ -303,7 +303,7 @@ class GroundCase(AtWheel):
 
     @property
     def stands(self) -> Literal["left", "right", "nose"]:
-        """Where the leg is on the aircraft."""
+        """The position of the leg on the aircraft."""
         return self.leg or ("nose" if (self.rule or "").startswith("23.499") else "left")
 
     @property

@@ -327,8 +327,8 @@ Ratios = Annotated[list[Annotated[Number, Field(ge=1e-18, le=1e18)]], Field(min_
 
 
 class SharingTable(StrictTable):
-    """How redundant connections share their load, as springs in parallel; or how drives in parallel
-    (two lift cylinders), of which one is driven, share their force.
+    """Springs in parallel, by which redundant connections share their load, or by which drives in
+    parallel (two lift cylinders), of which one is driven, share their force.
     """
 
     connections: Annotated[list[str], Field(min_length=1)] | None = None

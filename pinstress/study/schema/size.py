@@ -18,7 +18,7 @@ Series = Annotated[
 
 
 class SizeTable(StrictTable):
-    """What `pinstress size` may do; `run` ignores it."""
+    """The limits within which `pinstress size` may change a pin; `run` ignores them."""
 
     largest_diameter: PositiveLength | None = None
     """Largest diameter of a pin, shoulders included. Default: no limit."""

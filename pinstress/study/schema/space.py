@@ -320,7 +320,7 @@ class SpaceTorsionSpringTable(TorsionLawTable):
 
 
 class SpaceSharingTable(StrictTable):
-    """How redundant connections share their load, as springs in parallel."""
+    """Springs in parallel, by which redundant connections share their load."""
 
     connections: Annotated[list[str], Field(min_length=1)]
     """The redundant connections."""

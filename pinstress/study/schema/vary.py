@@ -15,8 +15,8 @@ Triple = tuple[Coordinate, Coordinate, Coordinate]
 
 
 class ParameterTable(StrictTable):
-    """How one number varies: by `from` and `to`, or by one law. All values are numbers in the
-    study's units, or texts with a unit.
+    """The range of one number by `from` and `to`, or the law by which it varies. All values are
+    numbers in the study's units, or texts with a unit.
     """
 
     from_: Annotated[Coordinate | None, Field(alias="from")] = None
@@ -62,7 +62,7 @@ PROBABILITY_LAWS = ("uniform", "normal", "lognormal", "triangular", "tolerance")
 
 
 class CorrelationTable(StrictTable):
-    """How two numbers with normal laws vary together."""
+    """The correlation of two numbers with normal laws."""
 
     between: tuple[str, str]
     """Keys of two of the parameters, which have normal laws without `within`."""
@@ -71,7 +71,7 @@ class CorrelationTable(StrictTable):
 
 
 class VaryTable(StrictTable):
-    """Which numbers of the study `pinstress sweep` varies, and which designs it samples."""
+    """The numbers of the study that `pinstress sweep` varies, and the designs that it samples."""
 
     sample: Literal["grid", "sobol", "latin-hypercube", "random"] = "grid"
     """The designs: all combinations of `steps` values ("grid"), or `count` points of a scrambled
@@ -88,8 +88,8 @@ class VaryTable(StrictTable):
 
 
 class ReliabilityTable(StrictTable):
-    """Which failure and which probability `pinstress reliability` looks at, and how many designs it
-    solves. Random are the numbers in `[vary.parameters]` that have a law.
+    """The failure and the probability at which `pinstress reliability` looks, and the number of
+    designs that it solves. Random are the numbers in `[vary.parameters]` that have a law.
     """
 
     factor: Annotated[Number, Field(gt=0.0)] = 1.0

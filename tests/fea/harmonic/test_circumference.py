@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.voigt import von_mises
-from fea.harmonic import superposition as circumference
+from fea.harmonic import superposed_stress, superposition
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference
 from geometry import ArgumentError
@@ -152,7 +152,7 @@ def test_chunks_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     fields = unit_fields(loads, 50, seed=3)
     pairs = np.arange(50), np.zeros(50, dtype=np.int64)
     whole = Circumference(fields, loads).round(*pairs)
-    monkeypatch.setattr(circumference, "PAIR_BATCH", 7)
+    monkeypatch.setattr(superposed_stress, "PAIR_BATCH", 7)
     parts = Circumference(fields, loads).round(*pairs)
     assert parts[0] == pytest.approx(whole[0], rel=1e-13)
     # angles may differ: those of two crests, one the other's mirror image, tie
@@ -234,7 +234,7 @@ def test_loads_that_hardly_change_are_not_evaluated_at_every_instant(
     assert top.value == pytest.approx(every.max(), rel=1e-12)
     assert every[:, top.instant].max() == pytest.approx(top.value, rel=1e-12)
     few, evaluated[0] = evaluated[0], 0
-    monkeypatch.setattr(circumference, "ANCHORS", 1000)  # more than there are instants
+    monkeypatch.setattr(superposition, "ANCHORS", 1000)  # more than there are instants
     assert around.top(among) == top
     assert few < 0.1 * evaluated[0]
 

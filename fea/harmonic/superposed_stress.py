@@ -1,0 +1,356 @@
+"""The von Mises stress over the circumference, by superposing unit fields of harmonics.
+
+In the metric of von Mises a stress is five numbers whose squares sum to the equivalent stress
+squared (fea.harmonic.five_numbers); over the circumference three of them vary as cos psi and two as
+sin psi.
+
+One harmonic alone: the square is a quadratic form of (cos n theta, sin n theta) with entries A, B,
+C, so its maximum is known in closed form:
+
+    (A + C) / 2 + sqrt(((A - C) / 2)^2 + B^2)
+
+Several harmonics: von Mises squared is a trigonometric polynomial, so samples determine its highest
+crest (fea.harmonic.trigonometric_maximum).
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+
+from fea.core.pin_loads import Loads, require_solved
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.five_numbers import COS, COSINE_COMPONENTS, EVEN_COUNT, SIN, numbers
+from fea.harmonic.sampled_waves import (
+    crest_all_round,
+    crest_where_read,
+    sampled,
+    steady_crests,
+)
+from fea.harmonic.trigonometric_maximum import form_maximum, one_wave
+from pinbase.arrays import Floats, Ints, Mask
+
+Instants = slice | Ints
+
+# The sizes below change the time, never the result; chosen by judgement.
+PAIR_BATCH = 4096  # pairs of points and instants at once: limits the memory of their samples
+# Points and angles of an envelope at once: their samples stay in the cache. Tuned on 240 instants
+# of 13 harmonics, where 16 points at all 120 angles took three times as long.
+CACHED_POINT_BATCH, CACHED_ANGLE_BATCH = 4, 24
+# Unit loads of one harmonic up to which quadratic forms take fewer operations than summed stresses.
+MAX_QUADRATIC_FORM_LOADS = 4
+ALL_INSTANTS = slice(None)
+ROUND_OFF = 1e-12  # relative, of a stress
+
+
+class Region(Protocol):
+    """The part of the circumference on which each point is read, instant by instant."""
+
+    def masked(self, points: Ints) -> Mask:
+        """Mask (J,) of the points (J,) that are read on a part of the circumference only."""
+        ...
+
+    def read(self, points: Ints, instants: Ints) -> Mask:
+        """The arcs (J, ARC_COUNT) on which pairs of points and instants, (J,) each, are read.
+
+        Source of the arcs: fea.core.pressed.
+        """
+        ...
+
+
+class SuperposedStress:
+    """The von Mises stress of one case at all points of a section, at any instant and angle.
+
+    fields: of the unit loads at S points.
+    loads: T instants of the case.
+    region: where on the circumference points are read; all round by default.
+
+    Raises: ArgumentError when a unit load that acts is not among the fields.
+    """
+
+    def __init__(self, fields: MeridianFields, loads: Loads, region: Region | None = None) -> None:
+        self.region, self._loads = region, loads
+        acting = loads.coefficients()
+        require_solved(loads.case, acting, fields.loads)
+        units = sorted(acting, key=lambda load: load.n)
+        by_phase = np.zeros((len(loads), len(units), 2))
+        for k, load in enumerate(units):
+            by_phase[:, k] = acting[load]
+        self.count = len(loads)
+        self.points = len(fields.points)
+        self._first, self._second = by_phase[..., 0], by_phase[..., 1]  # (T, K)
+        self._at = tuple(fields.loads.index(load) for load in units)
+        unit_numbers = numbers(fields, self._at)
+        self.fields, self._five, self._unit_reach = fields, unit_numbers.five, unit_numbers.reach
+        self._n = np.array([load.n for load in units], dtype=np.int64)
+        starts = np.flatnonzero(np.diff(self._n, prepend=-1))
+        self._amount_products: dict[int, tuple[Floats, Floats, Floats]] = {}
+        self._waves = [slice(*ends) for ends in itertools.pairwise([*starts, len(units)])]
+
+    @property
+    def twists(self) -> bool:
+        """Whether nothing but torsion acts."""
+        return not self._n.any() and not self._first.any()
+
+    @property
+    def odd(self) -> bool:
+        """Whether only odd harmonics act, so that stresses change sign over half a turn."""
+        return bool((self._n % 2 == 1).all())
+
+    def bound(self, points: Ints, instants: Instants = ALL_INSTANTS) -> Floats:
+        """An upper bound (J, T), Pa, of the von Mises stress over the circumference.
+
+        points: (J,) numbers.
+        instants: T of them, all by default. Exact where one harmonic acts alone.
+        """
+        return self._sum(points, self._waves, instants)
+
+    def _sum(self, points: Ints, waves: Sequence[slice], instants: Instants) -> Floats:
+        """The sum (J, T), Pa, of the maxima of some harmonics, each taken by itself."""
+        out = np.zeros((len(points), len(self._first[instants])))
+        for wave in waves:
+            out += self._of_harmonic(points, wave, instants)
+        return out
+
+    @property
+    def highest(self) -> int:
+        """The highest harmonic that acts, 0 if none does."""
+        return int(self._n[-1]) if len(self._n) else 0
+
+    def _of_harmonic(self, points: Ints, wave: slice, instants: Instants = ALL_INSTANTS) -> Floats:
+        """The largest von Mises stress (J, T), Pa, of one harmonic by itself.
+
+        wave: the columns of its unit loads.
+        """
+        five = self._five[points, :, wave]
+        if wave.stop - wave.start > MAX_QUADRATIC_FORM_LOADS:
+            return self._of_summed_loads(five, wave, instants)
+        # The square is quadratic in the load amounts: its forms are built once per point and
+        # contracted with the products of amounts at each instant.
+        first, second, mixed = (x[instants] for x in self._products(wave))
+        even, odd = (x.swapaxes(1, 2) @ x for x in (five[:, COS], five[:, SIN]))
+        if self._n[wave.start] == 0:
+            # n = 0: nothing varies over the circumference, so the square itself is the maximum.
+            square = _forms(even, first) + _forms(odd, second)
+        else:
+            apart = even - odd
+            total = _forms(even + odd, first + second)
+            square = form_maximum(total, _forms(apart, first - second), _forms(apart, mixed))
+        return np.sqrt(np.maximum(square, 0.0, out=square), out=square)
+
+    def _of_summed_loads(self, five: Floats, wave: slice, instants: Instants) -> Floats:
+        """The same for stresses (J, 5, K), which are summed over the loads first."""
+        first, second = self._first[instants, wave].T, self._second[instants, wave].T
+        flat = np.ascontiguousarray(five).reshape(-1, five.shape[2])
+        shape = (len(five), 5, first.shape[1])
+        one, other = ((flat @ x).reshape(shape) for x in (first, second))
+        if self._n[wave.start] == 0:
+            square = np.square(one[:, COS]).sum(axis=1) + np.square(other[:, SIN]).sum(axis=1)
+        else:
+            # The sine parts lag by a quarter wave, so their phases swap places, one with its sign
+            # changed. Then `one` multiplies cos n theta and `other` sin n theta in all five
+            # numbers.
+            one[:, SIN], other[:, SIN] = -other[:, SIN], one[:, SIN].copy()
+            A, C = np.square(one).sum(axis=1), np.square(other).sum(axis=1)
+            square = form_maximum(A + C, A - C, np.einsum("jit,jit->jt", one, other))
+        return np.asarray(np.sqrt(np.maximum(square, 0.0)))
+
+    def _products(self, wave: slice) -> tuple[Floats, Floats, Floats]:
+        """Products (T, K, K) of the amounts of two unit loads of a harmonic at each instant.
+
+        They are those of both first phases, of both second phases, and of one of each.
+        """
+        if wave.start not in self._amount_products:
+            a, b = self._first[:, wave], self._second[:, wave]
+            aa, bb, ab = (x[:, :, None] * y[:, None, :] for x, y in ((a, a), (b, b), (a, b)))
+            self._amount_products[wave.start] = aa, bb, ab
+        return self._amount_products[wave.start]
+
+    def reach(self, points: Ints, instants: Instants = ALL_INSTANTS) -> Floats:
+        """The loosest bound (J, T), Pa: the sum over unit loads of the most that each does."""
+        # The factor covers round-off, so that a bound is never below the value that it bounds.
+        return np.asarray(
+            (self._unit_reach[points] @ self._amplitudes[:, instants]) * (1.0 + ROUND_OFF)
+        )
+
+    @cached_property
+    def _amplitudes(self) -> Floats:
+        """Amounts (K, T) of the unit loads irrespective of their phase."""
+        return np.ascontiguousarray(np.hypot(self._first, self._second).T)
+
+    def round(
+        self, points: Ints, instants: Ints, beat: Floats | None = None
+    ) -> tuple[Floats, Floats]:
+        """The largest von Mises stress (J,), Pa, over the circumference, and its angle (J,), rad.
+
+        points, instants: (J,) each, pairs of them.
+        beat: (J,) Pa; where a pair cannot exceed it, any value below it may be returned.
+        """
+        beat = np.zeros(len(points)) if beat is None else beat
+        value, angle = np.zeros(len(points)), np.zeros(len(points))
+        for k in range(0, len(points), PAIR_BATCH):
+            here = np.arange(k, min(k + PAIR_BATCH, len(points)))
+            some = np.zeros(len(here), dtype=bool)
+            if self.region is not None:
+                some = self.region.masked(points[here])
+            for find, rows in (
+                (self._crests_all_round, here[~some]),
+                (self._crests_where_read, here[some]),
+            ):
+                if len(rows):
+                    value[rows], angle[rows] = find(points[rows], instants[rows], beat[rows])
+        return value, angle
+
+    def crests(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
+        """The same as `round` at points that are read all round, but to the last bit the same
+        whichever other pairs are evaluated.
+        """
+        n = self._n[[wave.start for wave in self._waves]]
+        back, forth = self._waves_apart(points, instants)
+        return steady_crests(n, back, forth)
+
+    def last_at(self, points: Ints, instants: Ints) -> Floats:
+        """The largest stress (J,), Pa, of the highest harmonic alone at pairs, as steadily."""
+        if not self._waves:
+            return np.zeros(len(points))
+        back, forth = (np.array(x[:, :, -1:]) for x in self._waves_apart(points, instants))
+        return one_wave(self._n[-1:], back, forth)[0]
+
+    def _waves_apart(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
+        """The factors of `_pair_waves` for all harmonics, each pair summed by itself."""
+        five, starts = self._five[points], [wave.start for wave in self._waves]
+        summed = (
+            np.add.reduceat(five * x[instants][:, None], starts, axis=2)
+            for x in (self._first, self._second)
+        )
+        # In C order, so that later sums run along memory however many pairs there are.
+        a, b = (np.ascontiguousarray(x) for x in summed)
+        back, forth = a.copy(), b.copy()
+        back[:, SIN], forth[:, SIN] = -b[:, SIN], a[:, SIN]
+        return back, forth
+
+    def _crests_where_read(
+        self, points: Ints, instants: Ints, beat: Floats
+    ) -> tuple[Floats, Floats]:
+        """The same as `round` at points that are read on a part of the circumference only."""
+        assert self.region is not None
+        n = self._n[[wave.start for wave in self._waves]]
+        read = self.region.read(points, instants)
+        back, forth = self._pair_waves(points, instants, self._waves)
+        return crest_where_read(n, back, forth, read)
+
+    def _crests_all_round(
+        self, points: Ints, instants: Ints, beat: Floats
+    ) -> tuple[Floats, Floats]:
+        """The same as `round` at points that are read all round."""
+        n = self._n[[wave.start for wave in self._waves]]
+        back, forth = self._pair_waves(points, instants, self._waves)  # (J, 5, W)
+        return crest_all_round(n, back, forth, beat)
+
+    def _samples(self, points: Ints, instants: Ints, waves: Sequence[slice], degree: int) -> Floats:
+        """Von Mises squared (J, A), Pa^2, of some harmonics together at equally spaced angles."""
+        n = self._n[[wave.start for wave in waves]]
+        return sampled(n, *self._pair_waves(points, instants, waves), degree)
+
+    def _pair_waves(
+        self, points: Ints, instants: Ints, waves: Sequence[slice]
+    ) -> tuple[Floats, Floats]:
+        """The factors (J, 5, W) of cos n theta, and of sin n theta, in the five numbers.
+
+        points, instants: (J,) each.
+        waves: W harmonics.
+        """
+        back, forth = (np.empty((len(points), 5, len(waves))) for _ in range(2))
+        one, i = np.unique(points, return_inverse=True)
+        now, t = np.unique(instants, return_inverse=True)
+        for w, wave in enumerate(waves):
+            five = np.ascontiguousarray(self._five[one, :, wave])
+            a, b = ((five @ x[now, wave].T)[i, :, t] for x in (self._first, self._second))
+            # As in `_of_summed_loads`: the sine parts lag by a quarter wave.
+            back[:, :EVEN_COUNT, w], back[:, EVEN_COUNT:, w] = a[:, :EVEN_COUNT], -b[:, EVEN_COUNT:]
+            forth[:, :EVEN_COUNT, w], forth[:, EVEN_COUNT:, w] = (
+                b[:, :EVEN_COUNT],
+                a[:, EVEN_COUNT:],
+            )
+        return back, forth
+
+    def envelope(self, points: Ints, angles: Floats, read: Mask | None = None) -> Floats:
+        """The largest von Mises stress (J, A), Pa, over all instants.
+
+        points: (J,) numbers.
+        angles: (A,) rad.
+        read: (A, J, T) where it counts, everywhere by default. -1 where it never does.
+        """
+        parts = (
+            slice(k, k + CACHED_POINT_BATCH) for k in range(0, len(points), CACHED_POINT_BATCH)
+        )
+        out = [
+            self._squares_over_time(points[part], angles, None if read is None else read[:, part])
+            for part in parts
+        ]
+        square = np.concatenate([np.zeros((0, len(angles))), *out])
+        return np.where(square < 0.0, -1.0, np.sqrt(np.maximum(square, 0.0)))
+
+    def _squares_over_time(self, points: Ints, angles: Floats, read: Mask | None) -> Floats:
+        """The largest square (J, A), Pa^2, over all instants.
+
+        The five numbers of each harmonic are found once; then they are combined at each angle.
+        """
+        turns = np.outer(angles, self._n[[wave.start for wave in self._waves]])
+        c, s = np.cos(turns), np.sin(turns)
+        parts = []
+        for part, signed in ((COS, (c, s)), (SIN, (s, -c))):
+            five = np.ascontiguousarray(self._five[points, part].swapaxes(0, 1))
+            five = five.reshape(five.shape[0] * five.shape[1], five.shape[2])
+            amounts = [
+                (five[:, wave] @ phase[wave]).ravel()
+                for phase in (self._first.T, self._second.T)
+                for wave in self._waves
+            ]
+            if amounts:
+                parts.append((np.concatenate(signed, axis=1), np.stack(amounts)))
+        out = np.empty((len(points), len(angles)))
+        for k in range(0, len(angles), CACHED_ANGLE_BATCH):
+            here = slice(k, k + CACHED_ANGLE_BATCH)
+            total = np.zeros((len(angles[here]), len(points) * self.count))
+            for factors, amount in parts:
+                # Each of the five numbers is combined from all harmonics at each angle, squared
+                # and summed.
+                at = (factors[here] @ amount).reshape(len(total), -1, total.shape[1])
+                total += np.square(at, out=at).sum(axis=1)
+            square = total.reshape(len(total), len(points), self.count)
+            if read is not None:
+                square[~read[here]] = -1.0
+            out[:, here] = square.max(axis=2).T
+        return out
+
+    def stress(self, points: Ints, instant: int, angles: Floats) -> Floats:
+        """Stress (J, A, 6), Pa, at an instant: rr, tt, zz, tz, rz, rt.
+
+        points: (J,) numbers.
+        angles: (A,) rad.
+        """
+        # The loads of a harmonic are summed first, then harmonics at each angle.
+        here = self.fields.stress[points]
+        summed = np.empty((2, len(self._waves), len(points), 6))
+        for w, wave in enumerate(self._waves):
+            unit = here[:, :, self._at[wave]]
+            for phase, amounts in enumerate((self._first, self._second)):
+                summed[phase, w] = unit @ amounts[instant, wave]
+        turns = np.outer(angles, self._n[[wave.start for wave in self._waves]])
+        c, s = np.cos(turns), np.sin(turns)
+        out = np.empty((len(angles), len(points), 6))
+        for some, factors in ((COSINE_COMPONENTS, (c, s)), (~COSINE_COMPONENTS, (s, -c))):
+            parts = np.ascontiguousarray(summed[..., some])
+            out[..., some] = np.tensordot(np.stack(factors, axis=1), parts, axes=2)
+        return out.swapaxes(0, 1)
+
+
+def _forms(form: Floats, products: Floats) -> Floats:
+    """The values (J, T) of forms (J, K, K) for T pairs of vectors with products (T, K, K)."""
+    size = form.shape[1] * form.shape[2]  # there may be no points
+    return np.asarray(form.reshape(-1, size) @ products.reshape(-1, size).T)
