@@ -200,6 +200,7 @@ def test_refused_linkages_end_with_status_2(name: str, capsys: pytest.CaptureFix
     assert mechanisms.refusal(name).partition(": ")[2] in capsys.readouterr().err
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_the_page_names_every_entry_and_its_picture() -> None:
     text = PAGE.read_text(encoding="utf-8")
