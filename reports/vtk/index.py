@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from reports.data.results import PinResult, Results
 from reports.format.numbers import finite
-from reports.vtk.writer import Data, add_field_data
+from reports.vtk.writer import add_field_data
 
 
 def identify_files(results: Results, files: Mapping[str, PinResult], directory: Path) -> None:
@@ -40,15 +41,23 @@ def identify_files(results: Results, files: Mapping[str, PinResult], directory: 
     (directory / "index.json").write_text(text + "\n", encoding="utf-8")
 
 
-def origin_data(results: Results, row: PinResult) -> Data:
-    """Return the study, versions, units, pin, case, factor and verdict of a row as field data."""
+def origin_data(results: Results, row: PinResult) -> dict[str, NDArray[np.float64]]:
+    """Return the study, versions, units, pin, case, factor and verdict of a row as field data.
+
+    A text is the name of a number, 1, for meshio opens no file that has texts.
+    """
     known = {
-        key: value for key, value in (_run(results) | _judged(row)).items() if value is not None
+        **_run(results),
+        **_judged(row),
+        **{f"version of {name}": version for name, version in results.versions.items()},
+        **{f"unit of {quantity}": unit for quantity, unit in asdict(results.units).items()},
     }
     return {
-        **{key: [x] if isinstance(x, str) else np.array([x]) for key, x in known.items()},
-        "versions": [f"{name} {version}" for name, version in results.versions.items()],
-        "units": [f"{quantity}: {unit}" for quantity, unit in asdict(results.units).items()],
+        f"{key}: {value}" if isinstance(value, str) else key: np.array(
+            [1.0 if isinstance(value, str) else value]
+        )
+        for key, value in known.items()
+        if value is not None
     }
 
 

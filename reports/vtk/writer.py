@@ -100,12 +100,16 @@ def _numbers(values: NDArray[Any]) -> NDArray[Any]:
     return np.ascontiguousarray(values, dtype=kind)
 
 
-def add_field_data(path: Path, data: Data) -> None:
-    """Add data of the whole to a VTU or VTM file of this module.
+def add_field_data(path: Path, data: Mapping[str, NDArray[np.float64]]) -> None:
+    """Add numbers for the whole to a VTU or VTM file of this module.
 
     Raises: OSError.
     """
-    arrays = "".join(map(_field_array, data, data.values()))
+    arrays = "".join(
+        f'<DataArray type="Float64" Name={quoteattr(name)} NumberOfTuples="{len(values)}" '
+        f'format="ascii">{" ".join(map(repr, values.tolist()))}</DataArray>\n'
+        for name, values in data.items()
+    )
     whole = f"<FieldData>\n{arrays}</FieldData>\n"
     extended = path.with_name(path.name + ".extended")
     with (
@@ -126,20 +130,6 @@ def add_field_data(path: Path, data: Data) -> None:
             new.write(line)
         copyfileobj(old, new)
     extended.replace(path)
-
-
-def _field_array(name: str, values: NDArray[Any] | Sequence[str]) -> str:
-    """Return an array of field data as VTK writes it in ASCII: of texts their signed bytes."""
-    if isinstance(values, np.ndarray):
-        tag, kind, numbers = "DataArray", "Float64", [repr(float(x)) for x in values]
-    else:
-        tag, kind = "Array", "String"
-        content = b"".join(text.encode() + b"\0" for text in values)
-        numbers = [str(x) for x in np.frombuffer(content, np.int8)]
-    return (
-        f"<{tag} type={quoteattr(kind)} Name={quoteattr(name)} "
-        f'NumberOfTuples="{len(values)}" format="ascii">{" ".join(numbers)}</{tag}>\n'
-    )
 
 
 def write_multiblock(blocks: Mapping[str, str], path: Path) -> None:
