@@ -62,16 +62,18 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
     anchors: of the pins' parts of the page. drawing: shown where there is no linkage.
     """
     lines = pin_lines(results)
+    pins = list(dict.fromkeys(line.pin for line in lines))
     unknown = unknowns(line.row for line in lines)
     axis = factor_axis(lines)
-    matrix = matrix_rows(requirement_rows(results)) if len(lines) <= MAX_MATRIX_PINS else []
+    matrix = matrix_rows(requirement_rows(results)) if len(pins) <= MAX_MATRIX_PINS else []
     steps = actions(results, lines)
     linkage = _linkage(results, lines, anchors)
     return {
         "headline": headline(results),
         "state": _css(lines[0].outcome) if lines else "",
         "decisions": decisions(results, lines),
-        "about": _about(results, lines),
+        "about": _about(results, pins),
+        "pins": pins,
         "linkage": linkage,
         "drawing": "" if linkage else drawing,
         "caption": _caption(results, lines) if linkage else "",
@@ -86,7 +88,7 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "whatever": any(line.spread and whatever_words(line) != DASH for line in lines),
         "legend": _legend(lines, axis, bool(unknown)) if axis else "",
         "checks": any(check_words(line) != DASH for line in lines),
-        "matrix": [_matrix_row(row, lines) for row in matrix],
+        "matrix": [_matrix_row(row, pins) for row in matrix],
         "why": why(results, lines, MAX_PEAKS),
         "why_title": "Why" if not lines or lines[0].outcome in GOOD else "Why they fail",
         "actions": [*steps.repairs, *steps.remarks],
@@ -131,11 +133,11 @@ def _legend(lines: Sequence[PinLine], axis: FactorAxis, open_values: bool) -> st
     return " ".join(parts)
 
 
-def _about(results: Results, lines: Sequence[PinLine]) -> str:
+def _about(results: Results, pins: Sequence[str]) -> str:
     """Return the number of pins, their material and the cases, in one line."""
     materials = list(dict.fromkeys(shape.material for shape in results.shapes))
     cases = list(dict.fromkeys(row.case for row in results.pins))
-    parts = [f"{len(lines)} pin{'s' * (len(lines) != 1)}"]
+    parts = [f"{len(pins)} pin{'s' * (len(pins) != 1)}"]
     if len(materials) == 1:
         strength = next((r.yield_strength for r in results.pins if r.yield_strength), None)
         text = materials[0]
@@ -213,7 +215,7 @@ def _line(
     }
 
 
-def _matrix_row(row: MatrixRow, lines: Sequence[PinLine]) -> dict[str, Any]:
+def _matrix_row(row: MatrixRow, pins: Sequence[str]) -> dict[str, Any]:
     needs = [need.rpartition(".")[2] for need in row.needs]
     return {
         "check": _few(row.check.split(", ")) if needs else row.check,
@@ -224,7 +226,7 @@ def _matrix_row(row: MatrixRow, lines: Sequence[PinLine]) -> dict[str, Any]:
         "title": row.check,
         "cells": [
             (MARKS.get(state, ""), _css(CLASSES.get(state, state)), state)
-            for state in (row.cells.get(line.pin, "") for line in lines)
+            for state in (row.cells.get(pin, "") for pin in pins)
         ],
     }
 
