@@ -117,6 +117,8 @@ def _caption(results: Results, lines: Sequence[PinLine]) -> str:
         f"Case {lines[0].row.case}. Number: factor. Width: force. Arrow: applied load. Triangle: "
         "frame, with its force."
     )
+    if any(x.aside for x in results.motion if x.case == lines[0].row.case):
+        text += " Ring: load towards the reader (dot) or away (cross)."
     return f"{text} Dash-dotted: axis of a pin." if results.space else text
 
 
