@@ -141,14 +141,15 @@ def depths(
     rows = np.flatnonzero(_away_from(zones, fields))
     around = Circumference(fields, loads)
     rows = rows[around.reach(rows, np.array([instant]))[:, 0] > least]
-    steps = list[tuple[float, float]]()
+    parts = list[tuple[float, float]]()
     # In parts, for stress of all points in all harmonics of narrow arcs would take gigabytes.
     for k in range(0, len(rows), DEPTH_BATCH):
         part = rows[k : k + DEPTH_BATCH]
         stress = von_mises(around.stress(part, instant, ARC_ANGLES[::ARC_STRIDE])).ravel()
         away = _distance(fields.points[part], loads.pressed, instant).ravel()
-        steps += stairs(stress, away, least)
-    return stairs(*np.array(steps).T, least) if steps else ()
+        parts += stairs(stress, away, least)
+    stress, away = np.array(parts).reshape(-1, 2).T
+    return stairs(stress, away, least)
 
 
 def stairs(stress: Floats, away: Floats, least: float = 0.0) -> Steps:
