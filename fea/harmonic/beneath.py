@@ -109,8 +109,13 @@ def arcs_apart(on: Mask) -> Ints:
 
 def beneath(fields: MeridianFields, loads: Loads, zones: tuple[Zone, ...]) -> Beneath:
     """The largest stress beneath contact, outside of singular zones."""
-    around = _around(fields, loads)
-    top = around.top(_away_from(zones, fields))
+    around, away = _around(fields, loads), _away_from(zones, fields)
+    # The points just beneath the rings mostly have the largest stress. Known first, it rules out
+    # most of the points nearer to the surface, whose bounds are those of what is pressed.
+    first = away & (np.arange(len(away)) >= len(fields.displacement))
+    top = around.top(first)
+    more = around.top(away & ~first, top.value)
+    top = more if more.value > top.value else top
     r, z = (float(x) for x in fields.points[top.point])
     at = (r * float(np.cos(top.angle)), r * float(np.sin(top.angle)), z)
     return Beneath(top.value, at, top.instant)
