@@ -59,6 +59,13 @@ def case_names(results: Results) -> list[str]:
     return list(dict.fromkeys(row.case for row in results.pins))
 
 
+def paragraphs(results: Results) -> dict[str, str]:
+    """Return the paragraph that demands a case, of those that cite one."""
+    of_drops = {drop.case: drop.clause for drop in results.drops if ":" in drop.clause}
+    of_wheels = {table.case: table.clause for table in results.reactions if table.clause}
+    return {case: text.partition(":")[0] for case, text in (of_drops | of_wheels).items()}
+
+
 def omitted_note(results: Results) -> str:
     """Return a note on where to find the cases not shown in detail; empty if all are shown."""
     if len(cases := case_names(results)) <= MAX_DETAILED_CASES:

@@ -131,7 +131,10 @@ def _envelope(results: Results) -> Content | None:
     blocks = []
     for first in range(0, len(utilisations.pins), PINS_PER_MATRIX):
         part = slice(first, first + PINS_PER_MATRIX)
-        rows = [[case, *map(_used, cells[part])] for case, cells in utilisations.rows]
+        rows = [
+            [row.case, *(_used(row.cells.get(pin)) for pin in utilisations.pins[part])]
+            for row in (*utilisations.rows, *utilisations.quiet)
+        ]
         blocks.append({"head": ["case", *utilisations.pins[part]], "body": rows})
     return {"reading": ENVELOPE_NOTE, "note": utilisations.note, "blocks": blocks}
 

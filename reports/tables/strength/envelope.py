@@ -6,17 +6,19 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import inf
 
-from reports.data.envelope import EnvelopeCell, case_names, envelope, omitted_note
+from reports.data.envelope import EnvelopeCell, case_names, envelope, omitted_note, paragraphs
 from reports.data.results import PeakReaction, Results, Units
 from reports.format.numbers import DASH
 from reports.tables.column import Column, Table, fields, unit_columns
 
-MAX_CASES_IN_SENTENCES = 4  # of more, the terminal has the matrix of the worst
-MAX_SHOWN_CASES, MAX_SHOWN_PINS = 4, 10  # of the matrix on the terminal
+# Of more cases the terminal has the matrix of the worst, and on the page those that govern no pin
+# have a line each instead of cells.
+MAX_CASES_IN_SENTENCES = 4
+MAX_SHOWN_CASES, MAX_SHOWN_PINS = 4, 10  # of the terminal, unless more cases govern its pins
 FULL_COLOUR_UTILISATION = 1.0  # utilisation at which a cell has its full colour
 ENVELOPE_NOTE = (
     "Utilisation of each pin in each case: required over actual factor of safety (1 where none is "
-    "required), the upper end of a range. The worst case of each pin is framed. Forces, moments "
+    "required), the upper end of a range. The case that governs a pin is framed. Forces, moments "
     "and stresses are in envelope.csv."
 )
 
@@ -57,10 +59,14 @@ def envelope_table(results: Results) -> Table[EnvelopeRow]:
 
 @dataclass(frozen=True)
 class CaseRow:
-    """A case, or several, with the cells of its pins by name."""
+    """A case, or several, with the cells of its pins by name.
+
+    paragraph: of the rule that demands the case.
+    """
 
     case: str
     cells: dict[str, EnvelopeCell]
+    paragraph: str = ""
 
     @property
     def governs(self) -> bool:
@@ -72,17 +78,24 @@ class CaseRow:
         """The largest utilisation."""
         return max((cell.used or 0.0 for cell in self.cells.values()), default=0.0)
 
+    @property
+    def line(self) -> str:
+        """The largest utilisation in words, of a case that governs no pin."""
+        most = max(self.cells.values(), key=lambda cell: cell.used or 0.0)
+        return f"governs no pin; largest {cell_text(most)}, pin {most.result.pin}"
+
 
 @dataclass(frozen=True)
 class Matrix:
     """A matrix of cases and pins.
 
-    rows: a case and its cells (None where a pin is not loaded).
+    rows: of cases; of many those that govern a pin, the worst first. quiet: the others.
     note: on what the report leaves out.
     """
 
     pins: list[str]
-    rows: list[tuple[str, list[EnvelopeCell | None]]]
+    rows: list[CaseRow]
+    quiet: list[CaseRow]
     note: str
 
 
@@ -91,28 +104,32 @@ def matrix(results: Results) -> Matrix | None:
     cases = case_names(results)
     if len(cases) < 2:
         return None
-    cells = {(cell.result.pin, cell.result.case): cell for cell in envelope(results)}
-    pins = list(dict.fromkeys(pin for pin, _ in cells))
-    rows = [(case, [cells.get((pin, case)) for pin in pins]) for case in cases]
-    return Matrix(pins, rows, omitted_note(results))
+    by_case: dict[str, dict[str, EnvelopeCell]] = {case: {} for case in cases}
+    for cell in envelope(results):
+        by_case[cell.result.case][cell.result.pin] = cell
+    cited = paragraphs(results)
+    rows = [CaseRow(case, cells, cited.get(case, "")) for case, cells in by_case.items()]
+    quiet: list[CaseRow] = []
+    if len(rows) > MAX_CASES_IN_SENTENCES:
+        rows.sort(key=lambda row: (row.governs, row.used), reverse=True)
+        quiet = [row for row in rows if not row.governs]
+    pins = list(dict.fromkeys(row.pin for row in results.pins))
+    return Matrix(pins, rows[: len(rows) - len(quiet)], quiet, omitted_note(results))
 
 
 def worst_cases(results: Results, pins: Sequence[str]) -> Table[CaseRow] | None:
     """Return the matrix of the worst cases, the others in one row; None for few cases.
 
-    Cases that are the worst of a pin come first, then those with the largest utilisation.
+    Cases that govern a pin come first, then those with the largest utilisation.
 
     pins: that have a column, in this order; of many the first.
     """
     every = matrix(results)
-    if every is None or len(every.rows) <= MAX_CASES_IN_SENTENCES:
+    if every is None or (not every.quiet and len(every.rows) <= MAX_CASES_IN_SENTENCES):
         return None
-    by_case = [
-        CaseRow(case, {cell.result.pin: cell for cell in cells if cell is not None})
-        for case, cells in every.rows
-    ]
-    by_case.sort(key=lambda row: (row.governs, row.used), reverse=True)
-    rows, rest = by_case[:MAX_SHOWN_CASES], by_case[MAX_SHOWN_CASES:]
+    by_case = [*every.rows, *every.quiet]
+    shown = max(MAX_SHOWN_CASES, min(len(every.rows), MAX_SHOWN_PINS))
+    rows, rest = by_case[:shown], by_case[shown:]
     if rest:
         worst: dict[str, EnvelopeCell] = {}
         for cell in (cell for row in reversed(rest) for cell in row.cells.values()):

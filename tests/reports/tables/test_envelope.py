@@ -8,10 +8,17 @@ from io import StringIO
 from math import inf
 from pathlib import Path
 
+import numpy as np
 import pytest
 from rich.console import Console
 
-from reports.data.envelope import MAX_DETAILED_CASES, detailed_rows, governing_cases
+from reports.data.drop import DropRecord
+from reports.data.envelope import (
+    MAX_DETAILED_CASES,
+    detailed_rows,
+    governing_cases,
+    paragraphs,
+)
 from reports.data.overview import pin_lines
 from reports.data.results import Dependence, Results
 from reports.format.numbers import DASH
@@ -141,6 +148,10 @@ def test_many_cases_are_a_matrix_and_the_governing_ones(results: Results, tmp_pa
     found = found[: found.index("</section>")]
     assert found.count('scope="row"') == 50
     assert len(re.findall(r"<td class=[^>]* governs", found)) == 2
+    cells = [re.findall(r"<td[^>]*>([^<]*)</td>", row) for row in found.split("<tr>")[2:]]
+    assert cells[:2] == [["3.75", "0.03"], ["0.07", "1.50"]]  # gusts 49 and 0
+    assert cells[2] == [f"governs no pin; largest 3.67, pin {made.pins[0].pin}"]  # 48
+    assert all(len(row) == 1 for row in cells[2:])
     factors = page[page.index('id="factors"') :]
     factors = factors[: factors.index("</table>")]
     assert factors.count("<tr>") == 3  # a heading, and a row for each pin
@@ -150,6 +161,46 @@ def test_many_cases_are_a_matrix_and_the_governing_ones(results: Results, tmp_pa
     printed = document(made, {})
     assert len(printed["factors"]["body"]) == 2
     assert [each["case"] for each in printed["loads"]] == ["gust 0", "gust 49"]
+
+
+def test_cases_cite_the_paragraphs_that_demand_them(results: Results, tmp_path: Path) -> None:
+    """Up to the colon; also a load of the user's own, but no note of a drop without a rule."""
+    made = of_cases(results, 5)
+    clauses = ("14 CFR 25.479(d)(1): the largest", "Report LR-12, row 5", "", "", "")
+    tables = [replace(t, clause=c) for t, c in zip(made.reactions, clauses, strict=True)]
+    made = replace(made, reactions=tuple(tables))
+    texts = {2: "14 CFR 25.473(a)(2): 10 ft/s. Unsprung mass 3 kg.", 3: "Unsprung mass 3 kg."}
+    drops = tuple(_drop(f"gust {k}", text) for k, text in texts.items())
+    cited = ("14 CFR 25.479(d)(1)", "Report LR-12, row 5", "14 CFR 25.473(a)(2)")
+    found = paragraphs(replace(made, drops=drops))
+    assert found == {f"gust {k}": text for k, text in enumerate(cited)}
+    page = render(made, tmp_path)
+    for k in (0, 1):
+        assert f'gust {k} <span class="said">{cited[k]}</span></th>' in page
+
+
+def _drop(case: str, clause: str) -> DropRecord:
+    h = np.zeros(2)  # every history
+    return DropRecord(
+        case, clause, 3.0, 1e4, 1.0, h, h, h, h, h, h, h, h, {}, {}, 2.0, 0.0, 0.15, 2e4, 0.15,
+        None, h, h, h,
+    )  # fmt: skip
+
+
+def test_all_cases_that_govern_are_on_the_terminal(results: Results) -> None:
+    """Of six pins each has a case of its own that governs; two more cases govern none."""
+    row = of_cases(results, 1).pins[0]
+    pins = [
+        with_values(row, pin=f"P{k}", case=f"gust {case}", safety_factor=2.0 if case == k else 9.0)
+        for k in range(6)
+        for case in range(8)
+    ]
+    table = worst_cases(
+        replace(results, pins=tuple(pins), reactions=()), [f"P{k}" for k in range(6)]
+    )
+    assert table is not None
+    cases = {row.case for row in table.rows}
+    assert cases == {*(f"gust {k}" for k in range(6)), "2 others"}
 
 
 def test_few_cases_are_shown_in_full(results: Results) -> None:
@@ -168,8 +219,6 @@ def test_a_cell_without_a_number_is_a_dash_and_an_endless_one_is_full(results: R
     two = with_values(made.pins[1], safety_factor_interval=(0.0, 3.0))
     found = matrix(replace(made, pins=(one, two, *made.pins[2:])))
     assert found is not None
-    (_, (first, second)), *_ = found.rows
-    assert first is not None
-    assert second is not None
+    first, second = (found.rows[0].cells[pin] for pin in found.pins)
     assert (cell_text(first), heat(first)) == (DASH, 0.0)
     assert (second.used, cell_text(second), heat(second)) == (inf, "∞", 100.0)
