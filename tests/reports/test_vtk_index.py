@@ -72,11 +72,13 @@ def test_every_file_of_a_run_says_what_it_is_of(tmp_path: Path) -> None:
         assert by_vtk(path) == by_pyvista(path) == stated
         assert path.read_bytes() == (again / path.relative_to(out)).read_bytes()
     whole = read_vtu((out / "vtk" / name).read_bytes(), name)
-    for read in (pyvista.read(out / "vtk" / name), pyvista.read(out / "vtk/B_landing.vtm")["pin"]):
+    alone: Any = pyvista.read(out / "vtk" / name)
+    blocks: Any = pyvista.read(out / "vtk/B_landing.vtm")
+    for read in (alone, blocks["pin"]):
         assert read.points == pytest.approx(whole.points)
         assert list(read.point_data) == list(whole.data)
     # meshio reads no texts, but takes what pyvista has read
-    pyvista.to_meshio(pyvista.read(out / "vtk" / name)).write(tmp_path / "pin.vtu")
+    pyvista.to_meshio(alone).write(tmp_path / "pin.vtu")
     stress = meshio.read(tmp_path / "pin.vtu").point_data["von_Mises_[psi]"]
     np.testing.assert_array_equal(stress, whole.data["von Mises [psi]"])
 
