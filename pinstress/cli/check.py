@@ -21,7 +21,13 @@ from pinstress.study.model.cases import CaseLoads, case_loads
 from pinstress.study.model.lost_fits import lost_fit_warnings
 from pinstress.study.model.lugs import lugs
 from pinstress.study.model.mechanism.drives import span
-from pinstress.study.model.mechanism.linkage import AnyLinkage, any_linkage, determined
+from pinstress.study.model.mechanism.linkage import (
+    AnyLinkage,
+    any_linkage,
+    determined,
+    fit_note,
+    fit_offer,
+)
 from pinstress.study.model.pins import far_ends, outline, shape_notes, weight
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.sequence import require_times
@@ -97,7 +103,7 @@ def examine(study: Study) -> Examination:
     lines.append(f"model {a.model}, tolerance {a.tolerance:g}{goal}")
     lines += filter(None, [assumed_distribution(study, todo)])
     lines += map(_requirement, table.require)
-    lines += temperature_assumption(study)
+    lines += fit_note(study) + temperature_assumption(study)
     warnings = other_warnings(study, todo) + lost_fit_warnings(study, todo)
     if table.vary is not None or "reliability" in table.model_fields_set:
         lines += _varied(study)
@@ -231,7 +237,7 @@ def _mechanism(study: Study, mechanism: AnyLinkage) -> list[str]:
         return [*lines, counted]
     if mobility.shared and not mechanism.sharing:
         error = undetermined(mechanism, mobility)
-        raise study.error(f"mechanism: {error}", code=error.code)
+        raise study.error(f"mechanism: {error}{fit_offer(study, error)}", code=error.code)
     rule = ", ".join(f"{'/'.join(s.connections)}" for s in mechanism.sharing)
     return [
         *lines,

@@ -23,6 +23,7 @@ from pinstress.analysis.mechanics.gather_sequences import with_sequences
 from pinstress.analysis.plan import Plan, all_loads
 from pinstress.analysis.stored import PinOutcome
 from pinstress.study.model.cases import CaseLoads, at_time
+from pinstress.study.model.mechanism.linkage import fit_note
 from pinstress.study.model.pins import far_ends, outline, weight
 from pinstress.study.model.requirements import stated_requirements
 from pinstress.study.model.sequence import chosen_cases
@@ -197,6 +198,7 @@ def _results(
             *factor_assumption(study, (row for _, row in rows)),
             *filter(None, [assumed_distribution(study, (task for task, _ in rows))]),
             *shanks_assumption(row for _, row in rows),
+            *fit_note(study),
             *temperature_assumption(study),
             *((WITHOUT_FRICTION_NOTE,) if _in_lugs(study) else ()),
             *(f"Possible mistake: {q}" for q in study.questions),

@@ -46,7 +46,7 @@ from pinstress.study.model.impulses import (
 from pinstress.study.model.landing import drop, drop_note, fallen, still
 from pinstress.study.model.mechanism.drives import laws, span, state
 from pinstress.study.model.mechanism.forces import springs
-from pinstress.study.model.mechanism.linkage import AnyLinkage
+from pinstress.study.model.mechanism.linkage import AnyLinkage, fit_offer
 from pinstress.study.model.mechanism.sideways import Sideways, sideways
 from pinstress.study.model.moving_loads import Acting, MovingLoads, acting
 from pinstress.study.model.space_cases import (
@@ -161,11 +161,11 @@ def case_loads(
     except TableError as error:
         raise study.table_error(f"case.{name}.table", error) from None
     except MotionBlocked as error:
-        message = f"case.{name}: {error.message(_shown(study))}"
+        message = f"case.{name}: {error.message(_shown(study))}{fit_offer(study, error)}"
         raise study.error(message, code=error.code) from None
     except LinkageError as error:
         where = "" if str(error).startswith("case.") else f"case.{name}: "
-        raise study.error(f"{where}{error}", code=error.code) from None
+        raise study.error(f"{where}{error}{fit_offer(study, error)}", code=error.code) from None
 
 
 def _shown(study: Study) -> Callable[[float, bool], str]:

@@ -434,6 +434,10 @@ class MechanismTable(StrictTable):
     """Torsion springs and dampers by name; they act in all cases."""
     sharing: list[SharingTable] = []
     """Redundant connections, and how they share their load."""
+    fit_within: Annotated[Length, POSITIVE] | None = None
+    """How far joints may be moved for the loops of redundant links to close in motion: the
+    tolerance of the drawing. The sum of squares of the movements is least. Default: joints stay as
+    drawn, and links that do not fit are refused."""
     link_stiffness: dict[str, LinkStiffnessTable] = {}
     """Sections of links, by body, by which they share loads out of the plane. Rows of a case with
     such loads have a range over the stiffness of those of which none is stated."""

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import TypeVar
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from loads import (
     GROUND,
     Body,
+    CodedError,
     Connection,
     Joint,
     Linkage,
@@ -27,6 +29,7 @@ from loads.motion.mobility import Mobility, mobility, require_determined
 from loads.space.linkage import SpaceLinkage
 from pinstress.study.model.mechanism.drawing import Drawing, joints_on
 from pinstress.study.model.mechanism.drives import drive_table, mechanism_of
+from pinstress.study.model.mechanism.fit import Fitting, reach
 from pinstress.study.model.mechanism.gears import gears, rack
 from pinstress.study.model.mechanism.joint_layout import Point, places
 from pinstress.study.model.mechanism.masses import STANDARD_GRAVITY, friction_circle, pin_mass
@@ -97,12 +100,7 @@ def _in_a_plane(
     study: Study, mechanism: MechanismTable, damage: Damage | None
 ) -> tuple[Linkage | None, list[Wrong]]:
     """Return the linkage of a planar mechanism; arguments as of `contradictions`."""
-    g = float(np.hypot(*mechanism.gravity)) or STANDARD_GRAVITY
-    unit, factor = study.system.length, study.system.factor("length")
-
-    def shown(length: float) -> str:
-        return f"{length / factor:.6g} {unit}"
-
+    shown = partial(_shown, study)
     at, errors = places(mechanism, shown)
     damage = Damage({}) if damage is None else damage
     wrong = [Wrong(str(error), code=error.code) for error in errors if not damage]
@@ -110,12 +108,58 @@ def _in_a_plane(
         damage.remove(("mechanism", "joint", name, "at"))
     anywhere = dict.fromkeys(mechanism.joint, (0.0, 0.0))
     drawing = Drawing(mechanism, anywhere | at, shown)
-    assembled = _assembled(study, drawing, g)
+    assembled = _assembled(study, drawing)
     if isinstance(assembled, Linkage) and not errors:
-        return assembled, []
+        try:
+            return _fitting(study, drawing, assembled).fitted(mechanism.fit_within, shown), []
+        except LinkageError as error:
+            return None, _wrong(error.each)
     if not isinstance(assembled, Linkage):
         wrong += _wrong([error for error in assembled if _certain(error, mechanism, damage)])
     return None, wrong
+
+
+def _shown(study: Study, length: float) -> str:
+    return f"{length / study.system.factor('length'):.4g} {study.system.length}"
+
+
+def _fitting(study: Study, drawing: Drawing, drawn: Linkage) -> Fitting:
+    def draw(at: Mapping[str, Point]) -> Linkage:
+        moved = _assembled(study, replace(drawing, at=dict(at)))
+        if not isinstance(moved, Linkage):
+            raise LinkageError.all(moved)
+        return moved
+
+    return Fitting(drawn, reach(drawing.mechanism, drawn), draw)
+
+
+def _as_drawn(study: Study, mechanism: MechanismTable) -> Fitting:
+    """Return a valid mechanism as drawn, for movements of its joints."""
+    shown = partial(_shown, study)
+    drawing = Drawing(mechanism, places(mechanism, shown)[0], shown)
+    drawn = _assembled(study, drawing)
+    assert isinstance(drawn, Linkage)
+    return _fitting(study, drawing, drawn)
+
+
+def fit_note(study: Study) -> tuple[str, ...]:
+    """Return a sentence on the joints that are moved to close loops; none where no joint is."""
+    mechanism = study.table.mechanism
+    if not isinstance(mechanism, MechanismTable) or mechanism.fit_within is None:
+        return ()
+    return _as_drawn(study, mechanism).note(partial(_shown, study))
+
+
+def fit_offer(study: Study, error: CodedError) -> str:
+    """Return by how much redundant links miss, and the fit_within that would let them meet, for an
+    error that may be due to that; otherwise nothing.
+    """
+    mechanism = study.table.mechanism
+    unfit = error.code in ("does-not-close", "statically-indeterminate")
+    if not unfit or not isinstance(mechanism, MechanismTable) or mechanism.fit_within is not None:
+        return ""
+    fitting = _as_drawn(study, mechanism)
+    return fitting.offer(partial(_shown, study), study.system.factor("length"))
 
 
 # Codes of contradictions of a part that hold whatever else is missing of the mechanism; of bodies,
@@ -175,9 +219,10 @@ def _held_in_all(study: Study) -> bool:
     return not mechanism_of(study).drive and bool(holds) and all(holds)
 
 
-def _assembled(study: Study, drawing: Drawing, g: float) -> Linkage | list[LinkageError]:
+def _assembled(study: Study, drawing: Drawing) -> Linkage | list[LinkageError]:
     """Return the linkage, or all its contradictions."""
     mechanism = drawing.mechanism
+    g = float(np.hypot(*mechanism.gravity)) or STANDARD_GRAVITY
     wrong: list[LinkageError] = []
 
     def each(
