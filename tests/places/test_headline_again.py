@@ -50,8 +50,26 @@ def yield_strength(row: Row) -> float:
     return float(row["safety_factor"] * row["max_von_mises"])
 
 
+def wrong_parts(row: Row) -> Iterator[str]:
+    """Of case and core: the row is that of the part which has the least factor."""
+    parts = row["hardened"]
+    worst = min(parts, key=lambda part: part["strength"] / part["max_von_mises"])
+    if parts[0] != worst or row["governs"] not in (worst["part"], worst["place"]):
+        yield f"{row['governs']} governs, and {worst['part']} has the least factor"
+    if not same(worst["max_von_mises"], row["max_von_mises"]):
+        yield "its maximum is not that of the part that governs"
+    if not same(yield_strength(row), worst["strength"]):
+        yield "its factor is not that of the part that governs"
+    for place in (row["surface"], row["section"]):
+        if not same(place["safety_factor"] * place["max_von_mises"], place["strength"]):
+            yield "the factor of a place is not yield over stress"
+
+
 def wrong_places(row: Row) -> Iterator[str]:
     """Of surface, section and contact."""
+    if row.get("hardened"):
+        yield from wrong_parts(row)
+        return
     if row["governs"] is None:
         return
     places = {name: row[name] for name in ("surface", "section") if name in row}
@@ -94,7 +112,10 @@ def outcome_again(row: Row, required: float | None) -> str:
     if high > permitted or row["verdict"] == "singular":
         return "not decided"
     contact = row.get("contact")
-    if contact and contact["beneath"] + contact["beneath_error"] > permitted:
+    deep = permitted
+    if contact and contact.get("strength"):  # of the core, or of what is not hardened
+        deep *= contact["strength"] / yield_strength(row)
+    if contact and contact["beneath"] + contact["beneath_error"] > deep:
         return "depends"
     over = (row["joint"] or {}).get("range")
     for varied in over["over"] if over else ():
@@ -104,7 +125,7 @@ def outcome_again(row: Row, required: float | None) -> str:
             return "depends"
         if contact and contact["beneath"]:
             upper = 1.0 + contact["beneath_error"] / contact["beneath"]
-            if (varied["beneath"] or 0.0) * upper > permitted:
+            if (varied["beneath"] or 0.0) * upper > deep:
                 return "depends"
     if any(
         d["over"] == "landing" for d in row["depends_on"]

@@ -85,6 +85,20 @@ def test_the_first_page_has_what_the_first_screen_shows(results: Results) -> Non
         assert typeset(without, {}) != pdf
 
 
+def test_a_pin_in_two_cases_has_one_column_of_requirements(results: Results) -> None:
+    """Columns for each case left cells of requirements that are not checked no room."""
+    pins = tuple(with_values(results.pins[0], case=case) for case in ("retract", "landing"))
+    alone = replace(results, pins=pins)
+    content = document(alone, {}, overview_part(alone, {}, ""))
+    screen = content["overview"]
+    assert (len(screen["lines"]), screen["pins"]) == (2, [pins[0].pin])
+    row = {"check": "shear", "level": "ultimate", "case": "", "required": "1.5", "title": ""}
+    checked = row | {"needs": [], "cells": [["✓", "safe", "met"]]}
+    matrix = [checked, row | {"needs": ["shear_strength"], "cells": [["", "", ""]]}]
+    pdf = typeset({**content, "overview": {**screen, "matrix": matrix}}, {})
+    assert pdf.startswith(b"%PDF-")
+
+
 def test_characters_that_no_font_has_are_shown_by_number(results: Results) -> None:
     """UA-1 forbids them, and the whole run was lost."""
     svg = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><text y="9">{}</text></svg>'
