@@ -7,7 +7,8 @@ from typing import Literal
 
 import numpy as np
 
-from loads.linkage.linkage import GROUND, Linkage, Point
+from loads.linkage.linkage import Linkage
+from loads.linkage.parts import GROUND, Point
 
 CHANGE_POINT_TOLERANCE = 1e-9  # of the perimeter: shortest + longest equal the other two
 

@@ -18,7 +18,7 @@ from reports.animation.frames import MAX_FRAMES, frames, nice
 from reports.animation.page import render_animation, write_animations
 from reports.animation.player_data import speeds
 from reports.animation.strip_chart import ticks
-from reports.data.mechanics import AppliedForce
+from reports.data.motion import AppliedForce
 from reports.data.results import Results, Units
 from reports.data.skeleton import AppliedCouple
 from reports.format.drawing.projection import isometric, three_views
