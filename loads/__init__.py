@@ -29,14 +29,13 @@ from loads.linkage.drives import (
 )
 from loads.linkage.friction import JammingError
 from loads.linkage.gears import gear_pair, rack_and_pinion
-from loads.linkage.linkage import (
+from loads.linkage.linkage import Linkage, LinkageError
+from loads.linkage.parts import (
     GROUND,
     Body,
     Connection,
     Gear,
     Joint,
-    Linkage,
-    LinkageError,
     Parallel,
     Rack,
     Sharing,

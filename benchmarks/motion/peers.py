@@ -21,7 +21,7 @@ from loads import (
     motion_reactions,
     move,
 )
-from loads.linkage.linkage import Point
+from loads.linkage.parts import Point
 from pinbase.arrays import Floats
 from pinstress import load_study
 from pinstress.study.model.mechanism.drives import laws, span

@@ -12,7 +12,7 @@ import numpy as np
 
 from benchmarks.motion.peers import Case, Code, Found
 from loads import GROUND, Body, Slider, Turn
-from loads.linkage.linkage import Point
+from loads.linkage.parts import Point
 from pinbase.arrays import Floats
 
 STEPS = (40, 80, 160)

@@ -17,7 +17,7 @@ from scipy.integrate import solve_ivp
 
 from benchmarks.motion.peers import Case, Code, Found
 from loads import GROUND, Body, Linkage, Turn
-from loads.linkage.linkage import Point
+from loads.linkage.parts import Point
 from pinbase.arrays import Floats
 
 HARDNESS = 0.9999  # the most that MuJoCo allows

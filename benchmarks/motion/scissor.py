@@ -20,7 +20,7 @@ from loads import (
     motion_reactions,
     over_time,
 )
-from loads.linkage.linkage import Point
+from loads.linkage.parts import Point
 
 BAR = 2.0  # m
 LOW, HIGH, SPAN = 1.9, 1.3, 4.0  # distances of the feet, m, in what time, s

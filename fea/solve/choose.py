@@ -11,6 +11,7 @@ contact         lugs in contact, on cells until these are fine enough   (fea.sup
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -20,16 +21,17 @@ from fea.beam.error_model import PLAIN_SECTION_ERROR
 from fea.beam.model import BeamField
 from fea.core.linear_solver import SolveError
 from fea.core.model import Model
-from fea.core.peak import Reason
+from fea.core.over_time import rise_between, through_time
+from fea.core.peak import NO_REASON, Reason
+from fea.core.pin_loads import PinLoads
 from fea.core.requirement import DECIDED_TEXT, Requirement, decided
 from fea.core.zone import Zone
 from fea.harmonic.evaluate import Harmonic
 from fea.harmonic.first_mesh import FirstMesh
-from fea.solve.by_beam import by_beam
 from fea.solve.refine import refine, zones_of
 from fea.support.prescribed import PrescribedSupport
-from fea.support.support import HeldPin, PinProblem, Progress, Solution, Support
-from geometry import ArgumentError, CutPin, Pin
+from fea.support.support import HeldPin, PinProblem, Progress, Solution, StressReading, Support
+from geometry import ArgumentError, CutPin, Pin, body_of_revolution
 
 if TYPE_CHECKING:  # the steps import the supports and models that they use
     from fea.cut.evaluate import LocalSolids
@@ -343,3 +345,28 @@ def chosen(requirement: Requirement, model: str) -> Reason:
         error = f"error, at least {PLAIN_SECTION_ERROR:.0%},"
     text = f"its {error} exceeds the tolerance of {requirement.tolerance:.1%}"
     return Reason(f"harmonic: beam rejected: {text}", ("beam-inaccurate",))
+
+
+def by_beam(
+    held: HeldPin,
+    problem: PinProblem,
+    case: PinLoads,
+    requirement: Requirement,
+    remark: Reason = NO_REASON,
+) -> Solution:
+    """The solution of a case by the beam model, with its own error.
+
+    remark: appended to its note.
+    """
+    start, rise, pin = time.perf_counter(), 0.0, body_of_revolution(held.pin)
+    assert pin is not None
+    remarks = held.notes.get(case.case, NO_REASON) + remark
+    loads = held.start(case.case)
+    field = BeamField(pin, problem.material, held.clamps, loads)
+    if between := problem.between.get(case.case):
+        loads = through_time(field, loads, between, requirement.tolerance)
+        rise = rise_between(field, loads, between)
+        field = BeamField(pin, problem.material, held.clamps, loads)
+    instant, spent = field.estimate.instant, time.perf_counter() - start
+    reading = StressReading(field.evidence(spent, remarks, rise), field, loads, instant)
+    return held.finished(reading, requirement)

@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from loads.linkage.linkage import Linkage, LinkageError, Parallel, Slider, Turn
+from loads.linkage.linkage import Linkage, LinkageError
+from loads.linkage.parts import Parallel, Slider, Turn
 from loads.motion.as_drawn import RANK_TOLERANCE
 from loads.motion.equations import drive_side
 from loads.motion.least_squares import Factors, elimination

@@ -19,7 +19,8 @@ from loads.forces.holding import holding, require_closed
 from loads.forces.reactions import Reactions
 from loads.forces.sharing import shares
 from loads.linkage.friction import MAX_ENUMERATED_CONTACTS, JammingError, contact_sizes
-from loads.linkage.linkage import GROUND, LinkageError, Point, Slider, Turn
+from loads.linkage.linkage import LinkageError
+from loads.linkage.parts import GROUND, Point, Slider, Turn
 from loads.motion.joint_forces import connection_members, slider_couple, slider_members
 from loads.motion.loop_equations import cross, number, pairs
 from loads.motion.motion import Motion, side_by_side

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from loads.landing.requirements import GroundRule
-from loads.linkage.linkage import Point
+from loads.linkage.parts import Point
 
 Vector = tuple[float, float, float]
 Side = Literal["left", "right", "inboard", "outboard"]

@@ -16,7 +16,8 @@ from loads.forces.power_balance import energy
 from loads.landing.landing import Landing
 from loads.landing.travel import Levered
 from loads.linkage.drives import ConstantDrive, Law, StateDrive, Values
-from loads.linkage.linkage import Linkage, Point
+from loads.linkage.linkage import Linkage
+from loads.linkage.parts import Point
 from loads.motion.loop_equations import number
 from loads.motion.motion import Course, Motion
 from pinbase.arrays import Complex, Floats

@@ -18,7 +18,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from loads.linkage.linkage import Gear, Linkage, LinkageError, Point, Rack, Slider, Teeth
+from loads.linkage.linkage import Linkage, LinkageError
+from loads.linkage.parts import Gear, Point, Rack, Slider, Teeth
 from pinbase.arrays import Floats, Ints
 
 

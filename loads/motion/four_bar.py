@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loads.linkage.linkage import GROUND, Linkage, Point
+from loads.linkage.linkage import Linkage
+from loads.linkage.parts import GROUND, Point
 
 CHANGE_POINT_TOLERANCE = 1e-9  # of the perimeter: shortest + longest equal the other two
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loads.linkage.linkage import Turn
+from loads.linkage.parts import Turn
 from loads.motion.loop_equations import Loops, cross
 from pinbase.arrays import Complex, Floats
 

@@ -22,7 +22,8 @@ from functools import cached_property
 import numpy as np
 
 from loads.linkage.gears import gap_weights, row
-from loads.linkage.linkage import Linkage, Point, Slider, Turn
+from loads.linkage.linkage import Linkage
+from loads.linkage.parts import Point, Slider, Turn
 from loads.motion.least_squares import Factors, Step, elimination
 from loads.motion.spanning_tree import LENGTH_ROUND_OFF, ends_of, frames, shortest, spanning_tree
 from pinbase.arrays import Complex, Floats, Ints

@@ -11,7 +11,8 @@ from typing import Generic, Self, TypeVar
 import numpy as np
 
 from loads.linkage.drives import Law, StateDrive, Values
-from loads.linkage.linkage import Connection, Joint, Linkage, LinkageError, Point, Slider, Turn
+from loads.linkage.linkage import Linkage, LinkageError
+from loads.linkage.parts import Connection, Joint, Point, Slider, Turn
 from loads.motion.as_drawn import RANK_TOLERANCE
 from loads.motion.equations import Equations, drive_side
 from loads.motion.least_squares import Factors

@@ -6,7 +6,8 @@ from functools import cached_property
 
 import numpy as np
 
-from loads.linkage.linkage import GROUND, Linkage, Slider
+from loads.linkage.linkage import Linkage
+from loads.linkage.parts import GROUND, Slider
 from loads.motion.equations import CLOSING_GEARS, MIN_PARTICIPATION
 from loads.motion.joint_forces import connection_members
 from loads.motion.loop_equations import Loops, Pose

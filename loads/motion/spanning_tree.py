@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loads.linkage.linkage import GROUND, Linkage, LinkageError
+from loads.linkage.linkage import Linkage, LinkageError
+from loads.linkage.parts import GROUND
 from pinbase.arrays import Complex, Floats, Ints
 
 LENGTH_ROUND_OFF = 1e-14  # of a length: the remainder where equal lengths cancel

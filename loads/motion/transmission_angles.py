@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from loads.linkage.linkage import GROUND, Body, Joint, Linkage, Slider
+from loads.linkage.linkage import Linkage
+from loads.linkage.parts import GROUND, Body, Joint, Slider
 from loads.motion.equations import drive_side
 from loads.motion.motion import Motion
 from loads.motion.planar_equations import is_particle

@@ -17,17 +17,8 @@ import numpy as np
 from loads.forces.acting import Applied, Load, Spring, Varying
 from loads.forces.measures import Distance, Position
 from loads.linkage.gears import side_weight
-from loads.linkage.linkage import (
-    GROUND,
-    Body,
-    Joint,
-    Linkage,
-    LinkageError,
-    Point,
-    Slider,
-    Teeth,
-    Turn,
-)
+from loads.linkage.linkage import Linkage, LinkageError
+from loads.linkage.parts import GROUND, Body, Joint, Point, Slider, Teeth, Turn
 from loads.space.acting import MeasuredFactor, SpaceForce, SpaceLoad, SpaceSpring
 from loads.space.linkage import (
     BodyAngle,

@@ -8,7 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
-from loads.linkage.linkage import GROUND, Contradiction, LinkageError, Sharing
+from loads.linkage.linkage import Contradiction, LinkageError
+from loads.linkage.parts import GROUND, Sharing
 from loads.space.kinds import KINDS, Kind
 from loads.space.stiffness import LinkStiffness
 from pinbase.arrays import Floats

@@ -23,7 +23,8 @@ import numpy as np
 from loads.forces.acting import Applied, Spring
 from loads.forces.inverse_dynamics import Dynamics
 from loads.forces.reactions import Reactions
-from loads.linkage.linkage import GROUND, Linkage, LinkageError, Slider
+from loads.linkage.linkage import Linkage, LinkageError
+from loads.linkage.parts import GROUND, Slider
 from loads.motion.joint_forces import connection_members, slider_members
 from loads.motion.loop_equations import number
 from loads.space.stiffness import LinkStiffness, cantilever, complete

@@ -14,7 +14,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from loads.linkage.linkage import GROUND, LinkageError
+from loads.linkage.linkage import LinkageError
+from loads.linkage.parts import GROUND
 from loads.space.equations import SpaceEquations
 from loads.space.linkage import SpaceLinkage
 from loads.space.pose import SpacePose

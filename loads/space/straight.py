@@ -6,7 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from loads.linkage.linkage import GROUND, Linkage
+from loads.linkage.linkage import Linkage
+from loads.linkage.parts import GROUND
 from pinbase.arrays import Floats
 
 

@@ -143,15 +143,7 @@ def run_and_write(
         replace_file(wanted.junit, junit_xml(results))
     if cache:
         cache.trim()
-    if wanted.as_json:
-        click.echo((directory / "results.json").read_bytes(), nl=False)  # bytes: any locale
-    else:
-        with unneeded(directory):
-            print_safety_factors(results, console(), str(study.path))
-            if wanted.work:
-                print_work(results, console())
-            if wanted.second:
-                print_second_opinion(results, console())
+    _print_results(results, directory, study, wanted)
     if not wanted.quiet:
         report_left_out(results)
         report_reused(plan, outcomes)
@@ -166,6 +158,19 @@ def run_and_write(
     if wanted.opens:
         open_page(directory / REPORT_PAGE)
     return status if status == EXIT_NUMERICS_FAILED else max(status, violated, drawn)
+
+
+def _print_results(results: Results, directory: Path, study: Study, wanted: OutputOptions) -> None:
+    """Print results.json or the tables that the options ask for."""
+    if wanted.as_json:
+        click.echo((directory / "results.json").read_bytes(), nl=False)  # bytes: any locale
+        return
+    with unneeded(directory):
+        print_safety_factors(results, console(), str(study.path))
+        if wanted.work:
+            print_work(results, console())
+        if wanted.second:
+            print_second_opinion(results, console())
 
 
 def _preload_for(plan: Plan, cache: Cache | None) -> None:

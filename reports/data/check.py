@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pinbase.dimensions import Force
-from reports.data.mechanics import LinkageMotion
+from reports.data.motion import LinkageMotion
 from reports.data.results import PinShape, Units
 from reports.data.skeleton import Skeleton, planar_skeleton
 

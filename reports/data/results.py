@@ -21,19 +21,21 @@ from reports.data.changes import Remedy
 from reports.data.drop import DropPeak, DropRecord
 from reports.data.fields import BandLoad, Field, Still, Volume
 from reports.data.mechanics import (
-    BodyMotion,
     DriveEffort,
     DriveTable,
+    PeakReaction,
+    PublishedValue,
+    ReactionTable,
+)
+from reports.data.motion import (
+    BodyMotion,
     Extremes,
     GuideForces,
     LinkageMotion,
     MotionCheck,
-    PeakReaction,
     PitchCurve,
     PointPath,
     PowerLedger,
-    PublishedValue,
-    ReactionTable,
 )
 from reports.data.row import SI, Dependence, GoverningLoad, LandingRange, PinResult, Units
 from reports.data.sensitivities import PinSensitivities, Sensitivity

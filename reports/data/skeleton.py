@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from pinbase.dimensions import Floats, Lengths, Moments, Times
-from reports.data.mechanics import AppliedForce, LinkageMotion, PitchCurve
+from reports.data.motion import AppliedForce, LinkageMotion, PitchCurve
 
 Vector = tuple[float, float, float]
 

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from reports.data.decision import worst_first
 from reports.data.envelope import detailed_rows
 from reports.data.results import Results
-from reports.format.file_names import drive_names, plot_name
+from reports.format.file_names import animation_name, drive_names, plot_name
 from reports.format.numbers import DASH, engineering, like, ratio, short
+from reports.format.packed import deflated
 from reports.format.ranges import error_words, factor_range
 from reports.format.template import environment
 from reports.format.words import BEYOND_YIELD, VERDICT_MEANINGS, verdict_words
@@ -24,7 +28,6 @@ from reports.page.factors import (
 )
 from reports.page.loads import largest_force, load_part, timings
 from reports.page.lug_across import draw_across
-from reports.page.motion import motion_parts
 from reports.page.overview import overview_part
 from reports.page.paper import document
 from reports.page.pins import pin_parts
@@ -36,6 +39,9 @@ from reports.plots.all import all_plots
 from reports.plots.spec import Plot
 from reports.plots.theme import style_sheet
 from reports.text.method import METHOD_NOTE
+
+Find = Callable[..., Plot | None]
+
 
 if TYPE_CHECKING:
     from jinja2 import Template
@@ -123,3 +129,43 @@ def _template() -> Template:
         shades=style_sheet(),
     )
     return templates.get_template("report.html.j2")
+
+
+@dataclass(frozen=True)
+class MotionPart:
+    """A motion: its animation as a compressed HTML page (or empty), and its plots."""
+
+    case: str
+    animation: str
+    plots: tuple[Plot, ...]
+
+
+def motion_parts(results: Results, find: Find, directory: Path) -> list[MotionPart]:
+    """Return the cases with plots or an animation, which is read from the folder of the page.
+
+    find: returns a plot by its kind and names, None if there is none.
+    """
+    kinds = {s.case: list(_linkage(s.case, find)) for s in results.skeletons}
+    parts = [
+        MotionPart(
+            case,
+            _animation(case, directory),
+            tuple(plot for kind in names if (plot := find(kind, case)) is not None),
+        )
+        for case, names in kinds.items()
+    ]
+    return [part for part in parts if part.plots or part.animation]
+
+
+def _linkage(case: str, find: Find) -> Iterator[str]:
+    yield from ("linkage", "bodies")
+    for number in count(2):
+        if find(f"bodies-{number}", case) is None:
+            break
+        yield f"bodies-{number}"
+    yield from ("transmission", "shaking", "ledger")
+
+
+def _animation(case: str, directory: Path) -> str:
+    path = directory / animation_name(case)
+    return deflated(path.read_bytes()) if path.is_file() else ""

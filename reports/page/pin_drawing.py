@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from html import escape
 
-from reports.data.results import PinShape, Units
-from reports.format.drawing.cuts import draw_cut, words
+from reports.data.results import CutShape, PinShape, Units
 from reports.format.drawing.spread import rows
 from reports.format.drawing.svg import INK_COLOUR, line, text, wide
 from reports.format.numbers import engineering, short
@@ -17,6 +16,9 @@ from reports.page.lug_drawing import LUG_PATTERN, draw_line_loads, draw_lug
 from reports.page.stress_along import StressAlong
 from reports.page.stress_panel import ARROW_ROOM, StressPanel, arrow, triad
 from reports.tables.stress.singular_zones import ShownZone
+
+HIDDEN_LINE_STYLE = 'stroke-dasharray="4 2"'
+
 
 DRAWING_WIDTH, DRAWING_MARGIN, MAX_HEIGHT_RATIO = 480.0, 52.0, 0.22  # the last in widths
 LOCAL_SOLID_OFFSET = 3.0  # what the box of a local solid stands off the pin
@@ -162,7 +164,7 @@ def draw_pin(
         text(0.5 * (at.left + at.right), overall + 3.0, total),
         *marks.draw(at.axis, at.foot),
         *(
-            text(0.5 * width, overall + 8.0 + TEXT_LINE_HEIGHT * i, words(cut))
+            text(0.5 * width, overall + 8.0 + TEXT_LINE_HEIGHT * i, cut_words(cut))
             for i, cut in enumerate(shape.cuts, 1)
         ),
         "</svg>",
@@ -329,3 +331,48 @@ def _dimension(left: float, right: float, y: float, from_y: float) -> str:
     drawn = f"M{left:.2f},{foot + 2:.2f}H{right:.2f}{ticks}"
     stroke = f'stroke="{INK_COLOUR}" stroke-width="0.8"'
     return f'<path d="{drawn}" {stroke}/><path d="{leads}" {stroke} opacity="0.4"/>'
+
+
+def draw_cut(cut: CutShape, left: float, axis: float, scale: float) -> str:
+    """Return the SVG of a cut on a pin that starts at x = left, with its axis at y = axis.
+
+    All lengths of the drawing are in pixels.
+    """
+
+    def at(z: float, x: float) -> tuple[float, float]:
+        return left + scale * z, axis - scale * x
+
+    out = []
+    for z0, x0, z1, x1 in cut.notches:
+        (a, c), (b, d) = at(z0, x0), at(z1, x1)
+        away = 1.5 if d > c else -1.5  # over the outline, too
+        out.append(f'<path d="M{a:.2f},{d + away:.2f}H{b:.2f}V{c:.2f}H{a:.2f}Z" fill="#fff"/>')
+    for points, hidden in cut.lines:
+        drawn = " ".join("{:.2f},{:.2f}".format(*at(z, x)) for z, x in points)
+        more = HIDDEN_LINE_STYLE if hidden else ""
+        out.append(
+            f'<polyline points="{drawn}" fill="none" stroke="{INK_COLOUR}" '
+            f'stroke-width="0.8" {more}/>'
+        )
+    title = f"<title>{cut.name}</title>"
+    return f'<g class="cut">{title}{"".join(out)}</g>'
+
+
+def cut_words(cut: CutShape) -> str:
+    """Return the sizes and the place of a cut as text, in the report's unit of length."""
+    kind, size, (low, high) = cut.name.split()[0], short(cut.size), cut.z
+    deep = "through" if cut.depth is None else f"{short(cut.depth)} deep"
+    between = f"z = {short(low)} to {short(high)}"
+    where = f" at {short(cut.angle % 360.0)}°"
+    match kind:
+        case "hole":
+            dimensions = f"⌀{size}, {deep}, z = {short(low)},"
+        case "flat":
+            dimensions = f"{size} from the axis, {between},"
+        case "slot":
+            dimensions = f"{size} wide, {deep}, {between},"
+        case _:
+            aside = f"{short(cut.offset)} from the axis" if cut.offset else "on the axis"
+            dimensions = f"⌀{size}, {deep}, {between}, {aside}"
+            where = where if cut.offset else ""
+    return f"{cut.name}: {dimensions}{where}"

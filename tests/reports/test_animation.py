@@ -13,16 +13,16 @@ from typing import Any
 import numpy as np
 import pytest
 
+from reports.animation.force_table import Fixed
 from reports.animation.frames import MAX_FRAMES, frames, nice
 from reports.animation.page import render_animation, write_animations
 from reports.animation.player_data import speeds
 from reports.animation.strip_chart import ticks
-from reports.data.mechanics import AppliedForce
+from reports.data.motion import AppliedForce
 from reports.data.results import Results, Units
 from reports.data.skeleton import AppliedCouple
 from reports.format.drawing.projection import isometric, three_views
 from reports.format.drawing.svg_labels import label_offsets
-from reports.format.fixed_decimals import Fixed
 from tests.support.results.four_bar_results import COUPLER, CRANK, ROCKER, chain, four_bar, linkage
 from tests.support.results.space_results import landing_gear
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reports.data.mechanics import AppliedForce, PitchCurve
+from reports.data.motion import AppliedForce, PitchCurve
 from reports.data.overview import pin_lines
 from reports.data.results import Results
 from reports.data.skeleton import AppliedCouple, planar_skeleton

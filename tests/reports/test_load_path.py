@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reports.data.mechanics import AppliedForce
+from reports.data.motion import AppliedForce
 from reports.data.results import GoverningLoad, PinResult, Results
 from reports.data.skeleton import Skeleton
 from reports.text.load_path import load_path

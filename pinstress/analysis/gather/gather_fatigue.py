@@ -21,7 +21,7 @@ from pinstress.analysis.assessed.situations import load_factors
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import PinOutcome
 from pinstress.study.schema.fatigue import FatigueTable, SnTable
-from pinstress.study.schema.pins import MaterialTable
+from pinstress.study.schema.materials import MaterialTable
 from reports.data.results import Fatigue
 
 FACTORS_NOT_APPLIED_NOTE = (

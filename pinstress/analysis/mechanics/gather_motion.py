@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from loads import GROUND, Applied, Dynamics, Gear, Linkage, Motion, OverTime, Rack, Teeth, ledger
-from loads.linkage.linkage import Point
+from loads.linkage.parts import Point, Slider
 from loads.motion.loop_equations import pairs
 from loads.motion.planar_equations import is_particle
 from loads.motion.transmission_angles import transmission_angles
@@ -17,7 +17,7 @@ from pinstress.study.model.mechanism.linkage import ground_joint
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.mechanism import MechanismTable
 from reports.data import results as plain
-from reports.data.mechanics import AppliedForce, PitchCurve
+from reports.data.motion import AppliedForce, PitchCurve
 
 
 def _extremes(over: OverTime) -> plain.Extremes:
@@ -55,20 +55,11 @@ def linkage_motion(study: Study, name: str, case: CaseLoads) -> plain.LinkageMot
         angular_velocity=np.stack([motion.angular_velocity(b) for b in bodies], axis=1),
         angular_acceleration=np.stack([motion.angular_acceleration(b) for b in bodies], axis=1),
         joints=(*(j.name for j in linkage.joints), *(t.name for t in linkage.teeth)),
-        ground=tuple(
-            j.name
-            for j in linkage.joints
-            if j.fixed_in == GROUND or any(c.body == GROUND for c in j.connections)
-        ),
+        ground=tuple(j.name for j in linkage.joints_on(GROUND)),
         joint_position=at,
         joint_velocity=v,
         joint_acceleration=a,
-        slides={
-            s.name: np.stack(
-                [motion.point(s.base, s.start)[0], motion.point(s.moving, s.end)[0]], axis=1
-            )
-            for s in linkage.sliders
-        },
+        slides={s.name: _slider_ends(motion, s) for s in linkage.sliders},
         connections=(
             *((c.name, c.body, j.name) for j, c in linkage.connections),
             *((t.name, t.bodies[0], t.name) for t in linkage.teeth),
@@ -89,6 +80,12 @@ def linkage_motion(study: Study, name: str, case: CaseLoads) -> plain.LinkageMot
         applied=_applied(dynamics),
         aside=_aside(motion, case),
     )
+
+
+def _slider_ends(motion: Motion, slider: Slider) -> Floats:
+    """Return the positions (T, 2, 2) of both ends of a slider, m."""
+    ends = (slider.base, slider.start), (slider.moving, slider.end)
+    return np.stack([motion.point(*end)[0] for end in ends], axis=1)
 
 
 def _applied(dynamics: Dynamics) -> tuple[AppliedForce, ...]:

@@ -14,7 +14,7 @@ from pinstress.study.model.mechanism.drives import drive_tables, offsets
 from pinstress.study.model.mechanism.space import pin_axes, space_mechanism
 from pinstress.study.model.space_cases import InSpace
 from pinstress.study.reading.file import Study
-from pinstress.study.schema.mechanism import drive_name
+from pinstress.study.schema.drives import drive_name
 from reports.data import results as plain
 from reports.data.skeleton import Skeleton
 

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from loads.linkage.linkage import GROUND
+from loads.linkage.parts import GROUND
 from loads.space.dynamics import SpaceDynamics
 from loads.space.kinds import KINDS
 from loads.space.linkage import PointDistance, SpaceJoint, SpaceLinkage
 from loads.space.motion import SpaceMotion
 from pinbase.arrays import Floats
 from pinbase.grouped import grouped
-from reports.data.mechanics import AppliedForce
+from reports.data.motion import AppliedForce
 from reports.data.skeleton import AppliedCouple, Skeleton, Vector
 
 MIN_STEM = 1e-6  # of the linkage's size: from the only joint of a body to its centre of mass
@@ -53,15 +53,7 @@ def space_skeleton(
             name for name, joints in on.items() if any({j.base, j.moving} & still for j in joints)
         ),
         position=position,
-        axes=np.stack(
-            [
-                motion.rotation(joints[0].base) @ axes[name] / np.linalg.norm(axes[name])
-                if name in axes
-                else np.zeros((len(motion), 3))
-                for name, joints in on.items()
-            ],
-            axis=1,
-        ),
+        axes=np.stack([_axis(motion, js[0].base, axes.get(name)) for name, js in on.items()], 1),
         connections=tuple((joint.name, joint.moving, pins[joint.name]) for joint in drawn),
         stems=tuple(
             body
@@ -84,6 +76,13 @@ def space_skeleton(
         **_applied(dynamics, bodies),
         up=_up(motion.linkage.gravity),
     )
+
+
+def _axis(motion: SpaceMotion, body: str, axis: Floats | None) -> Floats:
+    """Return the unit vectors (T, 3) of an axis (3,) that turns with a body; zero for none."""
+    if axis is None:
+        return np.zeros((len(motion), 3))
+    return np.asarray(motion.rotation(body) @ axis / np.linalg.norm(axis))
 
 
 def _links(drawn: list[SpaceJoint], pins: Mapping[str, str]) -> dict[str, tuple[str, ...]]:

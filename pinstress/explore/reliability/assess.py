@@ -96,17 +96,15 @@ def assess(
     weighted = weighted_sample(designs, centres, settings)
     shares = _indices(designs, settings) if space.lower is None else None
     rows = {(p.pin, p.case): p for p in nominal.pins}
-    risks = []
+    assessed = []
     for k, (pin, case) in enumerate(evaluator.table):
         drivers = _drivers(parameters, designs, forms[k], shares[k] if shares else None)
         row = AssessedRow(pin, case, RiskColumn(k), rows.get((pin, case)), forms[k].result, drivers)
-        risks.append(risk_of(row, sampled, weighted, settings))
-    if len(risks) > 1:
-        everything = _drivers(parameters, designs, None, shares[-1] if shares else None)
-        worst = AssessedRow(
-            SYSTEM_ROW, SYSTEM_ROW, RiskColumn(None), _worst(nominal), None, everything
-        )
-        risks.insert(0, risk_of(worst, sampled, weighted, settings))
+        assessed.append(row)
+    if len(assessed) > 1:
+        drivers = _drivers(parameters, designs, None, shares[-1] if shares else None)
+        system = SYSTEM_ROW, SYSTEM_ROW, RiskColumn(None), _worst(nominal), None, drivers
+        assessed.insert(0, AssessedRow(*system))
     vary = study.table.vary
     assert vary is not None
     return Reliability(
@@ -118,7 +116,7 @@ def assess(
         samples=settings.samples,
         seed=settings.seed,
         parameters=tuple((p.key, p.law_text) for p in parameters),
-        risks=tuple(risks),
+        risks=tuple(risk_of(row, sampled, weighted, settings) for row in assessed),
         correlations=tuple(
             f"{c.between[0]} and {c.between[1]}: {c.coefficient:g}" for c in vary.correlations
         ),

@@ -10,7 +10,7 @@ from fea.core.material import Material
 from geometry import Pin, PinLike
 from pinstress.study.model.pins import material
 from pinstress.study.reading.file import Study
-from pinstress.study.schema.pins import HardenedTable
+from pinstress.study.schema.materials import HardenedTable
 
 Stretch = tuple[float, float, HardenedTable | None, str]  # z from and to, m; table and its key
 

@@ -24,8 +24,8 @@ from pinstress.study.model.mechanism.space import (
 )
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import ApplyTable, MechanismCase
+from pinstress.study.schema.drives import drive_name
 from pinstress.study.schema.forces import ForceLawTable
-from pinstress.study.schema.mechanism import drive_name
 
 NOTHING: Vector = (0.0, 0.0, 0.0)
 

@@ -18,7 +18,7 @@ from loads import MB, FileError, read_regular
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.toml_text import read_toml
 from pinstress.study.reading.validation import explain
-from pinstress.study.schema.pins import MaterialTable
+from pinstress.study.schema.materials import MaterialTable
 from pinstress.study.schema.shown import as_text
 from pinstress.study.schema.units import UNIT_SYSTEMS
 

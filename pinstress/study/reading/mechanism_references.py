@@ -9,8 +9,9 @@ from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.names import known_name, two_bodies
 from pinstress.study.reading.space_references import cases_in_space
 from pinstress.study.schema.cases import ApplyTable, GivenCase, MotionCase
+from pinstress.study.schema.drives import RotaryDrive, SliderDrive, drive_name
 from pinstress.study.schema.landing import AtWheel, DropCase, GroundCase
-from pinstress.study.schema.mechanism import MechanismTable, RotaryDrive, SliderDrive, drive_name
+from pinstress.study.schema.mechanism import MechanismTable
 from pinstress.study.schema.shown import as_text, near
 from pinstress.study.schema.tables import AnyMechanism, StudyTable
 

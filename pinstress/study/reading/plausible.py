@@ -9,7 +9,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from pinstress.study.schema.pins import MaterialTable, PinTable
+from pinstress.study.schema.materials import MaterialTable
+from pinstress.study.schema.pins import PinTable
 from pinstress.study.schema.shown import as_text
 from pinstress.study.schema.tables import StudyTable
 from pinstress.study.schema.units import UNIT_SYSTEMS, UnitSystem, split, to_si

@@ -20,10 +20,11 @@ from pinstress.study.schema.cases import (
 from pinstress.study.schema.fatigue import FatigueTable
 from pinstress.study.schema.landing import DropCase, GroundCase
 from pinstress.study.schema.lugs import LugTable
+from pinstress.study.schema.materials import MaterialTable
 from pinstress.study.schema.mechanism import (
     MechanismTable,
 )
-from pinstress.study.schema.pins import MaterialTable, PinTable
+from pinstress.study.schema.pins import PinTable
 from pinstress.study.schema.require import level_of
 from pinstress.study.schema.shown import as_text, in_toml
 from pinstress.study.schema.tables import StudyTable

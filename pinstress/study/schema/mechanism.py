@@ -1,11 +1,11 @@
 """The study file's form: the mechanism."""
 
-import math
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from pinbase.errors import ArgumentError
+from pinstress.study.schema.drives import RotaryDrive, SliderDrive
 from pinstress.study.schema.forces import (
     LineSpringTable,
     TorsionSpringTable,
@@ -19,7 +19,6 @@ from pinstress.study.schema.types import (
     Acceleration,
     Angle,
     Density,
-    Duration,
     Inertia,
     JointOrPoint,
     Length,
@@ -31,7 +30,6 @@ from pinstress.study.schema.types import (
     Stress,
     StrictTable,
     Switch,
-    Time,
     Weight,
     one_or_several,
 )
@@ -208,119 +206,10 @@ class SliderTable(StrictTable):
         return value
 
 
-class LawTable(StrictTable):
-    """Keys of all laws of motion: from start to end in `duration`, or a table. Without either the
-    drive can only be used by cases that give its position.
-    """
-
-    slides: ClassVar[bool]  # whether it has a length, instead of an angle
-
-    name: str | None = None
-    """Name of the drive. Default: the name of its slider or body."""
-    law: Literal["cosine", "cycloidal", "constant", "table"] = "cosine"
-    """Law of motion: "cosine" (zero velocity at both ends), "cycloidal" (also zero acceleration),
-    "constant" (speed), or "table"."""
-    duration: Duration | None = None
-    """Time from start to end."""
-    begin: Annotated[Time, NOT_NEGATIVE] = 0.0
-    """Time at which the motion starts."""
-    table: str | None = None
-    """CSV file in the study's folder for `law = "table"`, with the columns time,position (or
-    position_deg)[,velocity,acceleration]."""
-
-    @model_validator(mode="after")
-    def _course(self) -> "LawTable":
-        course = [getattr(self, key, None) for key in ("start", "end", "duration")]
-        if self.law == "table":
-            if self.table is None or any(v is not None for v in course):
-                raise ArgumentError(
-                    'law = "table" needs table = "file.csv", without start, end and duration',
-                    "law-and-keys",
-                )
-        elif self.table is not None:
-            raise ArgumentError(f'table needs law = "table", not {self.law!r}', "law-and-keys")
-        elif len({v is None for v in course}) > 1:
-            raise ArgumentError(f"law {self.law!r} needs start, end and duration", "law-and-keys")
-        return self
-
-    @property
-    def moves(self) -> bool:
-        """Whether a course is given."""
-        return self.table is not None or self.duration is not None
-
-
-class SliderDrive(LawTable):
-    """A drive of a slider's length (hydraulic piston, screw)."""
-
-    slider: str
-    """The driven slider."""
-    start: Length | None = None
-    """Length at the start."""
-    end: Length | None = None
-    """Length at the end."""
-    position_offset: Length = 0.0
-    """Offset that plots subtract from the length."""
-
-    slides: ClassVar[bool] = True
-
-
-MAX_TURNS = 1000  # each is followed in steps of 0.25 rad
-
-
-def require_few_turns(start: float | None, end: float | None) -> None:
-    """Raise ArgumentError for a drive that turns too often. start, end: rad."""
-    if abs((end or 0.0) - (start or 0.0)) > MAX_TURNS * 2.0 * math.pi:
-        raise ArgumentError(f"start and end are more than {MAX_TURNS} turns apart", "out-of-range")
-
-
-class RotaryDrive(LawTable):
-    """A drive of a body's angle: the direction of a line between two of its joints,
-    counter-clockwise from x or, for a drive between two bodies, from a line of the other; without
-    a line what the body has turned since the drawing.
-    """
-
-    body: str
-    """The driven body."""
-    line: tuple[str, str] | None = None
-    """Two joints of the body; the angle is that of the line from the first to the second. Default:
-    the angle is zero as drawn."""
-    against: str = "ground"
-    """The body from which the angle is measured."""
-    against_line: tuple[str, str] | None = None
-    """Two joints of that body; required with `line` and `against`."""
-    start: Angle | None = None
-    """Angle at the start."""
-    end: Angle | None = None
-    """Angle at the end."""
-
-    slides: ClassVar[bool] = False
-
-    @model_validator(mode="after")
-    def _both(self) -> "RotaryDrive":
-        if (self.against == "ground" or self.line is None) != (self.against_line is None):
-            raise ArgumentError(
-                "with a line, against (a body) and against_line (two of its joints) must be given "
-                "together; without one, give no against_line",
-                "give-both",
-            )
-        require_few_turns(self.start, self.end)
-        return self
-
-
 AnyDrive = Annotated[
     Annotated[SliderDrive, Tag("<slider>")] | Annotated[RotaryDrive, Tag("<rotary>")],
     Discriminator(lambda v: "<slider>" if isinstance(v, dict) and "slider" in v else "<rotary>"),
 ]
-
-
-def drive_name(drive: LawTable) -> str:
-    """Return the name of a drive: its slider, or its own name, or that of the body that it turns
-    or of the joint that it moves.
-    """
-    if isinstance(drive, SliderDrive):
-        return drive.slider
-    moved = (getattr(drive, key, None) for key in ("body", "joint", "slide"))
-    return drive.name or next(filter(None, moved))
 
 
 Ratios = Annotated[list[Annotated[Number, Field(ge=1e-18, le=1e18)]], Field(min_length=1)]

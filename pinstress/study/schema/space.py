@@ -8,14 +8,9 @@ from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 from loads.space.kinds import KINDS, Kind
 from loads.space.linkage import RIGHT_ANGLE_TOLERANCE
 from pinbase.errors import ArgumentError
+from pinstress.study.schema.drives import LawTable, require_few_turns
 from pinstress.study.schema.forces import LineLawTable, TorsionLawTable, require_both, require_one
-from pinstress.study.schema.mechanism import (
-    BarTable,
-    LawTable,
-    Ratios,
-    require_few_turns,
-    require_one_mass,
-)
+from pinstress.study.schema.mechanism import BarTable, Ratios, require_one_mass
 from pinstress.study.schema.types import (
     Acceleration,
     Angle,

@@ -19,8 +19,9 @@ from pinstress.study.schema.cases import GivenCase, InstantCase, MotionCase, Sta
 from pinstress.study.schema.fatigue import FatigueTable
 from pinstress.study.schema.landing import DropCase, GroundCase
 from pinstress.study.schema.lugs import LugTable, with_lug_defaults
+from pinstress.study.schema.materials import MaterialTable
 from pinstress.study.schema.mechanism import MechanismTable
-from pinstress.study.schema.pins import MaterialTable, PinTable
+from pinstress.study.schema.pins import PinTable
 from pinstress.study.schema.require import RequireTable
 from pinstress.study.schema.sequence import SequenceTable
 from pinstress.study.schema.shown import as_text

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from reports.data.mechanics import AppliedForce
+from reports.data.motion import AppliedForce
 from reports.data.results import DriveTable, Floats, ReactionTable, Results, Units
 from reports.data.skeleton import Skeleton
 

@@ -20,8 +20,9 @@ from loads import (
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import Coordinates, InstantCase, StaticCase
+from pinstress.study.schema.drives import RotaryDrive, SliderDrive, drive_name
 from pinstress.study.schema.landing import AtWheel
-from pinstress.study.schema.mechanism import MechanismTable, RotaryDrive, SliderDrive, drive_name
+from pinstress.study.schema.mechanism import MechanismTable
 from pinstress.study.schema.space import LengthDrive, SpaceDrive, TravelDrive
 from pinstress.study.schema.tables import AnyMechanism
 from pinstress.study.schema.units import to_si

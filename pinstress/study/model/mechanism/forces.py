@@ -24,7 +24,7 @@ from loads import (
     Varying,
     read_table,
 )
-from loads.linkage.linkage import Point
+from loads.linkage.parts import Point
 from loads.space.out_of_plane import SideLoad
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import ApplyTable

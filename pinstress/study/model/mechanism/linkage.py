@@ -41,14 +41,13 @@ from pinstress.study.reading.damage import Damage
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import GivenCase
+from pinstress.study.schema.drives import RotaryDrive, drive_name
 from pinstress.study.schema.mechanism import (
     BodyTable,
     MechanismTable,
-    RotaryDrive,
     SharingTable,
     SliderTable,
     StopTable,
-    drive_name,
 )
 
 A = TypeVar("A")

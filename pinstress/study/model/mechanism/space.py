@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from loads import LinkageError
-from loads.linkage.linkage import Sharing
+from loads.linkage.parts import Sharing
 from loads.motion.mobility import Mobility, require_driven
 from loads.space.conditions import directions
 from loads.space.equations import SpaceEquations
@@ -33,7 +33,7 @@ from pinstress.study.model.pins import pin
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import MechanismCase
-from pinstress.study.schema.mechanism import drive_name
+from pinstress.study.schema.drives import drive_name
 from pinstress.study.schema.shown import listed
 from pinstress.study.schema.space import (
     AngleDrive,

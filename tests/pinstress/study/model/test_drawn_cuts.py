@@ -9,8 +9,7 @@ from pinbase.records import in_units
 from pinstress.analysis.gather.gather import cut_shapes
 from pinstress.study.model.pins import outline
 from reports.data.results import PinShape
-from reports.format.drawing.cuts import words
-from reports.page.pin_drawing import draw_pin
+from reports.page.pin_drawing import cut_words, draw_pin
 from tests.support.results.made_up_run import make_results
 
 MM = 1e-3
@@ -29,7 +28,7 @@ def shape() -> PinShape:
 
 
 def test_sizes_in_words() -> None:
-    assert [words(cut) for cut in shape().cuts] == [
+    assert [cut_words(cut) for cut in shape().cuts] == [
         "hole 1: ⌀4, 6 deep, z = 8, at 0°",
         "hole 2: ⌀4, through, z = 16, at 90°",
         "flat 1: 9 from the axis, z = 20 to 24, at 180°",

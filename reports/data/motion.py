@@ -1,0 +1,230 @@
+"""Results of motion: positions and their rates, powers, and what they are compared with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Annotated
+
+import numpy as np
+
+from pinbase.dimensions import (
+    Acceleration,
+    Accelerations,
+    Energies,
+    Floats,
+    Forces,
+    Lengths,
+    Moments,
+    Powers,
+    Time,
+    Times,
+    Velocities,
+    Velocity,
+)
+
+
+@dataclass(frozen=True)
+class PowerLedger:
+    """The balance of powers, each (T,).
+
+    drives, gravity, applied, friction: power put in; that of friction is never positive.
+    kinetic_rate: rate of the kinetic energy, which equals their sum.
+    violation: the largest difference over the largest term.
+    """
+
+    drives: Powers
+    gravity: Powers
+    applied: Powers
+    friction: Powers
+    kinetic_rate: Powers
+    violation: float
+
+
+@dataclass(frozen=True)
+class Extremes:
+    """The extremes of a motion over its time, each with the time at which it occurs.
+
+    transmission: smallest transmission angles by link and joint, degrees.
+    condition: largest condition number.
+    """
+
+    transmission: dict[str, tuple[float, Time]]
+    condition: tuple[float, Time]
+
+
+@dataclass(frozen=True)
+class GuideForces:
+    """The forces of a slider, each (T,).
+
+    normal: to the left of the axis. couple: about the slider's end. friction: along the axis.
+    """
+
+    normal: Forces
+    couple: Energies
+    friction: Forces
+
+
+@dataclass(frozen=True)
+class PointPath:
+    """The motion of a point.
+
+    position, velocity: (T, 2). speed: (T,).
+    curvature: (T,) of the path, positive where it bends to the left of the direction of travel; NaN
+    where the point stands still.
+    """
+
+    position: Lengths
+    velocity: Velocities
+    speed: Velocities
+    curvature: Annotated[Floats, "length^-1"]
+
+
+@dataclass(frozen=True)
+class PitchCurve:
+    """The pitch circle of a gear (`round`) or the pitch line of a rack.
+
+    ends: (T, 2, 2), the centre and a point of the circle that turns with the gear, or the line's
+    ends.
+    """
+
+    body: str
+    ends: Lengths
+    round: bool
+
+    @property
+    def radius(self) -> float:
+        """The radius of the circle; half the length of the line."""
+        size = float(np.linalg.norm(self.ends[0, 1] - self.ends[0, 0]))
+        return size if self.round else 0.5 * size
+
+
+@dataclass(frozen=True)
+class AppliedForce:
+    """A force that a case applies to a body at a point of it.
+
+    position, force: world axes, (T, 2), in space (T, 3); force also where it is across the plane.
+    """
+
+    body: str
+    position: Lengths
+    force: Forces
+
+    @cached_property
+    def sizes(self) -> Floats:
+        """The magnitudes (T,) of the force."""
+        return np.asarray(np.linalg.norm(self.force, axis=1))
+
+
+@dataclass(frozen=True)
+class LinkageMotion:
+    """The motion of a linkage in one case, at T instants (one, without time, when it is at rest).
+
+    links: for each of B bodies the joints on it, in drawing order.
+    centre, velocity, acceleration: (T, B, 2) of the centres of mass.
+    angle: (T, B), direction from the body's first joint to its second, degrees counter-clockwise
+    from x, without jumps; for a body with one joint the rotation since the drawing, for a particle
+    NaN.
+    angular_velocity, angular_acceleration: (T, B) in rad.
+    joints: J names, those of pitch points last. ground: joints that are fixed.
+    joint_position, joint_velocity, joint_acceleration: (T, J, 2).
+    slides: by slider, its two ends (T, 2, 2). pitch: curves of gears and racks.
+    connections: (name, body, joint) in the order of the case's ReactionTable.
+    transmission: by link and joint, (T,) degrees; 90 is best, 0 is a dead point.
+    condition: (T,), condition number of the loop equations.
+    shaking_force: (T, 2). shaking_moment: (T,), about the joint `shaking_about`; both act from the
+    linkage on its ground.
+    slider_forces: by slider, from the base on the moving body. paths: of named points.
+    extremes: over the motion, between the instants too; None: over the instants alone.
+    applied, aside: the forces of the case's loads in the plane and across it.
+    """
+
+    case: str
+    time: Times | None
+    bodies: tuple[str, ...]
+    links: tuple[tuple[str, ...], ...]
+    centre: Lengths
+    velocity: Velocities
+    acceleration: Accelerations
+    angle: Floats
+    angular_velocity: Floats
+    angular_acceleration: Floats
+    joints: tuple[str, ...]
+    ground: tuple[str, ...]
+    joint_position: Lengths
+    joint_velocity: Velocities
+    joint_acceleration: Accelerations
+    slides: dict[str, Lengths]
+    connections: tuple[tuple[str, str, str], ...]
+    transmission: dict[str, Floats]
+    condition: Floats
+    shaking_force: Forces
+    shaking_moment: Energies
+    shaking_about: str
+    ledger: PowerLedger
+    slider_forces: dict[str, GuideForces] = field(default_factory=dict)
+    paths: dict[str, PointPath] = field(default_factory=dict)
+    extremes: Extremes | None = None
+    pitch: tuple[PitchCurve, ...] = ()
+    applied: tuple[AppliedForce, ...] = ()
+    aside: tuple[AppliedForce, ...] = ()
+
+    @property
+    def poorest(self) -> dict[str, tuple[float, float | None]]:
+        """The smallest transmission angle of each link and joint that has one, and its time."""
+        if self.extremes:
+            return dict(self.extremes.transmission)
+        angles = {k: v for k, v in self.transmission.items() if np.isfinite(v).any()}
+        return {k: self._sampled(v, int(np.nanargmin(v))) for k, v in angles.items()}
+
+    @property
+    def worst_condition(self) -> tuple[float, float | None]:
+        """The largest condition number, and its time."""
+        if self.extremes:
+            return self.extremes.condition
+        return self._sampled(self.condition, int(np.argmax(self.condition)))
+
+    def _sampled(self, values: Floats, at: int) -> tuple[float, float | None]:
+        return float(values[at]), None if self.time is None else float(self.time[at])
+
+
+@dataclass(frozen=True)
+class MotionCheck:
+    """The magnitudes (T,) of a joint's speed and acceleration, from the linkage and in closed form.
+
+    published: rows of time, published speed and acceleration in the study's units, and the computed
+    speed and acceleration at that time.
+    """
+
+    joint: str
+    case: str
+    time: Times
+    speed: Velocities
+    acceleration: Accelerations
+    closed_form_speed: Velocities
+    closed_form_acceleration: Accelerations
+    published: tuple[tuple[float, float, float, Velocity, Acceleration], ...]
+
+
+@dataclass(frozen=True)
+class BodyMotion:
+    """Motion and momenta of a body in space, as seen from outside, along the mechanism's axes.
+
+    Vectors are (T, 3): the centre of mass with its rates; coriolis, the part of the acceleration by
+    which a turning ground deflects; rotation, momentum and angular momentum about the centre.
+    """
+
+    case: str
+    body: str
+    time: Times | None
+    centre: Lengths
+    velocity: Velocities
+    acceleration: Accelerations
+    coriolis: Accelerations
+    spin: Annotated[Floats, "rad/s"]
+    spin_rate: Annotated[Floats, "rad/s^2"]
+    momentum: Annotated[Floats, "force time"]
+    momentum_rate: Forces
+    angular_momentum: Annotated[Floats, "force length time"]
+    angular_momentum_rate: Moments
+    kinetic_energy: Energies
