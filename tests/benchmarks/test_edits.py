@@ -11,7 +11,7 @@ import pytest
 import pinstress
 from benchmarks.runs.edits import STUDIES, _difference, _draws, edits
 from pinstress.study.reading.in_python import changed_study
-from tests.support.each import each
+from tests.support.each import each, sampled
 
 
 def test_every_kind_of_edit_is_drawn_and_makes_a_valid_study() -> None:
@@ -48,9 +48,10 @@ def test_the_difference_of_rows(one: object, other: object, apart: float) -> Non
 
 
 @pytest.mark.slow
-def test_a_small_run() -> None:
+@pytest.mark.parametrize("studies", sampled([["one_pin"], ["one_pin", "clevis"]], every=2))
+def test_a_small_run(studies: list[str]) -> None:
     """Every full answer is that of a run, every quick one within its error."""
-    text = edits(8, ("one_pin", "clevis"))
+    text = edits(8, studies)
     found = re.search(r"(\d+) of (\d+) full rows differ .* and (\d+) quick rows", text)
     assert found is not None, text
     assert int(found[2]) >= 6

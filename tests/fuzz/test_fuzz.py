@@ -48,8 +48,8 @@ def test_broken_input_ends_with_a_message_or_a_result(kind: str, first: int, cou
     ("first", "count"),
     [
         (1, 1),  # one of each kind takes half a minute
-        pytest.param(2, 7, marks=pytest.mark.slow),
-        pytest.param(9, 120, marks=[pytest.mark.slow, pytest.mark.long]),
+        pytest.param(2, 4, marks=pytest.mark.slow),
+        pytest.param(6, 123, marks=[pytest.mark.slow, pytest.mark.long]),
     ],
 )
 def test_valid_studies_have_results(first: int, count: int) -> None:

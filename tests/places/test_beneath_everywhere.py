@@ -18,6 +18,7 @@ from pyarrow import parquet
 
 from pinstress.cli.commands import run_command_line
 from tests.conftest import ROOT
+from tests.places.test_headline_again import violations
 
 pytestmark = pytest.mark.slow
 
@@ -82,6 +83,10 @@ def test_a_run(folder: Path) -> None:
     written = json.loads((folder / "run" / "results.json").read_text())
     assert "not beneath contact" in written["headline"]["sentence"]
     assert written["headline"]["depends"] == ["P"]
+    assert violations(written) == []
+    reach = found["depends_on"][0]["reach"]
+    assert 2.0 <= reach <= 10.0  # farther than 0.1 d, within the pin
+    assert reach > (below["reach"] or 0.0)  # which is that of yield
 
 
 def test_its_tables(folder: Path) -> None:

@@ -11,8 +11,6 @@ from __future__ import annotations
 import json
 import math
 import re
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -311,19 +309,6 @@ def violations(results: dict[str, Any]) -> list[str]:
     return [*found, *wrong_headline(results)]
 
 
-def results_of(study: Path, folder: Path, *options: str, status: int | None = None) -> Any:
-    """Of a run as a user makes it."""
-    out = folder / "out"
-    command = [sys.executable, "-m", "pinstress", "run", str(study), "--no-pictures", *options]
-    done = subprocess.run(
-        [*command, "--out", str(out)], capture_output=True, text=True, check=False
-    )
-    assert done.returncode in ((0, 1) if status is None else (status,)), done.stderr
-    found = json.loads((out / "results.json").read_text(encoding="utf-8"))
-    assert found["schema"] == "pinstress-results/2"
-    return found
-
-
 SLOW = [
     pytest.param(s, marks=[pytest.mark.slow, *[pytest.mark.long] * (s in LONG)])
     for s in SHIPPED
@@ -336,40 +321,6 @@ def test_the_headline_follows_from_results_json(study: str, shipped: Shipped) ->
     found = json.loads((shipped(study) / "results.json").read_text(encoding="utf-8"))
     assert found["pins"]
     assert violations(found) == []
-
-
-STUB = (
-    ("length = 10, diameter = 20, connection", "length = 5, diameter = 20, connection"),
-    ("length = 20, diameter = 20, connection", "length = 10, diameter = 20, connection"),
-    ("{ length = 1, diameter = 20 }", "{ length = 0.5, diameter = 20 }"),
-    ("required_safety_factor = 1.5", "required_safety_factor = 2.5"),
-)
-
-
-@pytest.mark.slow
-def test_a_pin_that_is_safe_but_not_beneath_contact(tmp_path: Path) -> None:
-    """A stub of 20 mm in lugs of 5, 10 and 5 mm, 50 kN. In three-dimensional contact its surface
-    has 215 MPa, its section 184, and what lies below the pressed surface 281 to 303. 2.5 is
-    required of 700 MPa: 280 are permitted.
-    """
-    text = (ROOT / "studies" / "clevis.toml").read_text(encoding="utf-8")
-    for old, new in STUB:
-        assert old in text
-        text = text.replace(old, new)
-    study = tmp_path / "study.toml"
-    study.write_text(text, encoding="utf-8")
-    found = results_of(study, tmp_path, "--fail-on-miss", status=4)
-    assert violations(found) == []
-    (row,) = found["pins"]
-    assert row["surface"]["max_von_mises"] < 255.0
-    assert row["section"]["max_von_mises"] < 200.0
-    assert row["contact"]["beneath"] > 281.0
-    assert row["outcome"] == "depends"
-    assert [(d["what"], d["over"]) for d in row["depends_on"]] == [("beneath", "beneath")]
-    assert 2.0 <= row["depends_on"][0]["reach"] <= 10.0  # farther than 0.1 d, within the pin
-    assert row["depends_on"][0]["reach"] > row["contact"]["reach"]  # which is that of yield
-    assert "but not beneath contact (factor 2." in found["headline"]["sentence"]
-    assert found["headline"]["depends"] == ["P"]
 
 
 @pytest.mark.slow

@@ -43,6 +43,8 @@ def test_surface_and_section_are_those_of_other_programs(named: NamedPin) -> Non
     pairs = [(found.surface.max_von_mises, named.surface)]
     if found.section is not None:
         pairs.append((found.section.max_von_mises, named.section))
+    if found.contact is not None:
+        pairs.append((found.contact.beneath, named.beneath))
     for ours, theirs in pairs:
         if theirs is not None:
             low, high = theirs

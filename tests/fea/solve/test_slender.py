@@ -63,11 +63,21 @@ def test_sections_agree_with_beam_theory(diameters: int, steel: Material) -> Non
 
 
 @pytest.mark.slow
-def test_where_round_off_is_too_much_the_beam_answers(steel: Material) -> None:
-    """At 5000 diameters it changes a section's solution by more than a thousandth."""
+def test_where_round_off_is_too_much_the_beam_answers(
+    steel: Material, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At 5000 diameters it changes a section's solution by more than a thousandth.
+
+    The harmonic model fails once, and for `auto` by the same error without its minutes.
+    """
     pin, loads, expected = cantilever(5000 * D)
-    with raises(SolveError, "ill-conditioned"):
+    with raises(SolveError, "ill-conditioned") as caught:
         solve_pin(pin, steel, ("start",), (loads,), Requirement(model="harmonic"))
+
+    def fails(*_: object) -> None:
+        raise caught.value
+
+    monkeypatch.setattr("fea.harmonic.section_solution.meridian_mesh", fails)
     (found,) = solve_pin(pin, steel, ("start",), (loads,), Requirement(model="auto"))
     assert found.peak.model == "beam"
     assert found.peak.max_von_mises == pytest.approx(expected, rel=1e-6)
