@@ -15,7 +15,8 @@ from itertools import product
 
 import numpy as np
 
-from loads.linkage.linkage import Linkage, Point
+from loads.linkage.linkage import Linkage
+from loads.linkage.parts import Point
 from loads.motion.planar_equations import PlanarEquations
 from pinbase.arrays import Floats
 
