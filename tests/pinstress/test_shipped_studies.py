@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from pinstress.cli.commands import run_command_line
+from pinstress.study.reading.file import load_study, raw_study
 from tests.conftest import ROOT
 from tests.support.programs.once import Shipped
 
@@ -18,7 +19,7 @@ STUDIES = ROOT / "studies"
 MECHANISMS = [
     *("grenier2008", "bowman2019", "matrix_four_bar", "slider_crank", "excavator"),
     *("crane", "engine", "hood", "main_gear", "pump_jack", "scissor_lift", "bucket"),
-    "planetary",
+    *("planetary", "landing_gear_part25"),
 ]
 NO_COUPLER = ("crane", "hood", "scissor_lift", "planetary")  # no moving link with two joints
 
@@ -132,6 +133,16 @@ def test_the_leg_in_space(tmp_path: Path) -> None:
     spin = read("drive", "drive", "spin", "force")[:, 0]  # about its own axis also the yaw turns
     axial = 1.5 * (-25.0 / 3.0 - 0.05 * -s - yaw * rate * -c)
     np.testing.assert_allclose(spin, axial, atol=1e-9)
+
+
+def test_the_gear_under_regulations_is_the_landing_gear() -> None:
+    """Its linkage, its pins and their lugs, number for number; only cases and factors differ."""
+    here, there = (
+        raw_study(load_study(STUDIES / f"{name}.toml"))
+        for name in ("landing_gear_part25", "landing_gear")
+    )
+    for key in ("units", "material", "mechanism", "lug_defaults", "pin"):
+        assert here[key] == there[key], key
 
 
 def test_guides_are_written_with_their_friction(tmp_path: Path) -> None:

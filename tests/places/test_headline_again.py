@@ -24,7 +24,7 @@ SHIPPED = sorted(path.stem for path in (ROOT / "studies").glob("*.toml"))
 QUICK = ["one_pin"]
 # Whose pins other tests in CI solve (browser, least weight, portable, validation), and linkages in
 # a plane of which CI has bowman2019, matrix_four_bar, slider_crank and planetary.
-LONG = ["landing_gear", "crane", "engine", "excavator", "grenier2008"]
+LONG = ["landing_gear", "landing_gear_part25", "crane", "engine", "excavator", "grenier2008"]
 LONG += ["bucket", "hood", "main_gear", "pump_jack", "scissor_lift"]
 LOADS_ALONE = ["slider_crank_jammed"]  # has no pin
 Row = dict[str, Any]

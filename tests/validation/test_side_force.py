@@ -1,10 +1,16 @@
-"""The main job with a side force on its tyre, from the study to rows, in contact with lugs."""
+"""The main job with a side force on its tyre, from the study to rows, in contact with lugs; and
+under the landings of 14 CFR part 25.
+"""
 
+import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import pinstress
+from pinstress.analysis.plan import all_loads
+from pinstress.study.model.cases import CaseLoads
 from pinstress.study.reading.file import load_study
 from tests.conftest import ROOT
 
@@ -50,3 +56,78 @@ def test_pins_carry_all_six_components(tmp_path: Path) -> None:
         needs = [margin.needs for margin in row.worst if margin.needs]
         assert "a check of lugs under forces along the pin and moments of their links" in needs
     assert "forces along the axis: that of A on its own band" in rows["A", "side"].note
+
+
+PART_25 = ROOT / "studies" / "landing_gear_part25.toml"
+DROPS = {"landing-weight": 10.0, "take-off-weight": 6.0, "reserve-energy": 12.0}  # ft/s
+POUND, INCH = 4.4482216152605, 0.0254
+
+
+def loads_of(study: pinstress.Study) -> dict[str, CaseLoads]:
+    """The loads of all cases."""
+    return all_loads(study, [*study.table.case])
+
+
+def test_drops_of_part_25_are_those_of_a_mass_on_a_spring() -> None:
+    """With lift equal to weight the largest reaction is v sqrt(m k), after a quarter of a period;
+    the parts of the paragraphs follow from it.
+    """
+    stiffness = 106500.0 / 10.0 * POUND / INCH
+    mass = 37500.0 * 0.45359237
+    loads = loads_of(load_study(PART_25))
+    for name, feet in DROPS.items():
+        landing = loads[name].landing
+        assert landing is not None
+        peak = landing.peaks["vertical"]
+        assert peak.value == pytest.approx(0.3048 * feet * math.sqrt(mass * stiffness), rel=1e-6)
+        assert peak.time == pytest.approx(math.pi / 2.0 * math.sqrt(mass / stiffness), rel=1e-3)
+        assert peak.time == pytest.approx(0.15, rel=1e-3)  # the publication's
+    largest = 3.048 * math.sqrt(mass * stiffness)
+    parts = {  # vertical, aft, and towards the pilot's left, who flies to -x: z
+        "25.473-spin-up": (1.0, 0.8, 0.0),
+        "25.473-spring-back": (1.0, -0.8, 0.0),
+        "25.479-drag": (1.0, 0.25, 0.0),
+        "25.479-drift-inboard": (0.75, 0.3, -0.1875),
+        "25.479-drift-outboard": (0.75, 0.3, 0.1875),
+    }
+    assert [*loads] == [*DROPS, *parts]
+    for name, (vertical, aft, side) in parts.items():
+        ground = loads[name].ground
+        assert ground is not None
+        total = np.sum([force.force for force in ground.forces], axis=0)
+        assert total == pytest.approx(largest * np.array([aft, vertical, side]), rel=1e-6), name
+
+
+def test_landings_of_part_25_reach_the_aircraft_with_all_six_components() -> None:
+    """Equilibrium of the whole gear. Weights drop out of the difference of two cases: between the
+    drifts the side load alone acts, twice; among the others drag and vertical load.
+    """
+    study = load_study(PART_25)
+    loads = loads_of(study)
+    drift = [loads[f"25.479-drift-{side}"] for side in ("inboard", "outboard")]
+    _in_equilibrium(*drift)
+    others = [loads[f"25.{name}"] for name in ("473-spin-up", "473-spring-back", "479-drag")]
+    for one in others[1:]:
+        _in_equilibrium(others[0], one)
+
+
+def _in_equilibrium(one: CaseLoads, other: CaseLoads) -> None:
+    """What A, D and H pass on, less the forces on the wheel, between two cases."""
+    force, moment = np.zeros((2, 3))
+    for case, sign in ((one, 1.0), (other, -1.0)):
+        assert case.ground is not None
+        assert case.dynamics is not None
+        motion, r = case.dynamics.motion, case.reactions
+        offsets = {} if case.side is None else case.side.offsets.connections
+        for push in case.ground.forces:
+            at = np.array([*motion.joint("J")[0][0], 0.0]) + push.arm
+            force += sign * np.array(push.force)
+            moment += sign * np.cross(at, push.force)
+        for name in ("A", "D1", "D2", "H"):
+            k, joint = r.connections.index(name), name[0]
+            at = np.array([*motion.joint(joint)[0][0], offsets.get(name, 0.0)])
+            force -= sign * r.forces[0, k]
+            moment -= sign * (np.cross(at, r.forces[0, k]) + r.moments[0, k])
+    size = 1e5 * POUND
+    assert force == pytest.approx(np.zeros(3), abs=1e-9 * size)
+    assert moment == pytest.approx(np.zeros(3), abs=1e-9 * size)

@@ -33,7 +33,8 @@ JAMS = ("slider_crank_jammed",)  # has no forces
 QUICK = "slider_crank", "planetary", "lifting_arm"
 SLOW = (
     "bowman2019", "bucket", "crane", "drop", "engine", "excavator", "grenier2008", "hood",
-    "landing_gear", "main_gear", "matrix_four_bar", "pump_jack", "scissor_lift",
+    "landing_gear", "landing_gear_part25", "main_gear", "matrix_four_bar", "pump_jack",
+    "scissor_lift",
 )  # fmt: skip
 
 
