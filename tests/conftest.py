@@ -7,7 +7,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from multiprocessing import resource_tracker
 from pathlib import Path
@@ -21,6 +21,7 @@ hold_threads()  # as the command does, whose numbers are compared
 
 from fea.core.material import Material
 from geometry import Pin, Segment
+from geometry.imported.body_file import BodyFile
 from loads import Linkage
 from pinbase.platform import portable
 from pinstress import load_study
@@ -72,6 +73,19 @@ def _no_process_is_left() -> Iterator[None]:
         with suppress(ProcessLookupError):
             os.kill(process, signal.SIGKILL)
     assert not left, "the test has left a process behind"
+
+
+@pytest.fixture
+def read_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Files of pins are read in this process: to start another takes longer than to read one.
+
+    That they are read in another is tested in pinstress/study/model/test_read_body.py.
+    """
+
+    def here(work: Callable[..., object], file: BodyFile, *arguments: object) -> object:
+        return work(file, *arguments)
+
+    monkeypatch.setattr("pinstress.study.model.imported_pin.apart", here)
 
 
 @pytest.fixture(scope="session")

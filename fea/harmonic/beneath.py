@@ -25,6 +25,7 @@ from pinbase.arrays import Floats, Ints, Mask
 # Chosen by judgement:
 ARC_STRIDE = 8  # one arc in so many is evaluated for the reach
 EDGE_CIRCLE_POINTS = 9  # points of a quarter circle about the edge of a lug
+DEPTH_BATCH = 256  # points whose stress all round is held at once
 OUTSIDE_MARGIN = 1e-6  # of the distance: puts points just outside it despite round-off
 
 
@@ -140,10 +141,15 @@ def depths(
     rows = np.flatnonzero(_away_from(zones, fields))
     around = Circumference(fields, loads)
     rows = rows[around.reach(rows, np.array([instant]))[:, 0] > least]
-    if not len(rows):
-        return ()
-    stress = von_mises(around.stress(rows, instant, ARC_ANGLES[::ARC_STRIDE])).ravel()
-    return stairs(stress, _distance(fields.points[rows], loads.pressed, instant).ravel(), least)
+    parts = list[tuple[float, float]]()
+    # In parts, for stress of all points in all harmonics of narrow arcs would take gigabytes.
+    for k in range(0, len(rows), DEPTH_BATCH):
+        part = rows[k : k + DEPTH_BATCH]
+        stress = von_mises(around.stress(part, instant, ARC_ANGLES[::ARC_STRIDE])).ravel()
+        away = _distance(fields.points[part], loads.pressed, instant).ravel()
+        parts += stairs(stress, away, least)
+    stress, away = np.array(parts).reshape(-1, 2).T
+    return stairs(stress, away, least)
 
 
 def stairs(stress: Floats, away: Floats, least: float = 0.0) -> Steps:

@@ -18,6 +18,7 @@ from fea.support.records import LugStress
 from pinbase.arrays import Floats
 from pinbase.memo import Memo
 
+ANGLE_DECIMALS = 6  # of degrees, which are far fewer than a mesh resolves
 ALONG_FORCE = "shank along the largest force, in tension"
 
 
@@ -94,6 +95,14 @@ def _eye(contact: PressedCases, lug: Lug, ends: Floats, memo: Memo) -> EyeStress
     )
 
 
+def degrees_from_shank(angle: float) -> float:
+    """The angle from a shank, from -180 to 180 degrees, without the round-off that a zero has.
+
+    angle: rad.
+    """
+    return round(math.degrees(math.remainder(angle, 2.0 * math.pi)), ANGLE_DECIMALS) + 0.0
+
+
 def _record(lug: Lug, stress: BoreStress, z: float, assumed: str) -> LugStress:
     return LugStress(
         connection=lug.connection,
@@ -102,7 +111,7 @@ def _record(lug: Lug, stress: BoreStress, z: float, assumed: str) -> LugStress:
         material=stress.material.name,
         max_von_mises=stress.von_mises,
         max_hoop_stress=stress.hoop,
-        angle=math.degrees(math.remainder(stress.angle, 2.0 * math.pi)),
+        angle=degrees_from_shank(stress.angle),
         z=z,
         time=stress.time,
         error_estimate=stress.error,

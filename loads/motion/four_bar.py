@@ -1,9 +1,8 @@
-"""Four-bar linkages: their recognition, class after Grashof, and branch of assembly."""
+"""Four-bar linkages: their recognition, class after Grashof, and whether they are crossed."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
@@ -20,13 +19,13 @@ class FourBar:
     lengths: of the ground, the driven link, the coupler and the follower, m.
     bodies: the driven link, the coupler and the follower.
     joints: in order along the ring (fixed, moving, moving, fixed).
-    branch: whether it is assembled open or crossed.
+    crossed: whether two of its sides intersect as drawn.
     """
 
     lengths: tuple[float, float, float, float]
     bodies: tuple[str, str, str]
     joints: tuple[str, str, str, str]
-    branch: Literal["open", "crossed"]
+    crossed: bool
 
     @property
     def kind(self) -> str:
@@ -78,19 +77,29 @@ def four_bar(linkage: Linkage) -> FourBar | None:
         _distance(at[1], at[2]),
         _distance(at[2], at[3]),
     )
-    return FourBar(lengths, (driven, coupler, follower), joints, _branch(at))
+    return FourBar(lengths, (driven, coupler, follower), joints, _crossed(at))
 
 
 def _distance(a: Point, b: Point) -> float:
     return float(np.hypot(a[0] - b[0], a[1] - b[1]))
 
 
-def _branch(at: list[Point]) -> Literal["open", "crossed"]:
-    """The branch in which the four joints at `at` are assembled.
+def _crossed(at: list[Point]) -> bool:
+    """Whether two opposite sides of the ring of four joints at `at` intersect.
 
-    It is open when, with the ground pointing right, the coupler's end lies left of the line from
-    the crank's end to the follower's pivot (Norton, sec. 4.5); a turn of the crank keeps it there.
+    Of Grashof's linkages these are the two links adjacent to the shortest (Norton, Design of
+    Machinery, sec. 4.5). The mirror image of a linkage is as it is.
     """
-    (_, a, b, o4) = at
-    left = (o4[0] - a[0]) * (b[1] - a[1]) - (o4[1] - a[1]) * (b[0] - a[0]) > 0.0
-    return "open" if left else "crossed"
+    o2, a, b, o4 = at
+    return _intersect(o2, a, b, o4) or _intersect(a, b, o4, o2)
+
+
+def _intersect(p: Point, q: Point, r: Point, s: Point) -> bool:
+    """Whether the segments p-q and r-s intersect within both."""
+    apart = _side(p, q, r) * _side(p, q, s), _side(r, s, p) * _side(r, s, q)
+    return max(apart) < 0.0
+
+
+def _side(p: Point, q: Point, at: Point) -> float:
+    """Twice the area of the triangle p, q, at; positive where `at` is left of p to q."""
+    return (q[0] - p[0]) * (at[1] - p[1]) - (q[1] - p[1]) * (at[0] - p[0])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -57,6 +57,13 @@ class RunResults(Results):
         """
         return Row.of(super().__getitem__(row), self, self.to_pyvista)
 
+    def __len__(self) -> int:
+        return len(self.pins)
+
+    def __iter__(self) -> Iterator[Row]:
+        """Iterate over all rows, a pin in a case each."""
+        return (self[row.pin, row.case] for row in self.pins)
+
     def _repr_html_(self) -> str:
         return safety_factors_html(self)
 
@@ -103,9 +110,12 @@ class RunResults(Results):
         import pyvista
 
         from reports.vtk.fields import block
+        from reports.vtk.index import origin_data
         from reports.vtk.writer import grid
 
         content = block(self._field(pin, case), self.units)
+        whole = {**content.whole, **origin_data(self, self[pin, case])}
+        content = dataclasses.replace(content, whole=whole)
         mesh: pyvista.UnstructuredGrid = pyvista.wrap(grid(content))
         return mesh
 

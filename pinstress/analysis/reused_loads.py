@@ -12,10 +12,12 @@ from pinstress.analysis.plan import LoadsOf, all_loads
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.sequence import require_times
 from pinstress.study.reading.file import Study
-from pinstress.study.schema.cases import GivenCase
+from pinstress.study.schema.cases import GivenCase, MechanismCase
+from pinstress.study.schema.landing import GroundCase
+from pinstress.study.schema.mechanism import MechanismTable
 
 # Of a study with a mechanism: its loads are computed on points, the pins' joints, whose shapes and
-# materials count only where they give a joint its weight.
+# materials count only where they give a joint its weight, and links their places along it.
 TABLES_WITHOUT_LOADS = "pin", "material", "analysis", "vary", "published", "report", "size"
 
 
@@ -64,4 +66,26 @@ def _content(study: Study, raw: Mapping[str, Any]) -> bytes:
         if joint.weight is None and joint.fixed_in is None and name in table.pin
     ]
     weights = [(raw["pin"][x], table.material[table.pin[x].material].density) for x in weighed]
-    return hashlib.sha256(json.dumps([tables, joints, weights], default=str).encode()).digest()
+    along = [_lengths(raw["pin"][x]) for x in table.pin] if _bands_count(study) else []
+    depends = [tables, joints, weights, along]
+    return hashlib.sha256(json.dumps(depends, default=str).encode()).digest()
+
+
+def _bands_count(study: Study) -> bool:
+    """Return whether forces may depend on where along the pins links bear on them: in space, and
+    out of the plane of a planar linkage.
+    """
+    mechanism, cases = study.table.mechanism, study.table.case.values()
+    if not isinstance(mechanism, MechanismTable):
+        return True
+    applied = (load for case in cases if isinstance(case, MechanismCase) for load in case.apply)
+    return (
+        any(joint.z is not None for joint in mechanism.joint.values())
+        or any(isinstance(case, GroundCase) for case in cases)
+        or any(load.out_of_plane for load in applied)
+    )
+
+
+def _lengths(pin: Mapping[str, Any]) -> Any:
+    """Return what places the bands of a pin: the lengths of its profile, or all of it."""
+    return [segment.get("length") for segment in pin.get("profile", ())] or pin

@@ -25,6 +25,10 @@ from reports.tables.chart import chart_table
 from reports.text.chart_summary import print_chart
 
 CHART_CSV = f"{CHART_NAME}.csv"
+CALCULIX_TAKES_LONG = (
+    "CalculiX solves contact in three dimensions on three meshes, which takes minutes; one that "
+    "takes longer than --time-limit fails."
+)
 
 
 def chart_and_write(
@@ -37,10 +41,11 @@ def chart_and_write(
     runs: int,
     limits: MeasureLimits,
     calculix: bool = False,
+    quiet: bool = False,
 ) -> int:
     """Chart a pin into a folder and return the exit status.
 
-    calculix: whether CalculiX also solves the pin.
+    calculix: whether CalculiX also solves the pin. quiet: without progress and notes.
 
     Raises: InputError, ArithmeticError.
     """
@@ -54,34 +59,29 @@ def chart_and_write(
     require_positive("memory_limit", limits.memory, endless=True)
     plan = plan_chart(study, pin, case, tolerance)
     if calculix:
-        _announce_calculix(plan)
+        _require_contact(plan)
+        if not quiet:
+            click.echo(CALCULIX_TAKES_LONG, err=True)
     with replacing(directory, CHART_CSV) as staging:
-        with progress_bar() as progress:
+        with progress_bar(quiet=quiet) as progress:
             result = chart(plan, partial(measure, limits=limits), meshes, runs, progress, calculix)
         chart_table(result).write(staging)
         draw([chart_plot(result)], staging)
     with unneeded(directory):
         print_chart(result, console())
-    click.echo(f"Chart: {directory / CHART_NAME}.svg", err=True)
+    if not quiet:
+        click.echo(f"Chart: {directory / CHART_NAME}.svg", err=True)
     return _report_missed(result)
 
 
-def _announce_calculix(plan: ChartPlan) -> None:
-    """Announce the duration of CalculiX's solution.
-
-    Raises: InputError for a pin that is not in contact.
-    """
+def _require_contact(plan: ChartPlan) -> None:
+    """Raise an InputError for a pin that is not in contact."""
     if plan.chosen is None:
         raise InputError(
             "--second-opinion ccx: charts include CalculiX only for pins in contact with their "
             "lugs; for others use pinstress run --second-opinion ccx",
             code="no-contact",
         )
-    click.echo(
-        "CalculiX solves contact in three dimensions on three meshes, which takes minutes; one "
-        "that takes longer than --time-limit fails.",
-        err=True,
-    )
 
 
 def _report_missed(result: Chart) -> int:

@@ -225,7 +225,8 @@ def _mechanism(study: Study, mechanism: AnyLinkage) -> list[str]:
     if mobility.kutzbach != mobility.degrees:
         counted += f" by rank, {mobility.kutzbach} by count (Kutzbach)"
     if ring := four_bar(mechanism):
-        counted += f"; four-bar {'-'.join(ring.joints)}: {ring.kind}, assembled {ring.branch}"
+        drawn = "crossed" if ring.crossed else "open"
+        counted += f"; four-bar {'-'.join(ring.joints)}: {ring.kind}, drawn {drawn}"
     if not mobility.redundant:
         return [*lines, counted]
     if mobility.shared and not mechanism.sharing:

@@ -38,7 +38,7 @@ def write_check_page(study: Study, examination: Examination, path: Path) -> None
             *study.warnings,
         ),
         motions=tuple(
-            linkage_motion(study, name, loads.dynamics, None)
+            linkage_motion(study, name, loads)
             for name, loads in examination.loads.items()
             if loads.dynamics is not None
         ),

@@ -33,6 +33,7 @@ from pinstress.cli.shared import (
     CASES_OPTION,
     PATH,
     POSITIVE,
+    QUIET_OPTION,
     SHARE,
     STUDY,
     Commands,
@@ -333,6 +334,7 @@ def loads(
     help="For a pin in its lugs: also CalculiX with contact in three dimensions, which takes "
     "minutes.",
 )
+@QUIET_OPTION
 def chart(
     study: Path,
     pin: str,
@@ -344,6 +346,7 @@ def chart(
     time_limit: float,
     memory_limit: float,
     second_opinion: str | None,
+    quiet: bool,
 ) -> int:
     if second_opinion is not None:
         _require_calculix()
@@ -353,7 +356,7 @@ def chart(
 
     limits = MeasureLimits(time_limit, memory_limit)
     calculix = second_opinion is not None
-    return chart_and_write(loaded, pin, case, out, tolerance, meshes, runs, limits, calculix)
+    return chart_and_write(loaded, pin, case, out, tolerance, meshes, runs, limits, calculix, quiet)
 
 
 @commands.command(

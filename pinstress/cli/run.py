@@ -51,7 +51,7 @@ from reports.text.safety_factors import print_safety_factors
 from reports.text.second_opinion import print_second_opinion
 from reports.text.work import print_work
 from reports.vtk.fields import surface, write_flow, write_pin
-from reports.vtk.index import write_index
+from reports.vtk.index import identify_files
 
 FILE_COLUMNS = 120  # of output that is no terminal and has no width
 # What solving a pin imports on demand: libraries of nearly all pins, and models
@@ -133,8 +133,8 @@ def run_and_write(
             results = results_of(plan, outcomes)
             if wanted.vtk != "none":
                 _write_flows(results, staging / "vtk")
-                files = {f"{field_name(row.pin, row.case)}.vtu": row for row in results.pins}
-                write_index(results, files, staging / "vtk")
+                files = {field_name(row.pin, row.case): row for row in results.pins}
+                identify_files(results, files, staging / "vtk")
             progress("report", 1.0)
             _write(results, staging, most)
     if wanted.junit is not None:

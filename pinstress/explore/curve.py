@@ -12,6 +12,7 @@ from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
 from pinstress.explore.sweep.evaluate import DesignRow, Evaluator, rows_without_maximum
 from pinstress.explore.sweep.number import Number, number_at, si_value
 from pinstress.explore.sweep.workers import PROCESS_DIED
+from pinstress.study.model.lugs import with_given_lugs
 from pinstress.study.model.requirements import common_required_factor
 from pinstress.study.reading.file import Study
 from reports.data.curve import CurvePoint, FactorCurve
@@ -61,10 +62,11 @@ def curve(
             rows = [failed for _ in part]
         for value, design in zip(part, rows, strict=True):
             solved += [_point(study, number, float(value), row) for row in design]
-    required = common_required_factor(study, {row.pin for row in solved})
+    names = tuple(dict.fromkeys(row.pin for row in solved))
+    required = common_required_factor(study, names)
     return FactorCurve(
         study.name, key, number.unit, number.nominal / number.factor, required,
-        study.system.stress, tuple(solved),
+        study.system.stress, tuple(solved), with_given_lugs(study, names),
     )  # fmt: skip
 
 

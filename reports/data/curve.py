@@ -65,6 +65,7 @@ class FactorCurve:
     required: the factor to reach, if any.
     stress_unit: of the points' stresses.
     points: by rising value.
+    in_lugs: the pins whose lugs are not judged.
     """
 
     study: str
@@ -74,6 +75,7 @@ class FactorCurve:
     required: float | None
     stress_unit: str
     points: tuple[CurvePoint, ...]
+    in_lugs: tuple[str, ...] = ()
 
     @property
     def pins(self) -> tuple[str, ...]:

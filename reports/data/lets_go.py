@@ -27,6 +27,8 @@ UNDER_EDGE = "pin under the edge of a lug"
 LIMIT_LOAD_NEED = 'analysis.limit_load = "always"'
 PRESS_FIT_NEED = "a run at the larger loads, because a press fit stresses it without any"
 SHARP_EDGE_NEED = "edge_radius of its lugs, because pressure has no bound at a sharp edge"
+WALLS = {"bore": "bore of the lug", "bushing": "bushing", "hole": "hole of the lug"}
+IN_LUG = (*WALLS.values(), LUG_METHOD)  # with which the steps of a lug begin
 SAME_FACTOR = 1e-3  # relative difference of load factors of places that share a step
 
 
@@ -105,7 +107,8 @@ class _Joint:
 
     solved: whether the joint was. proportional: whether contact grows in proportion: without
     clearance and with sharp edges. pressed: whether the pin is pressed into a lug; bushed: lugs
-    into which a bushing is. structure: lugs whose force only the joint gives.
+    into which a bushing is, which stresses these two alone. structure: lugs whose force only the
+    joint gives.
     """
 
     solved: bool
@@ -131,7 +134,7 @@ class _Joint:
         for step, of_joint in steps:
             if not (of_joint and self.solved) and step.at not in self.structure:
                 yield step
-            elif self.pressed or step.at in self.bushed:
+            elif self.pressed or (step.at in self.bushed and step.what.startswith(IN_LUG)):
                 yield replace(step, load_factor=None, low=None, high=None, needs=PRESS_FIT_NEED)
             else:
                 yield replace(step, in_proportion=self.proportional)
@@ -188,7 +191,7 @@ def _of_lugs(row: PinResult) -> Iterator[tuple[LettingGo, bool]]:
 
 
 def _wall(stress: LugStress) -> str:
-    part = {"bore": "bore of the lug", "bushing": "bushing"}.get(stress.wall, "hole of the lug")
+    part = WALLS[stress.wall]
     return f"{part}, {'free side' if stress.place == 'free' else 'where it is pressed'}"
 
 
@@ -216,7 +219,7 @@ def _effect(m: Margin) -> str:
     if m.kind == "collapse":
         return COLLAPSES
     if m.kind == "model":
-        return ELASTIC_RUPTURE
+        return ELASTIC_RUPTURE if m.level == "ultimate" else LOCAL
     return BY_FORMULA[m.level] if m.kind == "hand" else ALLOWED
 
 

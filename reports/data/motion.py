@@ -103,7 +103,7 @@ class PitchCurve:
 class AppliedForce:
     """A force that a case applies to a body at a point of it.
 
-    position, force: world axes, (T, 2), in space (T, 3).
+    position, force: world axes, (T, 2), in space (T, 3); force also where it is across the plane.
     """
 
     body: str
@@ -136,7 +136,7 @@ class LinkageMotion:
     linkage on its ground.
     slider_forces: by slider, from the base on the moving body. paths: of named points.
     extremes: over the motion, between the instants too; None: over the instants alone.
-    applied: the forces of the case's loads.
+    applied, aside: the forces of the case's loads in the plane and across it.
     """
 
     case: str
@@ -167,6 +167,7 @@ class LinkageMotion:
     extremes: Extremes | None = None
     pitch: tuple[PitchCurve, ...] = ()
     applied: tuple[AppliedForce, ...] = ()
+    aside: tuple[AppliedForce, ...] = ()
 
     @property
     def poorest(self) -> dict[str, tuple[float, float | None]]:

@@ -38,6 +38,7 @@ class Skeleton:
     slides: by slider, its two ends (T, 2, 3).
     connections: (name, body, joint) in the order of the case's ReactionTable.
     paths: of named points, (T, 3). applied, couples: of the case's loads, (T, 3).
+    aside: the loads across the plane of a planar linkage.
     pitch: curves of gears and racks, (T, 2, 3), in the x-y plane.
     up: the vertical of the drawings, along one of the axes.
     flat: whether everything lies in the x-y plane, which is then the plane of the drawings.
@@ -58,6 +59,7 @@ class Skeleton:
     paths: dict[str, Lengths] = field(default_factory=dict)
     applied: tuple[AppliedForce, ...] = ()
     couples: tuple[AppliedCouple, ...] = ()
+    aside: tuple[AppliedForce, ...] = ()
     pitch: tuple[PitchCurve, ...] = ()
     up: Vector = (0.0, 0.0, 1.0)
     flat: bool = False
@@ -65,7 +67,12 @@ class Skeleton:
     @property
     def loads(self) -> tuple[AppliedForce | AppliedCouple, ...]:
         """The forces, then the couples."""
-        return (*self.applied, *self.couples)
+        return (*self.forces, *self.couples)
+
+    @property
+    def forces(self) -> tuple[AppliedForce, ...]:
+        """The forces, those across the plane last."""
+        return (*self.applied, *self.aside)
 
 
 def planar_skeleton(motion: LinkageMotion) -> Skeleton:
@@ -89,6 +96,7 @@ def planar_skeleton(motion: LinkageMotion) -> Skeleton:
             replace(load, position=_lifted(load.position), force=_lifted(load.force))
             for load in motion.applied
         ),
+        aside=tuple(replace(load, position=_lifted(load.position)) for load in motion.aside),
         pitch=tuple(replace(curve, ends=_lifted(curve.ends)) for curve in motion.pitch),
         up=(0.0, 1.0, 0.0),
         flat=True,

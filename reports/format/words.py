@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from math import inf
 
@@ -283,6 +283,15 @@ def _margin_words(check: JudgedCheck) -> str:
     case = f" ({check.case})" if check.case else ""
     name = "" if check.stated else "margin of safety "
     return f"{check.check}, {name}{spare_words(check)}{case}"
+
+
+def lugs_not_judged(pins: Iterable[str]) -> str:
+    """Return the sentence that factors are of pins alone, of which these have lugs; empty where
+    none has.
+    """
+    names = ", ".join(dict.fromkeys(pins))
+    of = f"The lugs of {names} are not judged here, the pin alone"
+    return f"{of}: `pinstress run` judges both." if names else ""
 
 
 def spare_words(check: JudgedCheck) -> str:

@@ -65,7 +65,7 @@ def render(study: CheckedStudy) -> str:
 
 def _loaded(skeleton: Skeleton, units: Units) -> str:
     """Return the linkage at the instant of the largest applied force, with names of the joints."""
-    sizes = sum((load.sizes for load in skeleton.applied), np.zeros(len(skeleton.position)))
+    sizes = sum((load.sizes for load in skeleton.forces), np.zeros(len(skeleton.position)))
     title = f"The linkage in case {skeleton.case}, with its applied forces"
     marks = [Mark(joint, joint) for joint in skeleton.joints]
     return draw_linkage(

@@ -10,6 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from reports.data.results import Floats, ReactionTable
+from reports.format.drawing.svg_labels import label_offsets
 from reports.page.linkage_panel import Instant, LinkagePanel, Points
 
 ARROW_CLEARANCE = 12.0  # between the tip of an arrow and the place where its force acts
@@ -20,6 +21,7 @@ SUPPORT_HEIGHT = 19.0
 AXIS_REACH, PIN_REACH = 24.0, 13.0  # from a joint, of its axis and of the pin about it
 MIN_AXIS_LENGTH = 1.0  # of an axis on the picture; below it the ring of the joint stands for it
 END_ON_LENGTH = 0.25  # of a unit vector on the picture: below it an arrow points along the view
+RING_SIZE = 18.0  # of an arrow end on, with the width of its line
 TRIAD_REACH, TRIAD_LETTERS = 20.0, 27.0  # from its corner: the arrows of the axes and their names
 
 
@@ -123,7 +125,7 @@ def pitches(at: Instant, panel: LinkagePanel) -> Iterable[str]:
 def levers(at: Instant, panel: LinkagePanel, points: Points) -> Iterable[str]:
     """Yield a line from every force to the nearest joint of the body on which it acts."""
     skeleton = at.skeleton
-    for load in skeleton.applied:
+    for load in skeleton.forces:
         joints = skeleton.links[skeleton.bodies.index(load.body)]
         acting = panel.pixels(load.position[min(at.k, len(load.position) - 1)])
         away = [points[joint] - acting for joint in joints]
@@ -170,7 +172,26 @@ def load_arrows(at: Instant, panel: LinkagePanel) -> list[LoadArrow]:
             near = float(panel.view.depth(vectors[k]))
             end_on = int(np.sign(near)) if np.linalg.norm(along) < END_ON_LENGTH else 0
             arrows.append(LoadArrow(tip, tail, size, end_on, couple))
-    return arrows
+    return [*arrows, *_rings(at, panel, arrows)]
+
+
+def _rings(at: Instant, panel: LinkagePanel, arrows: Sequence[LoadArrow]) -> Iterable[LoadArrow]:
+    """Yield each force across the plane of a planar linkage, beside its point where it hides
+    least.
+    """
+    points = panel.joints(at)
+    lines = [[point, point] for point in points.values()]
+    lines += [[points[a], points[b]] for joints in at.skeleton.links for a, b in sides(joints)]
+    lines += [[arrow.tail, arrow.tip] for arrow in arrows]
+    for load in at.skeleton.aside:
+        k = min(at.k, len(load.sizes) - 1)
+        if size := float(load.sizes[k]):
+            place = panel.pixels(load.position[k])
+            places, ring = place[None, None], np.full((1, 2), RING_SIZE)
+            offsets = label_offsets(places, ring, np.array([lines]), ARROW_CLEARANCE, panel.size)
+            centre = place + offsets[0]
+            lines.append([centre, centre])
+            yield LoadArrow(centre, centre, size, int(np.sign(panel.view.depth(load.force[k]))))
 
 
 def draw_arrow(arrow: LoadArrow) -> str:

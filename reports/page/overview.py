@@ -48,6 +48,7 @@ LABEL_AT_END = 12.0  # per cent of the axis: nearer to its left end, the label b
 LABEL_WIDTH = 20.0  # of "1.5 required", per cent of the axis: no tick is written so near to it
 MAX_CHECKS = 3  # of a row of the matrix by name
 MAX_MATRIX_PINS = 14  # columns of the matrix of requirements; of more pins it is left out here
+LONG_NAME = 16  # characters: longer names wrap, or stand upright above a column
 MARKS = {
     FAILS: "✕", YIELDS: "✕", SAFE: "✓", BELOW_YIELD: "✓", DEPENDS: "◐", NOT_DECIDED: "?",
     "met": "✓", "missed": "✕", "not checked": "?",
@@ -61,21 +62,24 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
     anchors: of the pins' parts of the page. drawing: shown where there is no linkage.
     """
     lines = pin_lines(results)
+    pins = list(dict.fromkeys(line.pin for line in lines))
     unknown = unknowns(line.row for line in lines)
     axis = factor_axis(lines)
-    matrix = matrix_rows(requirement_rows(results)) if len(lines) <= MAX_MATRIX_PINS else []
+    matrix = matrix_rows(requirement_rows(results)) if len(pins) <= MAX_MATRIX_PINS else []
     steps = actions(results, lines)
     linkage = _linkage(results, lines, anchors)
     return {
         "headline": headline(results),
         "state": _css(lines[0].outcome) if lines else "",
         "decisions": decisions(results, lines),
-        "about": _about(results, lines),
+        "about": _about(results, pins),
+        "pins": pins,
         "linkage": linkage,
         "drawing": "" if linkage else drawing,
         "caption": _caption(results, lines) if linkage else "",
         "case": lines[0].row.case if lines else "",
         "same_case": len({line.row.case for line in lines}) == 1,
+        "long_names": any(len(x) > LONG_NAME for line in lines for x in (line.pin, line.row.case)),
         "axis": _ticks(axis) if axis else None,
         "lines": [_line(line, results, axis, anchors) for line in lines],
         "length": results.units.length,
@@ -84,7 +88,7 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "whatever": any(line.spread and whatever_words(line) != DASH for line in lines),
         "legend": _legend(lines, axis, bool(unknown)) if axis else "",
         "checks": any(check_words(line) != DASH for line in lines),
-        "matrix": [_matrix_row(row, lines) for row in matrix],
+        "matrix": [_matrix_row(row, pins) for row in matrix],
         "why": why(results, lines, MAX_PEAKS),
         "why_title": "Why" if not lines or lines[0].outcome in GOOD else "Why they fail",
         "actions": [*steps.repairs, *steps.remarks],
@@ -113,6 +117,8 @@ def _caption(results: Results, lines: Sequence[PinLine]) -> str:
         f"Case {lines[0].row.case}. Number: factor. Width: force. Arrow: applied load. Triangle: "
         "frame, with its force."
     )
+    if any(x.aside for x in results.motion if x.case == lines[0].row.case):
+        text += " Ring: load towards the reader (dot) or away (cross)."
     return f"{text} Dash-dotted: axis of a pin." if results.space else text
 
 
@@ -129,11 +135,11 @@ def _legend(lines: Sequence[PinLine], axis: FactorAxis, open_values: bool) -> st
     return " ".join(parts)
 
 
-def _about(results: Results, lines: Sequence[PinLine]) -> str:
+def _about(results: Results, pins: Sequence[str]) -> str:
     """Return the number of pins, their material and the cases, in one line."""
     materials = list(dict.fromkeys(shape.material for shape in results.shapes))
     cases = list(dict.fromkeys(row.case for row in results.pins))
-    parts = [f"{len(lines)} pin{'s' * (len(lines) != 1)}"]
+    parts = [f"{len(pins)} pin{'s' * (len(pins) != 1)}"]
     if len(materials) == 1:
         strength = next((r.yield_strength for r in results.pins if r.yield_strength), None)
         text = materials[0]
@@ -211,7 +217,7 @@ def _line(
     }
 
 
-def _matrix_row(row: MatrixRow, lines: Sequence[PinLine]) -> dict[str, Any]:
+def _matrix_row(row: MatrixRow, pins: Sequence[str]) -> dict[str, Any]:
     needs = [need.rpartition(".")[2] for need in row.needs]
     return {
         "check": _few(row.check.split(", ")) if needs else row.check,
@@ -222,7 +228,7 @@ def _matrix_row(row: MatrixRow, lines: Sequence[PinLine]) -> dict[str, Any]:
         "title": row.check,
         "cells": [
             (MARKS.get(state, ""), _css(CLASSES.get(state, state)), state)
-            for state in (row.cells.get(line.pin, "") for line in lines)
+            for state in (row.cells.get(pin, "") for pin in pins)
         ],
     }
 

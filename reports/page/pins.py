@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from reports.data.decision import worst_first
 from reports.data.governing import governing
+from reports.data.headline import worst_checks
 from reports.data.results import PinResult, Results
 from reports.format.numbers import engineering, ratio
 from reports.format.ranges import error_range, factor_range
@@ -53,8 +54,8 @@ class PinCase:
 class PinPart:
     """One pin on the page.
 
-    anchor: on the page. outcome: of its worst case. material: in words. drawing: of the pin.
-    table: a line for every case, the worst first; outcomes: of its lines.
+    anchor: on the page. outcome: of its worst check. material: in words. drawing: of the pin.
+    table: a line for every case, the worst first; outcomes: of their stress.
     cases: the worst first. moving: cases with a motion. views: in 3D. lets_go: the ladder of load
     factors in the worst case.
     """
@@ -76,23 +77,25 @@ def pin_parts(results: Results, drawings: dict[str, str]) -> list[PinPart]:
     """Return the pins in the order of the results, then those that were not solved."""
     shapes = {shape.pin: shape for shape in results.shapes}
     names = dict.fromkeys([p.pin for p in results.pins] + list(shapes))
-    ladders = lets_go_parts(results)
+    ladders, worst = lets_go_parts(results), worst_checks(results)
+    outcomes = {name: check.outcome for name, check in worst.items()}
     return [
-        _pin(results, name, f"pin-{number}", drawings.get(name, ""), ladders.get(name))
+        _pin(results, name, f"pin-{number}", drawings.get(name, ""), ladders.get(name), outcomes)
         for number, name in enumerate(names, start=1)
     ]
 
 
 def _pin(
-    results: Results, name: str, anchor: str, drawing: str, ladder: LetsGoPart | None
-) -> PinPart:
+    results: Results, name: str, anchor: str, drawing: str, ladder: LetsGoPart | None,
+    outcomes: dict[str, str],
+) -> PinPart:  # fmt: skip
     shape = next((s for s in results.shapes if s.pin == name), None)
     rows = [row for row in worst_first(results) if row.pin == name]
     governs = governing_names(results, name)
     return PinPart(
         pin=name,
         anchor=anchor,
-        outcome=rows[0].outcome if rows else "",
+        outcome=outcomes.get(name, ""),
         material="" if shape is None else material_words(shape, results.units),
         drawing=drawing,
         table=grid_of(Table("cases", CASE_COLUMNS, rows), results.units),

@@ -34,8 +34,8 @@ MEASURED = {
     "strength": "yield strength",
 }
 ESTIMATES_TEXT = (
-    "Diameters are estimates, on five pins 0.6 to 1.1 times those that the command found; it "
-    "verifies them."
+    "Diameters are estimates, 0.6 to 1.1 times what the command found for five pins; it verifies "
+    "them."
 )
 Content = list[str]
 
@@ -233,7 +233,7 @@ def flips(row: PinResult, units: Units) -> str:
             continue
         what = d.value if d.what == BENEATH_CONTACT else d.what
         if d.what == TOGETHER or what == IMPULSE_RANGES_TOGETHER:
-            what = f"the combined {d.over} range"
+            what = f"the open {d.over} values together"
         at = _at(d, units)
         told.append(f"{what} ({at})" if at else what)
     return ", ".join(dict.fromkeys(told))

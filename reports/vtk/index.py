@@ -1,4 +1,4 @@
-"""What the VTU files of a run are of, beside them: meshio reads no file that has texts itself."""
+"""What the VTU files of a run are of: in their field data, and in a list beside them."""
 
 from __future__ import annotations
 
@@ -6,38 +6,76 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from reports.data.results import PinResult, Results
 from reports.format.numbers import finite
+from reports.vtk.writer import add_field_data
 
 
-def write_index(results: Results, files: Mapping[str, PinResult], directory: Path) -> None:
-    """Write index.json: study, versions and units, and pin, case, factor and verdict by file.
+def identify_files(results: Results, files: Mapping[str, PinResult], directory: Path) -> None:
+    """Add to every VTU and VTM file of a run what it is of, and list them in index.json.
 
-    files: rows by the names of their files, of which those that exist are listed.
+    files: rows by the names of their files without suffix, of which those that exist count.
     directory: with these files.
 
     Raises: OSError.
     """
+    rows = {name: row for name, row in files.items() if (directory / f"{name}.vtu").is_file()}
+    for name, row in rows.items():
+        folder, origin = directory / name, origin_data(results, row)
+        beside = sorted(folder.glob("*.vtu")) if folder.is_dir() else []
+        own = (directory / f"{name}{end}" for end in (".vtu", ".limit-load.vtu", ".vtm"))
+        for path in (*filter(Path.is_file, own), *beside):
+            add_field_data(path, origin)
     content = {
-        "title": results.title,
-        "study": results.study,
-        "study_sha256": results.study_sha256,
+        **_run(results),
         "versions": results.versions,
         "units": asdict(results.units),
-        "files": {
-            name: {
-                "pin": row.pin,
-                "case": row.case,
-                "max_von_mises": finite(row.max_von_mises),
-                "safety_factor": finite(row.safety_factor),
-                "required_safety_factor": row.required,
-                "verdict": row.verdict,
-                "outcome": row.outcome,
-            }
-            for name, row in files.items()
-            if (directory / name).is_file()
-        },
+        "files": {f"{name}.vtu": _judged(row) for name, row in rows.items()},
     }
     text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
     (directory / "index.json").write_text(text + "\n", encoding="utf-8")
+
+
+def origin_data(results: Results, row: PinResult) -> dict[str, NDArray[np.float64]]:
+    """Return the study, versions, units, pin, case, factor and verdict of a row as field data.
+
+    A text is the name of a number, 1, for meshio opens no file that has texts.
+    """
+    known = {
+        **_run(results),
+        **_judged(row),
+        **{f"version of {name}": version for name, version in results.versions.items()},
+        **{f"unit of {quantity}": unit for quantity, unit in asdict(results.units).items()},
+    }
+    return {
+        f"{key}: {value}" if isinstance(value, str) else key: np.array(
+            [1.0 if isinstance(value, str) else value]
+        )
+        for key, value in known.items()
+        if value is not None
+    }
+
+
+def _run(results: Results) -> dict[str, str]:
+    return {
+        "title": results.title,
+        "study": results.study,
+        "study_sha256": results.study_sha256,
+    }
+
+
+def _judged(row: PinResult) -> dict[str, Any]:
+    return {
+        "pin": row.pin,
+        "case": row.case,
+        "max_von_mises": finite(row.max_von_mises),
+        "safety_factor": finite(row.safety_factor),
+        "required_safety_factor": row.required,
+        "verdict": row.verdict,
+        "outcome": row.outcome,
+    }

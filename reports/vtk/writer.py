@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from shutil import copyfileobj
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
@@ -97,6 +98,38 @@ def _array(name: str, values: NDArray[Any] | Sequence[str], seven: bool) -> Any:
 def _numbers(values: NDArray[Any]) -> NDArray[Any]:
     kind = np.float32 if values.dtype == np.float64 else None
     return np.ascontiguousarray(values, dtype=kind)
+
+
+def add_field_data(path: Path, data: Mapping[str, NDArray[np.float64]]) -> None:
+    """Add numbers for the whole to a VTU or VTM file of this module.
+
+    Raises: OSError.
+    """
+    arrays = "".join(
+        f'<DataArray type="Float64" Name={quoteattr(name)} NumberOfTuples="{len(values)}" '
+        f'format="ascii">{" ".join(map(repr, values.tolist()))}</DataArray>\n'
+        for name, values in data.items()
+    )
+    whole = f"<FieldData>\n{arrays}</FieldData>\n"
+    extended = path.with_name(path.name + ".extended")
+    with (
+        path.open(encoding="utf-8") as old,
+        extended.open("w", encoding="utf-8", newline="\n") as new,
+    ):
+        for line in old:
+            match line.strip():
+                case "<FieldData>":
+                    new.write(line + arrays)
+                    break
+                case "</VTKFile>":  # of a VTM file
+                    new.write(whole + line)
+                    break
+                case text if text.startswith("<Piece "):
+                    new.write(whole + line)
+                    break
+            new.write(line)
+        copyfileobj(old, new)
+    extended.replace(path)
 
 
 def write_multiblock(blocks: Mapping[str, str], path: Path) -> None:

@@ -12,6 +12,7 @@ import pytest
 
 from tests.browser.test_pins import WIDER, screen
 from tests.support.each import sampled
+from tests.support.programs.command_line import QUICK, run_here
 from tests.support.results.browser_page import errors, opened
 
 pytestmark = pytest.mark.browser
@@ -38,6 +39,31 @@ return [...document.querySelectorAll("table.lines tbody tr")].map((tr) => ({
   low: parseFloat(tr.querySelector(".bar i").style.left),
   bottom: tr.getBoundingClientRect().bottom,
 }));
+"""
+
+# Names as drawings have them, with and without spaces.
+LONG = (
+    {"pin.B": 'pin."Drag brace upper attachment pin LH-3221-0047-A"'},
+    {
+        "pin.B": 'pin."Hubzylinderlagerungsbolzen_am_Ausleger_Nr_0815"',
+        "case.landing": 'case."maximum braked landing, 25.493(b), aft centre of gravity"',
+    },
+)
+# Texts of the table of pins that lie on a neighbour's.
+OVERLAPS = """
+const faults = [];
+for (const tr of document.querySelectorAll("table.lines tbody tr")) {
+  const rects = [...tr.children].filter((cell) => cell.textContent.trim()).map((cell) => {
+    const range = document.createRange();
+    range.selectNodeContents(cell);
+    return range.getBoundingClientRect();
+  });
+  for (const [i, a] of rects.entries()) for (const b of rects.slice(i + 1))
+    if (a.left < b.right - 1 && b.left < a.right - 1
+      && a.top < b.bottom - 1 && b.top < a.bottom - 1)
+      faults.push(tr.textContent.slice(0, 60));
+}
+return faults;
 """
 
 
@@ -136,3 +162,21 @@ def test_the_main_job_in_twenty_lines(shipped: Callable[[str], Path]) -> None:
         "lacks ultimate, shear, bearing strength",
     ):
         assert words in text
+
+
+@pytest.mark.parametrize("names", LONG, ids=["pin", "pin and case"])
+def test_long_names_wrap_and_push_nothing_out(
+    browser: Any, tmp_path: Path, names: dict[str, str]
+) -> None:
+    study = QUICK
+    for name, long in names.items():
+        study = study.replace(f"[{name}]", f"[{long}]")
+    (tmp_path / "long.toml").write_text(study)
+    run = run_here("run", "long.toml", "--out", "out", cwd=tmp_path)
+    assert run.returncode == 0, run.stderr
+    opened(browser, tmp_path / "out")
+    for width in (1400, 1024, 390):
+        with screen(browser, width):
+            assert browser.execute_script(WIDER) == [], width
+            assert browser.execute_script(OVERLAPS) == [], width
+    assert errors(browser) == []

@@ -155,6 +155,7 @@ def test_names_and_the_order_of_cases_change_nothing(seed: str) -> None:
     assert renamed.damage == {names[p]: d for p, d in one.damage.items()}
 
 
+@pytest.mark.long
 @seeds
 def test_twice_as_many_occurrences_do_more_damage_at_most_in_proportion(seed: str) -> None:
     """Where cases stress a point either way, the one range from the first to the second case is

@@ -89,6 +89,33 @@ def test_arrows_are_as_long_as_their_forces(results: Results) -> None:
     assert drawing.get("role") == "img"
 
 
+def test_a_side_force_is_a_ring_with_its_tip_or_its_tail(results: Results) -> None:
+    """A dot for z, towards the reader, a cross for -z; beside its point, off all joints."""
+    motion = replace(results.motion[0], time=None)
+    place = motion.joint_position[:1, 0]
+    body = next(
+        b for b, on in zip(motion.bodies, motion.links, strict=True) if motion.joints[0] in on
+    )
+    up = AppliedForce(body, place, np.array([[0.0, 100.0]]))
+    sides = [AppliedForce(body, place, np.array([[0.0, 0.0, z]])) for z in (20.0, -30.0)]
+    skeleton = planar_skeleton(replace(motion, applied=(up,), aside=tuple(sides)))
+    drawing = ET.fromstring(draw_linkage(Instant(skeleton, 0), [], "x", "N"))
+    rings = [g for g in drawing.iter(f"{SVG}g") if of_class(g, "load end")]
+    towards, away = ([e.get("class") for e in ring] for ring in rings)
+    assert towards == ["load end", "head"]
+    assert away == ["load end", "load end"]
+    (cross,) = of_class(rings[1], "load end")[1:]
+    assert cross.tag == f"{SVG}path"
+    texts = ["".join(t.itertext()) for t in drawing.iter(f"{SVG}text")]
+    assert texts == ["100.0 N", "20.00 N", "30.00 N"]
+    joints = centres(drawing)
+    dot, tail = (np.array(numbers(ring, "transform")) for ring in rings)
+    for centre in (dot, tail):
+        assert np.abs(centre - joints[0]).max() < 40.0
+        assert np.linalg.norm(joints - centre, axis=1).min() > 9.0
+    assert np.abs(dot - tail).max() > 9.0
+
+
 def test_gears_have_their_pitch_circle_to_scale(results: Results) -> None:
     """A wheel about one joint whose circle passes through another."""
     motion = results.motion[0]

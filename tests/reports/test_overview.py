@@ -61,6 +61,10 @@ def test_a_single_pin_has_a_line_for_each_case(few: Results) -> None:
     alone = replace(few, pins=tuple(p for p in few.pins if p.pin == "A"))
     assert [x.row.case for x in pin_lines(alone)] == ["hard", "easy"]
     assert quiet_cases(alone, pin_lines(alone)) == []
+    page = overview_part(alone, {"A": "a"}, "")
+    assert page["about"].startswith("1 pin; ")
+    assert page["pins"] == ["A"]
+    assert {len(row["cells"]) for row in page["matrix"]} == {1}
 
 
 def test_a_single_pin_that_is_not_decided_is_told_once(few: Results) -> None:

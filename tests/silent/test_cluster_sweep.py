@@ -110,11 +110,17 @@ def test_a_worker_and_the_scheduler_are_killed_and_the_bytes_are_the_same(
     assert _bytes(tmp_path / "out") == whole_sweep
 
 
-def test_a_scheduler_that_died_before_it_was_asked_is_lost_and_not_slow(tmp_path: Path) -> None:
-    """dask then tries to connect again for as long as we wait, which is no scheduler's silence."""
+def test_a_scheduler_is_slow_that_stopped_and_lost_that_died_before_it_was_asked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """When it died, dask tries to connect again for as long as we wait, which is no silence."""
     with dask_cluster(tmp_path) as cluster:
         cluster.worker()
         with connected(cluster.connection, ["numpy"], print) as connection:
+            monkeypatch.setattr("pinstress.explore.sweep.cluster.SCHEDULER_TIMEOUT", 2.0)
+            cluster.scheduler.send_signal(signal.SIGSTOP)
+            with pytest.raises(InputError, match="has not answered for 2 s"):
+                connection.look(now=True)
             cluster.scheduler.kill()
             wait_for(lambda: connection.client.status != "running")
             with pytest.raises(InputError, match="the connection to the scheduler"):
@@ -203,15 +209,6 @@ def _factors(parts: Path) -> set[float]:
     }
 
 
-def test_a_scheduler_that_stops_answering_is_said(tmp_path: Path) -> None:
-    _study(tmp_path, MANY, text=ONE_PIN)
-    with dask_cluster(tmp_path / "cluster") as cluster:
-        cluster.worker()
-        with _begun(cluster, tmp_path) as sweep:
-            cluster.scheduler.send_signal(signal.SIGSTOP)
-            _refused(sweep, "has not answered for 10 s")
-
-
 @pytest.mark.long
 def test_a_worker_that_is_paused_for_memory_is_said(tmp_path: Path) -> None:
     """With less memory than it has when it begins; the other one solves all."""
@@ -230,6 +227,7 @@ def test_a_worker_that_is_paused_for_memory_is_said(tmp_path: Path) -> None:
     assert _bytes(tmp_path / "out") == _alone(tmp_path)
 
 
+@pytest.mark.long
 def test_an_interrupted_sweep_leaves_the_cluster_to_others(
     tmp_path: Path, whole_sweep: bytes
 ) -> None:

@@ -142,8 +142,13 @@ def test_power_balances_at_all_instants(study: Study) -> None:
 def test_the_other_branch_is_another_linkage(study: Study, tmp_path: Path) -> None:
     text = study.path.read_text(encoding="utf-8").replace('side = "left"', 'side = "right"')
     text = text.replace('values = "bowman2019/published.csv"', "")
-    path = tmp_path / "crossed.toml"
+    path = tmp_path / "other.toml"
     path.write_text(text, encoding="utf-8")
-    ring = four_bar(linkage(load_study(path)))
-    assert ring is not None
-    assert ring.branch == "crossed"
+    ours, other = linkage(study), linkage(load_study(path))
+    rings = [four_bar(x) for x in (ours, other)]
+    assert rings[0] is not None
+    assert rings[1] is not None
+    assert rings[1].lengths == pytest.approx(rings[0].lengths)
+    assert ours.joint("B").at != pytest.approx(other.joint("B").at)
+    assert not rings[0].crossed
+    assert not rings[1].crossed  # the crank nearly aligned with the ground, B on its other side

@@ -250,7 +250,9 @@ class ContactProblem:
         self._open = np.repeat(bands.gap, self.sectors) + self._beyond
         self._motions, tilts = self.rigid(bands, tilt)
         self._compliance = self._fixed + tilts @ tilts.T if tilts.size else self._fixed
-        self._soft = SOFT_SPRING_STIFFNESS / np.abs(self._compliance).max()
+        # Of a positive definite matrix the largest number is on the diagonal.
+        self._softest = float(self._compliance.diagonal().max())
+        self._soft = SOFT_SPRING_STIFFNESS / self._softest
         largest = np.abs(self._motions).max(axis=0)  # a turn counts as the shift at the far end
         self._reach = np.where(largest > 0.0, largest, 1.0)
         self._answers: dict[bytes, _Answer] = {}
@@ -392,7 +394,7 @@ class ContactProblem:
         # The descent holds the pin by springs, whose far ends move by the loads: by all that the
         # springs have not passed on, until they have passed on everything (the method of
         # multipliers). Small parts of the loads need softer springs to get as far as the gaps.
-        give = float(np.abs(self.bands.gap).max()) + size * float(np.abs(self._compliance).max())
+        give = float(np.abs(self.bands.gap).max()) + size * self._softest
         spring, pull, missing = SPRING_FORCE * (size or 1.0) / give, required, required
         for _ in range(MAX_SPRING_ROUNDS):
             least = partial(self._on_springs, pull=pull, spring=spring)

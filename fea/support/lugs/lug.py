@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, replace
 
 import numpy as np
 
@@ -129,6 +129,7 @@ class Lug:
     clearance: float = 0.0
     edge_radius: float = 0.0
     tilt: float = math.inf
+    _: KW_ONLY
     bushing: Bushing | None = None
     range: LugRange = LugRange()
     shank: Shank | None = None

@@ -45,7 +45,7 @@ def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -
             *(t for n, d in dynamics.items() for t in _drives(study, n, d, loads[n])),
             *(t for n, c in loads.items() if c.space for t in drives_in_space(study, n, c.space)),
         ),
-        "motion": tuple(linkage_motion(study, n, d, loads[n].over) for n, d in dynamics.items()),
+        "motion": tuple(linkage_motion(study, n, loads[n]) for n in dynamics),
         "space": tuple(skeleton_in_space(study, n, c.space) for n, c in loads.items() if c.space),
         "motion_check": motion_check(study, loads, published),
         "published": published_values(study, loads, published),

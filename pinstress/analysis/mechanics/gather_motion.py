@@ -12,6 +12,7 @@ from loads.motion.loop_equations import pairs
 from loads.motion.planar_equations import is_particle
 from loads.motion.transmission_angles import transmission_angles
 from pinbase.arrays import Floats
+from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.mechanism.linkage import ground_joint
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.mechanism import MechanismTable
@@ -29,13 +30,10 @@ def _extremes(over: OverTime) -> plain.Extremes:
     )
 
 
-def linkage_motion(
-    study: Study, name: str, dynamics: Dynamics, over: OverTime | None
-) -> plain.LinkageMotion:
-    """Return the motion of the linkage in a case, SI.
-
-    over: results of the whole motion, if they are known.
-    """
+def linkage_motion(study: Study, name: str, case: CaseLoads) -> plain.LinkageMotion:
+    """Return the motion of the linkage in a case, SI."""
+    dynamics, over = case.dynamics, case.over
+    assert dynamics is not None
     motion, linkage = dynamics.motion, dynamics.motion.linkage
     timed = dynamics.reactions.times is not None
     bodies = [b.name for b in linkage.bodies]
@@ -80,6 +78,7 @@ def linkage_motion(
         paths=_paths(study, dynamics),
         pitch=_pitch_curves(motion),
         applied=_applied(dynamics),
+        aside=_aside(motion, case),
     )
 
 
@@ -101,6 +100,19 @@ def _applied(dynamics: Dynamics) -> tuple[AppliedForce, ...]:
         for load in loads
     )
     return tuple(force for force in forces if force.force.any())
+
+
+def _aside(motion: Motion, case: CaseLoads) -> tuple[AppliedForce, ...]:
+    """Return the forces that the case applies across the plane."""
+    return tuple(
+        AppliedForce(
+            load.planar.body,
+            motion.point(load.planar.body, load.planar.at)[0],
+            load.planar.size(motion)[:, None] * np.array([0.0, 0.0, load.force]),
+        )
+        for load in (case.side.loads if case.side else ())
+        if load.force
+    )
 
 
 def _paths(study: Study, dynamics: Dynamics) -> dict[str, plain.PointPath]:

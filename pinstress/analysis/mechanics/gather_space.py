@@ -101,10 +101,9 @@ def drives_in_space(study: Study, case: str, solved: InSpace) -> list[plain.Driv
 
 def bodies_in_space(study: Study, case: str, solved: InSpace) -> list[plain.BodyMotion]:
     """Return the motion and momenta of every body of the study; none of very long motions."""
-    motion = solved.dynamics.motion
-    names = {b.name: k for k, b in enumerate(motion.linkage.bodies)}
-    if len(names) * len(motion) > MAX_BODY_LINES:
+    if _body_lines(study, solved) > MAX_BODY_LINES:
         return []
+    names = {b.name: k for k, b in enumerate(solved.dynamics.motion.linkage.bodies)}
     bodies = solved.bodies
     each = [*(f.name for f in fields(bodies)), "kinetic_energy"]
     return [
@@ -116,6 +115,22 @@ def bodies_in_space(study: Study, case: str, solved: InSpace) -> list[plain.Body
         )
         for name in space_mechanism(study).body
     ]
+
+
+def _body_lines(study: Study, solved: InSpace) -> int:
+    """Return the number of lines of a case in the table of bodies."""
+    return len(space_mechanism(study).body) * len(solved.dynamics.motion)
+
+
+def _no_bodies(study: Study, solved: InSpace) -> str:
+    """Return a sentence on a case that is too long for the table of bodies; empty for others."""
+    lines = _body_lines(study, solved)
+    if lines <= MAX_BODY_LINES:
+        return ""
+    return (
+        f"bodies.csv does not have this case: {lines:,} lines, above {MAX_BODY_LINES:,}; ask for "
+        "fewer samples."
+    )
 
 
 def skeleton_in_space(study: Study, case: str, solved: InSpace) -> Skeleton:
@@ -132,7 +147,8 @@ def skeleton_in_space(study: Study, case: str, solved: InSpace) -> Skeleton:
 
 def note_in_space(study: Study, solved: InSpace) -> str:
     """Return the note of a case: its impulses, what its forces depend on, and what is left out."""
-    return " ".join(filter(None, (solved.note, _range(study, solved), NO_TABLES)))
+    parts = solved.note, _range(study, solved), NO_TABLES, _no_bodies(study, solved)
+    return " ".join(filter(None, parts))
 
 
 def _range(study: Study, solved: InSpace) -> str:

@@ -36,6 +36,7 @@ from pinstress.explore.sweep.evaluate import Evaluator
 from pinstress.explore.sweep.parameters import Parameter
 from pinstress.explore.sweep.possible import drawn, require_balance
 from pinstress.study.model.hardened import require_no_hardened
+from pinstress.study.model.lugs import with_given_lugs
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.vary import ReliabilityTable
 from reports.data.reliability import (
@@ -46,6 +47,7 @@ from reports.data.reliability import (
     Spread,
 )
 from reports.data.results import PinResult, Results
+from reports.format.words import lugs_not_judged
 
 if TYPE_CHECKING:
     from pinstress.explore.sweep.cluster import Cluster
@@ -120,7 +122,7 @@ def assess(
         ),
         solved=dict(designs.solved),
         reasons=dict(designs.reasons),
-        notes=tuple(_notes(nominal)),
+        notes=tuple(_notes(study, nominal, evaluator.table)),
     )
 
 
@@ -299,11 +301,13 @@ def _worst(nominal: Results) -> PinResult | None:
     return min(known, key=lambda p: p.safety_factor or 0.0, default=None)
 
 
-def _notes(nominal: Results) -> Iterable[str]:
+def _notes(study: Study, nominal: Results, table: Iterable[tuple[str, str]]) -> Iterable[str]:
     yield (
         "Not included: the choice of the laws themselves, the model's idealisations (linear "
         "elasticity, the shape as drawn), and whatever does not vary."
     )
+    if said := lugs_not_judged(with_given_lugs(study, (pin for pin, _ in table))):
+        yield said
     if any(p.verdict == "singular" for p in nominal.pins):
         yield (
             "Rows marked singular have unbounded stress at a corner or an edge (singular_zones.csv "

@@ -109,7 +109,7 @@ def written_study(
             for path in paths_of(pin, dimension):
                 _write(table, _as_written(table, path), value, dimension.key, study.system, step)
     require(document, required)
-    return with_what_follows(study, tomlkit.dumps(document), values)
+    return with_what_follows(study, document, values)
 
 
 def _write(

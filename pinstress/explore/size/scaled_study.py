@@ -45,21 +45,20 @@ def resized_study(
 
     Raises: InputError for a shape that cannot be.
     """
-    return with_what_follows(
-        study, resized(study.text, scales, study.system, standard, required), scales
-    )
+    document = _resized(study.text, scales, study.system, standard, required)
+    return with_what_follows(study, document, scales)
 
 
-def with_what_follows(study: Study, text: str, pins: Iterable[str]) -> Study:
-    """Return a study of another text in which pins have other shapes, with all that depends on
-    these.
+def with_what_follows(study: Study, document: tomlkit.TOMLDocument, pins: Iterable[str]) -> Study:
+    """Return a study of another document in which pins have other shapes, with all that depends on
+    these, which is changed in the document, too.
 
     Raises: InputError for a shape that cannot be.
     """
-    if text == study.text:
+    before = tomlkit.dumps(document)
+    if before == study.text:
         return study
-    new = parse_study(study.path, text)
-    document, before = tomlkit.parse(text), text
+    new = parse_study(study.path, before)
     for name in pins:
         _reweigh(document, study, new, name)
         _widen_eyes(document, study, new, name)
@@ -83,6 +82,16 @@ def resized(
 
     required: the study's new required factor of safety, if any.
     """
+    return tomlkit.dumps(_resized(text, scales, system, standard, required))
+
+
+def _resized(
+    text: str,
+    scales: Mapping[str, float],
+    system: UnitSystem,
+    standard: StandardDiameters | None,
+    required: float | None,
+) -> tomlkit.TOMLDocument:
     study = tomlkit.parse(text)
     for name, scale in scales.items():
         if scale == 1.0 and standard is None:
@@ -104,7 +113,7 @@ def resized(
                 if corner[2:]:
                     _scale(corner, 2, scale, system, -1)
     require(study, required)
-    return tomlkit.dumps(study)
+    return study
 
 
 def require(document: Any, required: float | None) -> None:

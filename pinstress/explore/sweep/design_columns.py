@@ -46,6 +46,7 @@ class Designs:
     numbers: of the designs (D,), ascending.
     first: (D + 1,), start of the rows of each design.
     required: the safety factor, None for none.
+    in_lugs: the pins whose lugs are not judged.
     """
 
     study: str
@@ -55,6 +56,7 @@ class Designs:
     parameters: tuple[DesignColumn, ...]
     results: tuple[DesignColumn, ...]
     texts: dict[str, DesignColumn]  # by the names in ROW_COLUMNS
+    in_lugs: tuple[str, ...] = ()
 
     @property
     def failed_rows(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
@@ -92,6 +94,8 @@ def designs_of(table: pa.Table) -> Designs:
         for name in table.column_names
         if name != "design"
     }
+    texts = {name: every.get(name, _nothing(name, len(order))) for name in ROW_COLUMNS}
+    in_lugs, pins = metadata.get("pins_in_lugs", ()), texts["pin"].names or ()
     return Designs(
         study=str(metadata.get("title") or metadata.get("study", "")),
         required=metadata.get("required_safety_factor"),
@@ -99,7 +103,8 @@ def designs_of(table: pa.Table) -> Designs:
         first=ends,
         parameters=tuple(_per_design(every[key], ends) for key in keys),
         results=tuple(every[name] for name in _results(list(every), keys)),
-        texts={name: every.get(name, _nothing(name, len(order))) for name in ROW_COLUMNS},
+        texts=texts,
+        in_lugs=tuple(name for name in in_lugs if name in pins),
     )
 
 

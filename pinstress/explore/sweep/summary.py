@@ -10,6 +10,7 @@ from rich.table import Table as Grid
 
 from pinstress.explore.sweep.table import facts
 from reports.format.numbers import DASH, engineering
+from reports.format.words import lugs_not_judged
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -57,6 +58,9 @@ def summary(table: pa.Table, console: Console) -> None:
             highlight=False,
             markup=False,
         )
+    in_lugs = stated.get("pins_in_lugs", ())
+    if said := lugs_not_judged(row["pin"] for row in rows if row["pin"] in in_lugs):
+        console.print(said, highlight=False, markup=False)
     rough = Counter(row["pin"] for row in rows if row["verdict"] in ("unconverged", "singular"))
     if rough:
         console.print(

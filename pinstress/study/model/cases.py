@@ -78,6 +78,7 @@ class CaseLoads:
     shared: the same with other stiffness of the links that share loads out of the plane, each after
     what is different.
     ground: the forces of the ground by a rule.
+    side: what it has out of the plane of a planar linkage.
     """
 
     reactions: Reactions
@@ -95,6 +96,7 @@ class CaseLoads:
     landing: Landing | None = None
     ground: Grounded | None = None
     shared: tuple[tuple[str, CaseLoads], ...] = ()
+    side: Sideways | None = None
 
     @property
     def knows_moments(self) -> bool:
@@ -218,7 +220,7 @@ def _motion(
     if not extremes:
         solved = moved.solve(np.linspace(0.0, end, case.samples))
         require_possible(course, moved.solve, solved)
-        return CaseLoads(solved.reactions, solved, note)
+        return CaseLoads(solved.reactions, solved, note, side=side)
     return _over_time(moved, case.samples, note)
 
 
@@ -242,6 +244,7 @@ def _over_time(moved: _Moved, samples: int, note: str) -> CaseLoads:
         frictionless=free,
         moving=MovingLoads(moved.acting, solved.motion.times, over.corners),
         shared=_each(others),
+        side=moved.side,
     )
 
 
@@ -277,7 +280,8 @@ def _on_ground(
     if side := sideways(study, case, mechanism, acting):
         note, others = side.noted(note), side.others(solved)
         solved = side.completed(solved)
-    return CaseLoads(solved.reactions, solved, note, ground=ground, shared=_each(others))
+    shared = _each(others)
+    return CaseLoads(solved.reactions, solved, note, ground=ground, shared=shared, side=side)
 
 
 def _locked(mechanism: Linkage, hold: Sequence[str]) -> tuple[Linkage, tuple[Law, ...]]:
@@ -351,4 +355,5 @@ def _at_instant(
         range=over_range(study, name, case, partial(with_size, study, name, motion)),
         impulse=with_impulse(case, partial(with_size, study, name, motion)),
         shared=_each(others),
+        side=side,
     )

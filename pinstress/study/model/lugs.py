@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -125,6 +126,11 @@ def _require_fit(
         axial_seats(pin, lugs)
     except ArgumentError as error:
         raise study.error(f"{when}{error}", at, error.code) from None
+
+
+def with_given_lugs(study: Study, pins: Iterable[str]) -> tuple[str, ...]:
+    """Return those of the pins of which the study gives lugs."""
+    return tuple(name for name in pins if study.table.pin[name].lug)
 
 
 def known_lugs(study: Study, pin: Pin, rise: float = 0.0) -> tuple[Lug, ...]:
@@ -283,10 +289,10 @@ def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Mater
         middle if given.clearance is None else given.clearance,
         given.edge_radius,
         tilt,
-        bushing,
-        _range(given.range, fit),
-        None if given.shank is None else _shank(given.shank, outer),
-        given.friction,
+        bushing=bushing,
+        range=_range(given.range, fit),
+        shank=None if given.shank is None else _shank(given.shank, outer),
+        friction=given.friction,
         axial=(given.axial, given.axial) if isinstance(given.axial, str) else given.axial,
     )
 

@@ -48,7 +48,7 @@ class Polar(StrictTable):
 
 class Dyad(StrictTable):
     """A point at distances from two joints, on one side of the line from the first to the second:
-    the two sides are the two branches (open and crossed) in which a four-bar can be assembled.
+    the two sides are the two branches in which a four-bar can be assembled.
     """
 
     origins: tuple[str, str]

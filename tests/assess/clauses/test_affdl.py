@@ -29,7 +29,6 @@ from tests.support.pins.plain_pins import double_shear
 
 IN, LBF, KSI = 0.0254, 4.4482216, 6.894757e6
 D, DP, GAP = 1.0 * IN, 0.75 * IN, 0.1 * IN
-FEMALE = PlateEye(2.5 * IN, D, DP, 0.5 * IN, bushed=True)
 MALE = PlateEye(3.0 * IN, D, DP, 0.75 * IN, bushed=True)
 FEMALE_STRENGTHS, MALE_STRENGTHS = (40 * KSI, 64 * KSI), (66 * KSI, 77 * KSI)
 FORCE = 20_000.0 * LBF

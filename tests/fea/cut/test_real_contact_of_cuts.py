@@ -164,7 +164,7 @@ def uncut_joint() -> tuple[ContactProblem, Half]:
     ("cut", "moment"),
     [
         (Flat(0.0165, 0.0295, D / 2.0 * math.cos(math.pi / 6.0), math.pi, 0.001), 0.93),
-        (Hole(0.023, 0.4 * D), 0.86),
+        pytest.param(Hole(0.023, 0.4 * D), 0.86, marks=pytest.mark.long),
         pytest.param(Hole(0.023, 0.4 * D, math.pi / 2.0), 0.964, marks=pytest.mark.long),
     ],
 )

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from fea.core.material import Material
+from fea.lug.in_joint import degrees_from_shank
 from fea.lug.lug_stress import BoreStress, LugInPlane, LugLoad, bore_stresses
 from fea.lug.plane_fields import Elasticity, plane_fields
 from fea.lug.through_thickness import EyeStress, eye_stress
@@ -190,3 +191,9 @@ def test_pressure_on_one_face_stresses_that_face_more() -> None:
     )
     assert b["free"].ring < 4
     assert b["free"].hoop > 1.02 * a["free"].hoop
+
+
+def test_an_angle_has_no_round_off() -> None:
+    """The free bore opposite to the shank was at 57.30e-9 degrees on the page."""
+    assert [str(degrees_from_shank(x)) for x in (1e-9, -1e-9)] == ["0.0", "0.0"]
+    assert degrees_from_shank(math.pi * 1.5) == -90.0

@@ -140,13 +140,43 @@ def test_grashof(lengths: tuple[float, float, float, float], kind: str) -> None:
     assert ring.joints == ("O2", "A", "B", "O4")
 
 
-def test_open_and_crossed() -> None:
-    branches = []
-    for side in (1.0, -1.0):
-        ring = recognised(four_bar(side=side, angle=0.9))
+@settings(max_examples=60, deadline=None)
+@given(LINK, LINK, LINK, LINK, st.floats(-3.0, 3.0), st.sampled_from([1.0, -1.0]))
+def test_open_or_crossed_as_drawn(
+    ground: float, crank: float, coupler: float, rocker: float, angle: float, side: float
+) -> None:
+    """Round a crossed ring two corners turn left and two right; in a simple one at most one turns
+    the other way. Mirrored it is as it was.
+    """
+    reach = abs(ground - crank * np.exp(1j * angle))
+    assume(abs(coupler - rocker) + 0.05 < reach < coupler + rocker - 0.05)
+    drawn = four_bar(ground, crank, coupler, rocker, angle, side)
+    ring, mirrored = (recognised(x) for x in (drawn, mirror(drawn)))
+    assert ring is not None
+    assert mirrored is not None
+    at = np.array([complex(*drawn.joint(name).at) for name in ring.joints])
+    sides = np.roll(at, -1) - at
+    turns = np.imag(np.conj(np.roll(sides, 1)) * sides)
+    assume(np.abs(turns).min() > 1e-6)
+    assert ring.crossed == mirrored.crossed == ((turns > 0.0).sum() == 2)
+
+
+def mirror(linkage: Linkage) -> Linkage:
+    """The mirror image of a linkage at the x axis."""
+    return replace(
+        linkage,
+        joints=tuple(replace(j, at=(j.at[0], -j.at[1])) for j in linkage.joints),
+        bodies=tuple(replace(b, centre=(b.centre[0], -b.centre[1])) for b in linkage.bodies),
+        turns=tuple(replace(t, drawn=-t.drawn) for t in linkage.turns),
+    )
+
+
+def test_links_adjacent_to_the_shortest_cross() -> None:
+    """Norton's definition on an antiparallelogram, whose ground and coupler cross, and its twin."""
+    for side, crossed in ((1.0, False), (-1.0, True)):
+        ring = recognised(four_bar(1.0, 0.4, 1.0, 0.4, angle=1.0, side=side))
         assert ring is not None
-        branches.append(ring.branch)
-    assert branches == ["open", "crossed"]
+        assert ring.crossed == crossed
 
 
 def test_mobility_by_count_and_by_rank() -> None:

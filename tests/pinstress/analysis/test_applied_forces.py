@@ -34,3 +34,18 @@ def test_an_impulse_acts_at_its_joint() -> None:
     # as the note of the case has it, which is from the study alone
     assert f"{load.sizes[0]:,.1f} lbf" in results.reactions[0].note
     assert load.force[0, 0] == 0.0
+    assert motion.aside == ()
+
+
+def test_side_forces_are_apart_from_those_in_the_plane(tmp_path: Path) -> None:
+    """A load with all three components and a couple, which is not drawn."""
+    text = (STUDIES / "main_gear.toml").read_text(encoding="utf-8")
+    text = text.replace('["40 kN", "90 kN"]', "[4e4, 9e4, -2e4]")
+    text = text[: text.index("[pin.C]")].replace("apply]]\n", "apply]]\ncouple = [1, 2, 3]\n")
+    (study := tmp_path / "side.toml").write_text(text, encoding="utf-8")
+    (motion,) = loads_only(load_study(study), ["locked"]).motion
+    (plane,), (side,) = motion.applied, motion.aside
+    assert plane.force == pytest.approx(np.array([[4e4, 9e4]]))
+    assert side.force == pytest.approx(np.array([[0.0, 0.0, -2e4]]))
+    assert side.body == "leg"
+    assert side.position == pytest.approx(plane.position)

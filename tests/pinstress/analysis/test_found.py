@@ -55,6 +55,11 @@ def test_a_notebook_shows_the_factor_with_its_verdict(found: RunResults) -> None
     assert f"factor {shown} ≥ 10 required" in repr(found)
 
 
+def test_all_rows_one_by_one(found: RunResults) -> None:
+    assert len(found) == len(found.pins) > 0
+    assert list(found) == [found[row.pin, row.case] for row in found.pins]
+
+
 def test_names_in_html_are_texts(found: RunResults) -> None:
     from dataclasses import replace
 

@@ -68,6 +68,30 @@ def test_a_joint_weighed_by_its_pin(changes: dict[str, Any], computed: list[list
     assert not np.array_equal(before, after)
 
 
+SIDE = """
+[[case.landing.apply]]
+body = "tyre"
+at = "J"
+force = [0, 0, 5000]
+"""
+
+
+def test_a_side_load_depends_on_where_links_bear_on_their_pins(computed: list[list[str]]) -> None:
+    """Only with a side load: a longer spacer on pin E moves links apart, a thicker one does not."""
+    text, folder = load_study(shipped_studies()[GEAR]).text, shipped_studies()[GEAR].parent
+    longer, thicker = {"pin.E.profile[3].length": 5.0}, {"pin.E.profile[3].diameter": 3.5}
+    plane, memo = study_from(text, folder), Memo()
+    for changes in ({}, longer, thicker):
+        _require_same(changed_study(plane, changes), memo)
+    assert len(computed) == 1
+    aside, memo = study_from(text + SIDE, folder), Memo()
+    before = _require_same(aside, memo)
+    assert np.array_equal(_require_same(changed_study(aside, thicker), memo), before)
+    assert len(computed) == 2
+    assert not np.array_equal(_require_same(changed_study(aside, longer), memo), before)
+    assert len(computed) == 3
+
+
 def _require_same(study: Study, memo: Memo) -> Any:
     """The forces, which are the same as without a memo."""
     reused = reused_loads(raw_study(study), memo)(study, ["landing"])["landing"].reactions

@@ -30,7 +30,6 @@ FORCES
 MODEL
 """
 BALANCED = "forces = { left = [0, 1000], middle = [0, -2000], right = [0, 1000] }"
-DRILLED = 'hole = [{ z = 20, diameter = 5 }]\nclamp = ["start"]'
 LUGS = "lug.left = {}\nlug.middle = {}\nlug.right = {}"
 FREE = LUGS.replace("{}", '{ tilt = "free" }')
 

@@ -60,6 +60,7 @@ def imported(file: Path, capsys: pytest.CaptureFixture[str], *more: str) -> str:
     return capsys.readouterr().out
 
 
+@pytest.mark.usefixtures("read_here")
 @pytest.mark.parametrize("name", PROFILES)
 def test_what_is_written_is_the_same_pin(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -71,6 +72,7 @@ def test_what_is_written_is_the_same_pin(
     same_outline(found, PROFILES[name].scaled(1e-3))
 
 
+@pytest.mark.usefixtures("read_here")
 @pytest.mark.parametrize("change", [_as_drawn, _turn])
 def test_holes_and_flats_are_written(
     change: Change, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -89,6 +91,7 @@ def test_holes_and_flats_are_written(
     assert "segment 2: diameter 20 mm, straight from z = 24 to 60 mm" in text
 
 
+@pytest.mark.usefixtures("read_here")
 def test_a_name_cannot_write_into_the_study(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -99,6 +102,7 @@ def test_a_name_cannot_write_into_the_study(
     assert list(tomllib.loads(text)["pin"]) == ["P"]
 
 
+@pytest.mark.usefixtures("read_here")
 @pytest.mark.parametrize(
     ("name", "more", "code"),
     [

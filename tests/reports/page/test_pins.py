@@ -309,7 +309,10 @@ def test_the_case_of_the_worst_check_governs_too() -> None:
         replace(p, worst=(replace(check, demand=2e5 if p.case == "retract" else 1e4),))
         for p in results.pins
     )
-    assert governing_names(replace(results, pins=pins), "A") == {"landing", "retract"}
+    failing = replace(results, pins=pins)
+    assert governing_names(failing, "A") == {"landing", "retract"}
+    part = next(part for part in pin_parts(failing, {}) if part.pin == "A")
+    assert (part.outcome, part.outcomes) == ("fails", ("safe", "safe"))  # the stress alone is
 
 
 def test_a_lug_carries_over_the_rings_that_push_with_its_force() -> None:

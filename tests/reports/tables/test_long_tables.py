@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from pyarrow import parquet
 
+from pinstress.analysis.mechanics import gather_space
+from pinstress.cli.commands import run_command_line
 from reports.data.results import ReactionTable
 from reports.format.files import parquet as ours
 from reports.format.files.csv import Cell, write_csv
@@ -16,6 +18,7 @@ from reports.format.files.parquet import write_parquet
 from reports.tables import column as tables
 from reports.tables.column import ArrayTable, Table
 from reports.tables.loads.motion import REACTION_COLUMNS
+from tests.conftest import ROOT
 
 
 @pytest.fixture
@@ -58,6 +61,28 @@ def test_a_long_table_is_parquet_with_the_cells_of_the_csv(
         assert (row["case"], row["connection"]) == (plain["case"], plain["connection"])
         assert row["fx"] == float(plain["fx"])
         assert row["time"] == (float(plain["time"]) if plain["time"] else None)
+
+
+def test_a_case_that_is_too_long_for_the_table_of_bodies_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Four bodies at 121 instants of the retraction, and at one of the landing."""
+    monkeypatch.setattr(gather_space, "MAX_BODY_LINES", 4 * 121 - 1)
+    study, out = ROOT / "studies" / "side_stay.toml", tmp_path / "out"
+    command = ["loads", str(study), "--out", str(out), "--no-pictures"]
+    assert run_command_line(command) == 0
+    written = [*csv.DictReader((out / "bodies.csv").read_text().splitlines())]
+    assert {row["case"] for row in written} == {"landing"}
+    told = "bodies.csv does not have this case: 484 lines, above 483; ask for fewer samples."
+    printed = " ".join(capsys.readouterr().out.split())
+    assert printed.count(told) == 1
+    assert printed[: printed.index(told)].rpartition("retract: ")[2].startswith("In space")
+    assert told in (out / "report.html").read_text(encoding="utf-8")
+
+    monkeypatch.setattr(gather_space, "MAX_BODY_LINES", 4 * 121)
+    assert run_command_line(command) == 0
+    assert (out / "bodies.csv").read_text().count("retract") == 4 * 121
+    assert "bodies.csv does not" not in capsys.readouterr().out
 
 
 def test_cells_that_are_no_numbers(tmp_path: Path) -> None:

@@ -64,6 +64,7 @@ clearance = 0.02
 edge_radius = 0.5
 tilt = "free"
 bushing = { thickness = 2, material = "steel" }
+friction = 0.15
 [pin.P.lug.M]
 tilt = "guided"
 [pin.P.lug.R]
@@ -81,6 +82,7 @@ range = { clearance = [-0.02, 0], stiffness = [0.8, 1.2], tilt = ["1e5 N m/rad",
     assert left.bushing == Bushing(0.002, steel)
     assert (middle.tilt, right.tilt) == (math.inf, 2e5)
     assert right.clearance == pytest.approx(-1e-5)
+    assert [(lug.friction, lug.growth) for lug in (left, middle)] == [(0.15, 0.0), (0.0, 0.0)]
 
 
 def test_what_is_not_given(tmp_path: Path) -> None:

@@ -49,7 +49,7 @@ def test_every_study_that_ships_is_described(name: str) -> None:
 
 def test_check_says_what_the_four_bar_is() -> None:
     text, *_ = describe(load_study(STUDIES / "bowman2019.toml"))
-    assert "four-bar O2-A-B-O4: crank-rocker (Grashof), assembled open" in text
+    assert "four-bar O2-A-B-O4: crank-rocker (Grashof), drawn open" in text
     assert "mobility 1;" in text
 
 

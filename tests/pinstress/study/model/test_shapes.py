@@ -128,6 +128,7 @@ def test_bad_tables(shape: str, code: str, named: str, tmp_path: Path) -> None:
         load_study(write(tmp_path, shape))
 
 
+@pytest.mark.usefixtures("read_here")
 @pytest.mark.parametrize(
     ("shape", "code", "named"),
     [

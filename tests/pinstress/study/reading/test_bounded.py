@@ -11,7 +11,7 @@ import pinstress
 from pinstress.study.reading.errors import MAX_LISTED_ERRORS
 from pinstress.study.schema.shown import MAX_TEXT_LENGTH, as_text, cut
 from tests.conftest import ROOT
-from tests.support.each import each, sampled
+from tests.support.each import each
 from tests.support.programs.limited_process import limited as check
 from tests.support.programs.limited_process import start_server
 
@@ -81,8 +81,8 @@ def test_of_many_errors_the_first_are_told(tmp_path: Path, kind: str) -> None:
     require_first_told(tmp_path, kind, 1_000)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", sampled(TOO_MANY, every=2))
+@pytest.mark.long
+@pytest.mark.parametrize("kind", TOO_MANY)
 def test_of_ten_thousand_errors_the_first_are_told(tmp_path: Path, kind: str) -> None:
     require_first_told(tmp_path, kind, 10_000)
 

@@ -1,0 +1,82 @@
+"""Sweeps, curves and probabilities judge pins alone, and said so nowhere: a clevis whose lugs fail
+by three times was safe in all of them.
+
+Independent: 50 kN on an eye of 10 mm, 30 mm wide, leave 50 kN / (2 x 10 mm x 5 mm) = 500 MPa in its
+net section, 3.1 times its yield strength.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import pinstress
+from pinstress.cli.commands import run_command_line
+from pinstress.explore.sweep.design_columns import designs_of
+from pinstress.explore.sweep.page import summary
+from tests.support.each import each
+
+STUDY = """
+title = "A clevis with an eye that fails"
+units = "mm-N-s"
+[material.steel]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+yield_strength = "900 MPa"
+[material.weak]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+yield_strength = "160 MPa"
+[analysis]
+joints = "prescribed"
+model = "beam"
+tolerance = 0.5
+required_safety_factor = 1.1
+[case.pull]
+kind = "given"
+distribution = "uniform"
+forces = { L = [-25000, 0], M = [50000, 0] }
+[pin.P]
+material = "steel"
+balance = "R"
+profile = [
+  { length = 5, diameter = 20, connection = "L" },
+  { length = 10, diameter = 20, connection = "M" },
+  { length = 5, diameter = 20, connection = "R" },
+]
+lug.M = { outer_diameter = 30, material = "weak" }
+[vary]
+sample = "random"
+count = 2
+[vary.parameters]
+"material.steel.yield_strength" = { normal = ["900 MPa", "1 MPa"], within = ["880 MPa", "920 MPa"] }
+[reliability]
+samples = 20
+importance_samples = 0
+sobol_samples = 0
+"""
+SAID = "The lugs of P are not judged here, the pin alone: `pinstress run` judges both."
+KEY = "material.steel.yield_strength"
+
+
+@each("command", [["sweep"], ["reliability"], ["curve", KEY, "--points", "2"]])
+def test_what_judges_pins_alone_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], command: list[str]
+) -> None:
+    path = tmp_path / "study.toml"
+    path.write_text(STUDY)
+    arguments = [command[0], str(path), *command[1:], "--out", str(tmp_path / "out"), "--quiet"]
+    run_command_line([*arguments, "--jobs", "1"])
+    assert SAID in " ".join(capsys.readouterr().out.split())
+
+
+def test_the_run_judges_the_lugs(tmp_path: Path) -> None:
+    path = tmp_path / "study.toml"
+    path.write_text(STUDY)
+    study = pinstress.load_study(path)
+    (row,) = pinstress.run(study).pins
+    assert row.meets_required is True
+    net = next(m for m in row.margins if m.method == "lug, net section" and m.level == "limit")
+    assert net.demand == pytest.approx(500.0)
+    assert summary(designs_of(pinstress.sweep(study, jobs=1))).endswith(f". {SAID}")
