@@ -118,7 +118,7 @@ def test_loads_in_proportion_are_exact(engine: Engine) -> None:
             # Ratios of places spread by 39 %, and the row is 5.5 % lower than that of a run.
             {"case.pull.forces": {"left": [0, 7800], "middle": [0, -10000], "right": [0, 2200]}},
         ],
-        every=2,
+        every=3,
     ),
 )
 def test_it_is_within_its_error_of_a_run(engine: Engine, changes: dict[str, Any]) -> None:
