@@ -17,9 +17,14 @@ COLUMNS = {"youngs_modulus": "E", "yield_strength": "yield", "ultimate_strength"
 def materials(name: str | None, file: Path | None, as_json: bool) -> None:
     """Print the materials of the library and of a file, or the values of one of them.
 
-    Raises: InputError for a file that cannot be read, and for an unknown name.
+    Raises: InputError for a file that cannot be read or has values that no study can use, and for
+    an unknown name.
     """
-    known = {**library(), **({} if file is None else read_materials(file))}
+    given = {} if file is None else read_materials(file)
+    for stored in given.values():
+        if not stored.missing:
+            stored.require_valid()
+    known = {**library(), **given}
     if name is not None and name not in known:
         text = f"no material {as_text(name)}; {near(name, known)}"
         raise InputError(text, code="unknown-material")

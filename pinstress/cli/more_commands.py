@@ -44,6 +44,7 @@ NEW_STUDIES = "pin_in_lugs.toml", "one_pin.toml"  # that init writes, the first 
 def init(directory: Path, opens: bool) -> int:
     from pinstress.cli.new_file import require_new, write_new
     from pinstress.study.reading.shipped import shipped
+    from reports.data.changes import as_argument
 
     target, *_ = targets = [directory / name for name in NEW_STUDIES]
     try:
@@ -59,7 +60,8 @@ def init(directory: Path, opens: bool) -> int:
         click.echo("\n".join(map(str, targets)))
     out = Path("out") / target.stem
     if not opens:
-        click.echo(f"Next: pinstress run {target}  (writes {out / 'report.html'})", err=True)
+        study = as_argument(str(target))
+        click.echo(f"Next: pinstress run {study}  (writes {out / 'report.html'})", err=True)
         return 0
     from pinstress.cli.run import OutputOptions, run_and_write
     from pinstress.study.model.load import load_study

@@ -48,4 +48,9 @@ def command(changes: tuple[Remedy, ...], study: str, required: float | None) -> 
     if not pins:
         return ""
     fos = "" if required is not None else " --fos 1"
-    return f"pinstress size {quote(study)} --pins {quote(','.join(pins))}{fos}"
+    return f"pinstress size {as_argument(study)} --pins {quote(','.join(pins))}{fos}"
+
+
+def as_argument(path: str) -> str:
+    """Return a path as a shell takes it in a command: quoted, and never read as an option."""
+    return quote(f"./{path}" if path.startswith("-") else path)

@@ -68,12 +68,15 @@ class StoredMaterial:
                 tables.append(MaterialTable.model_validate(self.values, context=context))
             except ValidationError as error:
                 first = explain(error)[0]
-                text = f"{self.file}: material.{self.name}.{first.message}{first.hint()}"
+                dot = "." if error.errors()[0]["loc"] else ": "
+                text = f"{self.file}: material.{self.name}{dot}{first.message}{first.hint()}"
                 raise InputError(text, code=first.code) from None
-        if tables[0] != tables[1]:
+        one, other = tables
+        bare = [key for key in self.values if getattr(one, key) != getattr(other, key)]
+        if bare:
             raise InputError(
-                f"{self.file}: material.{self.name}: a quantity has no unit; write for instance "
-                '"210 GPa", as a file of materials has no unit system',
+                f"{self.file}: material.{self.name}.{bare[0]}: a quantity has no unit; write for "
+                'instance "210 GPa", as a file of materials has no unit system',
                 code="no-unit",
             )
 

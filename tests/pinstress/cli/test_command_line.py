@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -106,6 +107,14 @@ def test_init_writes_studies_and_does_not_overwrite_them(tmp_path: Path) -> None
     again = run_here("init", "new", cwd=tmp_path)
     assert again.returncode == 2
     assert "exists already" in again.stderr
+
+
+@pytest.mark.parametrize("folder", ["my trial", "ä's", "-new"])
+def test_a_shell_takes_the_command_that_init_prints(folder: str, tmp_path: Path) -> None:
+    (line,) = run_here("init", "--", folder, cwd=tmp_path).stderr.splitlines()
+    command = shlex.split(line.removeprefix("Next: ").partition("  (")[0])
+    done = run_here("check", *command[2:], cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
 
 
 def test_check_says_what_would_be_run(tmp_path: Path) -> None:

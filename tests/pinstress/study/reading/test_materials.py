@@ -173,9 +173,10 @@ def test_the_file_is_noted_so_that_it_is_sent_to_other_computers(tmp_path: Path)
         ("[material", r"ours.toml:1: not valid TOML"),
         ("units = 'mm-N-s'", r"ours.toml: a file of materials has tables \[material.NAME\], not"),
         ("material.S = 1", r"ours.toml: material.S: must be a table"),
-        (steel().replace('"200 GPa"', "200000"), r"material.S: a quantity has no unit"),
+        (steel().replace('"200 GPa"', "200000"),
+         r"material.S.youngs_modulus: a quantity has no unit"),
         (steel(modulus="-1 GPa"), r"ours.toml: material.S.youngs_modulus: must be positive"),
-        (steel() + "hardness = 3", r"ours.toml: material.S.*unknown key 'hardness'"),
+        (steel() + "hardness = 3", r"ours.toml: material.S: unknown key 'hardness'"),
         (steel().replace("poisson_ratio = 0.3", ""),
          r"material 'S' of ours.toml has no poisson_ratio, which its source \(a certificate\)"),
         (steel("T"), r"study.toml:\d+: pin.B.material: no material 'S'"),
@@ -204,6 +205,27 @@ def test_the_command_lists_materials_and_the_values_of_one(
     assert json.loads(capsys.readouterr().out)["yield_strength"] == "40 ksi"
     assert run_command_line(["materials", "6061"]) == 2
     assert "did you mean '6061-T651'?" in capsys.readouterr().err
+
+
+@each(
+    ("old", "new", "message"),
+    [
+        ('"355 MPa"', "355", "material.S.yield_strength: a quantity has no unit"),
+        ('"355 MPa"', '"355 mm"', "material.S.yield_strength: "),
+        ("yield_", "yeild_", "material.S: unknown key 'yeild_strength'; did you mean 'yield_stren"),
+    ],
+)
+def test_the_command_refuses_a_file_that_no_study_can_use(
+    old: str, new: str, message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It listed such values as if they were good, with exit status 0."""
+    file = tmp_path / "ours.toml"
+    file.write_text(steel().replace(old, new))
+    for words in ([], ["S"]):
+        assert run_command_line(["materials", "--materials", str(file), *words]) == 2
+        done = capsys.readouterr()
+        assert f"Error: ours.toml: {message}" in done.err
+        assert not done.out
 
 
 def test_what_the_command_prints_is_a_material_of_a_study(
