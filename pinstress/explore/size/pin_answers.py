@@ -12,13 +12,14 @@ from pinstress.analysis.engine import QUICK_TOLERANCE
 from pinstress.analysis.gather.gather import results_of
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.remedies.secant import NoSizeError
+from pinstress.analysis.reused_loads import reused_loads
 from pinstress.analysis.solve import judged, solutions
 from pinstress.explore.size.counted import beneath
 from pinstress.explore.size.scaled_study import resized_study
 from pinstress.explore.size.section_law import Accuracy, PinTrial
 from pinstress.explore.size.standard_diameters import StandardDiameters
 from pinstress.study.model.tasks import Task
-from pinstress.study.reading.file import Study
+from pinstress.study.reading.file import Study, raw_study
 from reports.data.results import Results
 
 # Of the largest stress: cases with less are solved until it is decided that they reach the factor
@@ -123,7 +124,10 @@ class SizedStudy:
         return replace(answer, results=results_of(plan, outcomes))
 
     def _plan(self, trial: Study, cases: tuple[str, ...] | None) -> Plan:
-        plan = prepare(trial, pins=[self.pin], cases=cases or list(self.plan.loads))
+        # Only a pin whose weight its linkage carries changes its own loads.
+        loads_of = reused_loads(raw_study(trial), self.memo)
+        cases = cases or tuple(self.plan.loads)
+        plan = prepare(trial, pins=[self.pin], cases=cases, loads_of=loads_of)
         return replace(
             plan, requirement=replace(plan.requirement, memory=self.plan.requirement.memory)
         )
