@@ -93,9 +93,8 @@ class SizedStudy:
         trial = self.at(scale)
         plan = self._plan(trial, cases)
         tolerance = plan.requirement.tolerance
-        requirement = replace(
-            plan.requirement, goal="value", tolerance=max(tolerance, QUICK_TOLERANCE), varied=False
-        )
+        few = max(tolerance, QUICK_TOLERANCE)
+        requirement = replace(plan.requirement, goal="value", tolerance=few, compared=False)
         if accuracy == "rough":
             requirement = replace(requirement, cells="rough")
         elif self.in_lugs:
@@ -196,13 +195,13 @@ def design_stresses(peak: Maximum, tolerance: float | None = None) -> tuple[floa
 
     tolerance: largest error that counts; None for the error as it is.
     """
-    row, below = row_stress(peak), beneath(peak)
     if tolerance is None:
-        return row, below
+        return row_stress(peak), beneath(peak)
+    row = (peak.max_von_mises or 0.0) * (1.0 + tolerance * (peak.verdict != "singular"))
     contact = peak.places and peak.places.contact
-    if contact:
-        below = min(below, contact.beneath * (1.0 + tolerance))
-    return min(row, (peak.max_von_mises or 0.0) * (1.0 + tolerance)), below
+    if contact:  # its own error is not known in a trial
+        return row, contact.beneath * (1.0 + tolerance)
+    return min(row_stress(peak), row), 0.0
 
 
 def row_stress(peak: Maximum) -> float:

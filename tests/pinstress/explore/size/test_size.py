@@ -272,17 +272,21 @@ def test_what_cannot_be_sized_is_told(tmp_path: Path, refused: Refused) -> None:
     sizes_nothing(tmp_path, refused)
 
 
-def test_the_joint_is_varied_in_the_verification_only(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A trial needs the stress of the pin as described; a full solution, as a run, the range."""
+def test_cells_and_joint_are_compared_in_the_verification_only(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A trial needs the stress of the pin as described; a full solution, as a run, its error on
+    larger cells and the range of the joint.
+    """
 
-    def varied(*_: object) -> None:
-        raise AssertionError("the joint is varied")
+    def compared(*_: object) -> None:
+        raise AssertionError("the cells are compared")
 
-    monkeypatch.setattr("fea.support.contact.variations.joint_variations", varied)
+    monkeypatch.setattr("fea.support.contact.variations.on_coarser_cells", compared)
     plan = prepare(load_study(ROOT / "studies" / "clevis.toml"))
     sized = SizedStudy(plan, "P", 1.5, {})
     accuracies: tuple[Accuracy, ...] = ("rough", "quick")
     for accuracy in accuracies:
         assert sized.quick(1.0, accuracy, None, lambda _: None).trial.factor > 2.0
-    with pytest.raises(AssertionError, match="varied"):
+    with pytest.raises(AssertionError, match="compared"):
         sized.full(1.0, ("pull",), lambda _: None)
