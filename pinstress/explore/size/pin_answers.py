@@ -14,6 +14,7 @@ from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.remedies.secant import NoSizeError
 from pinstress.analysis.reused_loads import reused_loads
 from pinstress.analysis.solve import judged, solutions
+from pinstress.analysis.stored import PinOutcome
 from pinstress.explore.size.counted import beneath
 from pinstress.explore.size.scaled_study import resized_study
 from pinstress.explore.size.section_law import Accuracy, PinTrial
@@ -29,19 +30,32 @@ Tell = Callable[[str], None]
 
 
 @dataclass(frozen=True)
+class FullSolution:
+    """The tasks of a pin as a run solves them, and the outcomes of the first ones, which count."""
+
+    plan: Plan
+    outcomes: tuple[PinOutcome, ...]
+
+    @property
+    def results(self) -> Results:
+        """The rows, once every task has an outcome."""
+        return results_of(self.plan, list(self.outcomes))
+
+
+@dataclass(frozen=True)
 class PinAnswer:
     """The factors of a pin by one solution.
 
     trial: its factors.
     worst: the maximum that decides the factor.
     counting: the cases whose stress comes near the largest.
-    results: the rows, of a full solution only.
+    solution: of a full solution only.
     """
 
     trial: PinTrial
     worst: Maximum
     counting: tuple[str, ...]
-    results: Results | None = None
+    solution: FullSolution | None = None
 
 
 @dataclass(frozen=True)
@@ -107,20 +121,32 @@ class SizedStudy:
         return _answer(scale, accuracy, peaks, plan.tasks, tolerance, self.more)
 
     def full(self, scale: float, counting: tuple[str, ...], tell: Tell) -> PinAnswer:
-        """Solve a pin as a run does, with standard diameters.
+        """Solve the cases that count of a pin as a run does, with standard diameters.
 
-        counting: the cases that are solved to the goal of the study; of the others only whether
-        they reach the factor is decided.
+        counting: their names.
         """
-        plan = self._plan(self.at(scale, rounded=True), None)
+        plan, rest = self._plan(self.at(scale, rounded=True), None), list[Task]()
+        first = plan.tasks
         if plan.study.table.fatigue is None:
-            plan = replace(plan, tasks=[t for x in plan.tasks for t in _split(x, counting)])
-        outcomes = [
-            judged(_with_goal(plan, task, counting), task, tell, self.memo) for task in plan.tasks
-        ]
+            first, rest = _split(first, counting)
+        plan = replace(plan, tasks=first + rest)
+        return self._full(scale, plan, [judged(plan, task, tell, self.memo) for task in first])
+
+    def whole(self, answer: PinAnswer, tell: Tell) -> PinAnswer:
+        """Solve the other cases of a full solution, of which only whether they reach the factor is
+        decided.
+        """
+        assert answer.solution is not None
+        plan, outcomes = answer.solution.plan, answer.solution.outcomes
+        decide = replace(plan, requirement=replace(plan.requirement, goal="decide"))
+        left = plan.tasks[len(outcomes) :]
+        more = [judged(decide, task, tell, self.memo) for task in left]
+        return self._full(answer.trial.scale, plan, [*outcomes, *more])
+
+    def _full(self, scale: float, plan: Plan, outcomes: list[PinOutcome]) -> PinAnswer:
         peaks = [row.maximum for outcome in outcomes for row in outcome.rows]
         answer = _answer(scale, "full", peaks, plan.tasks, None, self.more)
-        return replace(answer, results=results_of(plan, outcomes))
+        return replace(answer, solution=FullSolution(plan, tuple(outcomes)))
 
     def _plan(self, trial: Study, cases: tuple[str, ...] | None) -> Plan:
         # Only a pin whose weight its linkage carries changes its own loads.
@@ -132,16 +158,14 @@ class SizedStudy:
         )
 
 
-def _split(task: Task, counting: tuple[str, ...]) -> list[Task]:
-    """Return a task of the cases that count and one of the others."""
-    parts = [tuple(x for x in task.loads if (x.case in counting) == yes) for yes in (True, False)]
-    return [replace(task, loads=part) for part in parts if part]
-
-
-def _with_goal(plan: Plan, task: Task, counting: tuple[str, ...]) -> Plan:
-    if plan.study.table.fatigue is not None or task.loads[0].case in counting:
-        return plan
-    return replace(plan, requirement=replace(plan.requirement, goal="decide"))
+def _split(tasks: list[Task], counting: tuple[str, ...]) -> tuple[list[Task], list[Task]]:
+    """Return the tasks of the cases that count, and those of the others."""
+    parts: tuple[list[Task], list[Task]] = ([], [])
+    for task in tasks:
+        for part, counts in zip(parts, (True, False), strict=True):
+            loads = tuple(x for x in task.loads if (x.case in counting) == counts)
+            part += [replace(task, loads=loads)] if loads else []
+    return parts
 
 
 def _answer(
