@@ -33,6 +33,8 @@ class Requirement:
     with the unit pressures of each on the first mesh (fea.support.contact.unit_pressures); "alone":
     rough ones on the first mesh, with nothing to compare them with.
     varied: whether the range over what is not known of a joint is wanted.
+    compared: whether the error of the cells is wanted; without it, as with "alone", nothing is
+    compared with other cells or meshes.
     factors: the required factors of cases where these are not `required`.
 
     A support adds what it knows:
@@ -50,6 +52,7 @@ class Requirement:
     joints: Joints = "auto"
     cells: Literal["unit", "alone", "rough", "usual"] | None = None
     varied: bool = True
+    compared: bool = True
     factors: Mapping[str, float] = field(default_factory=dict)
     elsewhere: Mapping[str, float] = field(default_factory=dict)
     besides: Mapping[str, float] = field(default_factory=dict)

@@ -144,7 +144,8 @@ def _in_lugs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
         resolutions = (ROUGH, *RESOLUTIONS)
     for cells, finer in pairwise((*resolutions, None)):
         assert cells is not None
-        yield Rung(ContactSupport(cells, finer), _contact)
+        contact = ContactSupport(cells, finer, None if requirement.compared else "alone")
+        yield Rung(contact, _contact)
 
 
 def _beam(at: Attempt) -> dict[str, Solution]:

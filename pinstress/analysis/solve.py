@@ -66,7 +66,7 @@ def solve_tasks(
     memo: of flexibilities and meshes, for tasks that are solved in this process.
     """
     show = None if keep is None else partial(_in_units, plan.study.system.factor, keep)
-    order = sorted(range(len(plan.tasks)), key=lambda i: _effort(plan, plan.tasks[i]), reverse=True)
+    order = sorted(range(len(plan.tasks)), key=lambda i: effort(plan, plan.tasks[i]), reverse=True)
     work = [
         Job(f"pin {task.pin.name}", partial(_attempt, plan, task, show, ask, cache, memo))
         for task in (plan.tasks[i] for i in order)
@@ -87,7 +87,7 @@ def _in_units(unit: Unit, keep: Keep, field: Field) -> None:
 
 def _together(plan: Plan, jobs: int) -> int:
     """Return the number of jobs that fit the memory, if all were solids of the largest size."""
-    if not any(_effort(plan, task)[0] for task in plan.tasks):
+    if not any(effort(plan, task)[0] for task in plan.tasks):
         return jobs
     from fea.solid.evaluate import SOLID_MESHES
 
@@ -95,7 +95,7 @@ def _together(plan: Plan, jobs: int) -> int:
     return max(1, min(jobs, int(room)))
 
 
-def _effort(plan: Plan, task: Task) -> tuple[bool, int, int, int]:
+def effort(plan: Plan, task: Task) -> tuple[bool, int, int, int]:
     """Return a sort key by effort: solid or not, lugs, cases, instants.
 
     Lugs at connections, which move more than those of the structure, count twice.

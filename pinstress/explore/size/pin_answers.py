@@ -12,13 +12,15 @@ from pinstress.analysis.engine import QUICK_TOLERANCE
 from pinstress.analysis.gather.gather import results_of
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.remedies.secant import NoSizeError
+from pinstress.analysis.reused_loads import reused_loads
 from pinstress.analysis.solve import judged, solutions
+from pinstress.analysis.stored import PinOutcome
 from pinstress.explore.size.counted import beneath
 from pinstress.explore.size.scaled_study import resized_study
 from pinstress.explore.size.section_law import Accuracy, PinTrial
 from pinstress.explore.size.standard_diameters import StandardDiameters
 from pinstress.study.model.tasks import Task
-from pinstress.study.reading.file import Study
+from pinstress.study.reading.file import Study, raw_study
 from reports.data.results import Results
 
 # Of the largest stress: cases with less are solved until it is decided that they reach the factor
@@ -28,19 +30,32 @@ Tell = Callable[[str], None]
 
 
 @dataclass(frozen=True)
+class FullSolution:
+    """The tasks of a pin as a run solves them, and the outcomes of the first ones, which count."""
+
+    plan: Plan
+    outcomes: tuple[PinOutcome, ...]
+
+    @property
+    def results(self) -> Results:
+        """The rows, once every task has an outcome."""
+        return results_of(self.plan, list(self.outcomes))
+
+
+@dataclass(frozen=True)
 class PinAnswer:
     """The factors of a pin by one solution.
 
     trial: its factors.
     worst: the maximum that decides the factor.
     counting: the cases whose stress comes near the largest.
-    results: the rows, of a full solution only.
+    solution: of a full solution only.
     """
 
     trial: PinTrial
     worst: Maximum
     counting: tuple[str, ...]
-    results: Results | None = None
+    solution: FullSolution | None = None
 
 
 @dataclass(frozen=True)
@@ -92,9 +107,8 @@ class SizedStudy:
         trial = self.at(scale)
         plan = self._plan(trial, cases)
         tolerance = plan.requirement.tolerance
-        requirement = replace(
-            plan.requirement, goal="value", tolerance=max(tolerance, QUICK_TOLERANCE), varied=False
-        )
+        few = max(tolerance, QUICK_TOLERANCE)
+        requirement = replace(plan.requirement, goal="value", tolerance=few, compared=False)
         if accuracy == "rough":
             requirement = replace(requirement, cells="rough")
         elif self.in_lugs:
@@ -107,38 +121,51 @@ class SizedStudy:
         return _answer(scale, accuracy, peaks, plan.tasks, tolerance, self.more)
 
     def full(self, scale: float, counting: tuple[str, ...], tell: Tell) -> PinAnswer:
-        """Solve a pin as a run does, with standard diameters.
+        """Solve the cases that count of a pin as a run does, with standard diameters.
 
-        counting: the cases that are solved to the goal of the study; of the others only whether
-        they reach the factor is decided.
+        counting: their names.
         """
-        plan = self._plan(self.at(scale, rounded=True), None)
+        plan, rest = self._plan(self.at(scale, rounded=True), None), list[Task]()
+        first = plan.tasks
         if plan.study.table.fatigue is None:
-            plan = replace(plan, tasks=[t for x in plan.tasks for t in _split(x, counting)])
-        outcomes = [
-            judged(_with_goal(plan, task, counting), task, tell, self.memo) for task in plan.tasks
-        ]
+            first, rest = _split(first, counting)
+        plan = replace(plan, tasks=first + rest)
+        return self._full(scale, plan, [judged(plan, task, tell, self.memo) for task in first])
+
+    def whole(self, answer: PinAnswer, tell: Tell) -> PinAnswer:
+        """Solve the other cases of a full solution, of which only whether they reach the factor is
+        decided.
+        """
+        assert answer.solution is not None
+        plan, outcomes = answer.solution.plan, answer.solution.outcomes
+        decide = replace(plan, requirement=replace(plan.requirement, goal="decide"))
+        left = plan.tasks[len(outcomes) :]
+        more = [judged(decide, task, tell, self.memo) for task in left]
+        return self._full(answer.trial.scale, plan, [*outcomes, *more])
+
+    def _full(self, scale: float, plan: Plan, outcomes: list[PinOutcome]) -> PinAnswer:
         peaks = [row.maximum for outcome in outcomes for row in outcome.rows]
         answer = _answer(scale, "full", peaks, plan.tasks, None, self.more)
-        return replace(answer, results=results_of(plan, outcomes))
+        return replace(answer, solution=FullSolution(plan, tuple(outcomes)))
 
     def _plan(self, trial: Study, cases: tuple[str, ...] | None) -> Plan:
-        plan = prepare(trial, pins=[self.pin], cases=cases or list(self.plan.loads))
+        # Only a pin whose weight its linkage carries changes its own loads.
+        loads_of = reused_loads(raw_study(trial), self.memo)
+        cases = cases or tuple(self.plan.loads)
+        plan = prepare(trial, pins=[self.pin], cases=cases, loads_of=loads_of)
         return replace(
             plan, requirement=replace(plan.requirement, memory=self.plan.requirement.memory)
         )
 
 
-def _split(task: Task, counting: tuple[str, ...]) -> list[Task]:
-    """Return a task of the cases that count and one of the others."""
-    parts = [tuple(x for x in task.loads if (x.case in counting) == yes) for yes in (True, False)]
-    return [replace(task, loads=part) for part in parts if part]
-
-
-def _with_goal(plan: Plan, task: Task, counting: tuple[str, ...]) -> Plan:
-    if plan.study.table.fatigue is not None or task.loads[0].case in counting:
-        return plan
-    return replace(plan, requirement=replace(plan.requirement, goal="decide"))
+def _split(tasks: list[Task], counting: tuple[str, ...]) -> tuple[list[Task], list[Task]]:
+    """Return the tasks of the cases that count, and those of the others."""
+    parts: tuple[list[Task], list[Task]] = ([], [])
+    for task in tasks:
+        for part, counts in zip(parts, (True, False), strict=True):
+            loads = tuple(x for x in task.loads if (x.case in counting) == counts)
+            part += [replace(task, loads=loads)] if loads else []
+    return parts
 
 
 def _answer(
@@ -192,13 +219,13 @@ def design_stresses(peak: Maximum, tolerance: float | None = None) -> tuple[floa
 
     tolerance: largest error that counts; None for the error as it is.
     """
-    row, below = row_stress(peak), beneath(peak)
     if tolerance is None:
-        return row, below
+        return row_stress(peak), beneath(peak)
+    row = (peak.max_von_mises or 0.0) * (1.0 + tolerance * (peak.verdict != "singular"))
     contact = peak.places and peak.places.contact
-    if contact:
-        below = min(below, contact.beneath * (1.0 + tolerance))
-    return min(row, (peak.max_von_mises or 0.0) * (1.0 + tolerance)), below
+    if contact:  # its own error is not known in a trial
+        return row, contact.beneath * (1.0 + tolerance)
+    return min(row_stress(peak), row), 0.0
 
 
 def row_stress(peak: Maximum) -> float:

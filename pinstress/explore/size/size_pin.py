@@ -120,7 +120,7 @@ class _Search:
 
     @property
     def full(self) -> list[PinAnswer]:
-        return [answer for answer in self.answers if answer.results is not None]
+        return [answer for answer in self.answers if answer.solution is not None]
 
     def solve(self, scale: float, accuracy: Accuracy) -> PinAnswer:
         """Solve the pin at a scale."""
@@ -138,6 +138,12 @@ class _Search:
             answer = self.sized.quick(scale, accuracy, counting, tell)
         self.answers.append(answer)
         return answer
+
+    def whole(self, answer: PinAnswer) -> PinAnswer:
+        """Solve the cases of a full solution that do not count, too."""
+        whole = self.sized.whole(answer, self.tell)
+        self.answers = [whole if x is answer else x for x in self.answers]
+        return whole
 
 
 def size_pin(
@@ -243,9 +249,11 @@ def _verified(search: _Search, scale: float, result: SizingResult) -> SizingResu
                 return _limited(search, limit, result)
             scale = limit.scale
         answer = search.solve(scale, "full")
-        factor = answer.trial.factor
-        if factor >= required and (sized.standard or factor <= required * (1.0 + close)):
+        if _accepted(answer, sized):
+            answer = search.whole(answer)
+        if _accepted(answer, sized):
             break
+        factor = answer.trial.factor
         if factor < required and scale == limit.scale:
             return _limited(search, limit, result)
         known = [x.trial for x in search.full if (x.trial.factor >= required)]
@@ -263,28 +271,34 @@ def _verified(search: _Search, scale: float, result: SizingResult) -> SizingResu
     return _reached(search, result)
 
 
+def _accepted(answer: PinAnswer, sized: SizedStudy) -> bool:
+    """Return whether a factor is reached, and closely where diameters may be any."""
+    most = math.inf if sized.standard else sized.required * (1.0 + _close(sized))
+    return sized.required <= answer.trial.factor <= most
+
+
 def _reached(search: _Search, result: SizingResult) -> SizingResult:
     """Return the smallest size that reached the factor.
 
     Raises: NoSizeError where none did.
     """
     sized = search.sized
-    good = [x for x in search.full if x.trial.factor >= sized.required]
-    if not good:
+    full = sorted(search.full, key=lambda answer: answer.trial.scale)
+    wholes = (search.whole(x) for x in full if x.trial.factor >= sized.required)
+    best = next((x for x in wholes if x.trial.factor >= sized.required), None)
+    if best is None or best.solution is None:
         last = search.trials[-1]
         raise NoSizeError(
             f"the factor is not reached in {MAX_FULL} full solutions: with {last.scale:.4g} times "
             f"its diameters it is {last.factor:.4g}"
         )
-    best = min(good, key=lambda answer: answer.trial.scale)
-    assert best.results is not None
     others = tuple((name, x) for name, x in sized.others.items() if name != sized.pin)
     return replace(
         result,
         scale=best.trial.scale,
         factor=best.trial.factor,
         verdict=best.worst.verdict,
-        judged=judged_pin(best.results, sized.pin),
+        judged=judged_pin(best.solution.results, sized.pin),
         others=others,
     )
 

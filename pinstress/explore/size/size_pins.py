@@ -11,6 +11,7 @@ import numpy as np
 
 from pinbase.processes.pool import Job, ProcessDied, Progress, in_parallel
 from pinstress.analysis.plan import Plan, all_loads
+from pinstress.analysis.solve import effort
 from pinstress.explore.size.scaled_study import resized_study
 from pinstress.explore.size.size_pin import SizingGoal, SizingResult, size_pin
 from pinstress.study.model.cases import CaseLoads
@@ -46,10 +47,11 @@ def size_pins(
     Raises: InputError where the cluster is lost.
     """
     names = list(dict.fromkeys(task.pin.name for task in plan.tasks))
+    order = sorted(names, key=lambda name: _effort(plan, name), reverse=True)  # the longest first
     sized = {result.pin: result for result in before if result.pin in names}
-    todo = [name for name in names if name not in sized]
+    todo = [name for name in order if name not in sized]
     for _ in range(MAX_SIZING_PASSES):
-        _size(plan, goal, names, todo, sized, finished, jobs, progress, cluster)
+        _size(plan, goal, order, todo, sized, finished, jobs, progress, cluster)
         todo = loaded_more(plan, goal, list(sized.values()))
         if not todo:
             break
@@ -57,6 +59,10 @@ def size_pins(
         why = "the loads still change with the sizes of other pins: size the new study again"
         sized[name] = replace(sized[name], judged=None, scale=None, why=why)
     return [sized[name] for name in names]
+
+
+def _effort(plan: Plan, name: str) -> tuple[bool, int, int, int]:
+    return max(effort(plan, task) for task in plan.tasks if task.pin.name == name)
 
 
 def new_study(study: Study, goal: SizingGoal, sized: Sequence[SizingResult]) -> Study:

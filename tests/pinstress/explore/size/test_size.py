@@ -16,9 +16,10 @@ from pinstress.analysis.plan import prepare
 from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE, MAX_TRIALS, NoSizeError, smallest
 from pinstress.analysis.results import run
 from pinstress.cli.commands import run_command_line
-from pinstress.explore.size.pin_answers import SizedStudy
+from pinstress.explore.size.pin_answers import PinAnswer, SizedStudy, Tell
 from pinstress.explore.size.scaled_study import moved, resized, resized_study
 from pinstress.explore.size.section_law import Accuracy
+from pinstress.explore.size.size_pin import SizingGoal, size_pin
 from pinstress.explore.size.standard_diameters import StandardDiameters
 from pinstress.study.model.pins import pin, weight
 from pinstress.study.reading.file import load_study, parse_study
@@ -272,17 +273,48 @@ def test_what_cannot_be_sized_is_told(tmp_path: Path, refused: Refused) -> None:
     sizes_nothing(tmp_path, refused)
 
 
-def test_the_joint_is_varied_in_the_verification_only(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A trial needs the stress of the pin as described; a full solution, as a run, the range."""
+def test_cells_and_joint_are_compared_in_the_verification_only(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A trial needs the stress of the pin as described; a full solution, as a run, its error on
+    larger cells and the range of the joint.
+    """
 
-    def varied(*_: object) -> None:
-        raise AssertionError("the joint is varied")
+    def compared(*_: object) -> None:
+        raise AssertionError("the cells are compared")
 
-    monkeypatch.setattr("fea.support.contact.variations.joint_variations", varied)
+    monkeypatch.setattr("fea.support.contact.variations.on_coarser_cells", compared)
     plan = prepare(load_study(ROOT / "studies" / "clevis.toml"))
     sized = SizedStudy(plan, "P", 1.5, {})
     accuracies: tuple[Accuracy, ...] = ("rough", "quick")
     for accuracy in accuracies:
         assert sized.quick(1.0, accuracy, None, lambda _: None).trial.factor > 2.0
-    with pytest.raises(AssertionError, match="varied"):
+    with pytest.raises(AssertionError, match="compared"):
         sized.full(1.0, ("pull",), lambda _: None)
+
+
+def test_cases_that_do_not_count_are_solved_for_the_size_alone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Beside a case of a hundredth of the force, whose factor is a hundred times as large."""
+    light = '\n[case.light]\nkind = "given"\nforces = { B = [0.0, -9.8886] }\n'
+    plan = prepare(parse_study(Path("study.toml"), QUICK + light))
+    sized, scales = SizedStudy(plan, "B", 10.0, {}), list[float]()
+    first = sized.quick(1.0, "quick", None, lambda _: None)
+    assert first.counting == ("landing",)
+    answer = sized.full(1.0, first.counting, lambda _: None)
+    assert answer.solution is not None
+    assert [x.case for one in answer.solution.outcomes for x in one.rows] == ["landing"]
+    whole = SizedStudy.whole
+
+    def noted(of: SizedStudy, answer: PinAnswer, tell: Tell) -> PinAnswer:
+        scales.append(answer.trial.scale)
+        return whole(of, answer, tell)
+
+    monkeypatch.setattr(SizedStudy, "whole", noted)
+    result = size_pin(plan, "B", SizingGoal(20.0), {})
+    assert result.judged is not None
+    assert set(scales) == {result.scale}
+    factors = dict(result.judged.cases)
+    assert 20.0 <= factors["landing"] <= 20.0 * (1.0 + FACTOR_TOLERANCE)
+    assert factors["light"] == pytest.approx(100.0 * factors["landing"], rel=0.5)  # by a beam
