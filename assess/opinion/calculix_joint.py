@@ -26,7 +26,14 @@ from numpy.typing import NDArray
 
 from assess.opinion import calculix
 from assess.opinion.calculix_joint_deck import Eye, JointDeck, Part, slave
-from assess.opinion.calculix_joint_mesh import Fineness, Hexahedra, annulus_mesh, pin_mesh
+from assess.opinion.calculix_joint_mesh import (
+    Fineness,
+    Hexahedra,
+    annulus_mesh,
+    natural_coordinates,
+    pin_mesh,
+    trilinear,
+)
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.voigt import von_mises
@@ -41,11 +48,7 @@ ZERO_INCREMENT_MESSAGE = "zero-size increment is appended"
 DEFAULT_FINENESS = Fineness()
 MIN_FLAT_LENGTH = 1e-3  # of a band's length: a shorter flat part between rounded edges is none
 MAX_OUT_OF_PLANE_FORCE = 1e-6  # of the largest force: what may be across the plane of the others
-# Elements in which a point is looked for, and how
-NEAREST_ELEMENTS, MAX_LOCATING_STEPS, LOCATING_TOLERANCE = 12, 12, 1e-9
-CORNER_SIGNS = np.array(
-    [[x, y, z] for z in (-1.0, 1.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-)
+NEAREST_ELEMENTS = 12  # elements in which a point is looked for
 
 
 @dataclass(frozen=True)
@@ -131,10 +134,10 @@ class JointOpinion:
         """
         corners = self.nodes[self.elements[:, :8]]
         near = np.argsort(np.linalg.norm(corners.mean(axis=1) - point, axis=1))[:NEAREST_ELEMENTS]
-        natural = [_natural(corners[e], point) for e in near]
+        natural = [natural_coordinates(corners[e], point) for e in near]
         beyond = [float(np.abs(x).max()) for x in natural]
         best = int(np.argmin(beyond))
-        shape, _ = _trilinear(np.clip(natural[best], -1.0, 1.0))
+        shape, _ = trilinear(np.clip(natural[best], -1.0, 1.0))
         return np.asarray(shape @ self.stress[self.elements[near[best], :8]])
 
 
@@ -384,23 +387,3 @@ def contact_forces(dat: Path) -> dict[str, Floats]:
         _, numbers = block.split("(mx,my,mz)\n", 1)
         out[block.split(",")[0].strip()] = np.array(numbers.split()[:6], dtype=float)
     return out
-
-
-def _trilinear(natural: Floats) -> tuple[Floats, Floats]:
-    """Shape functions (8,) of a hexahedron's corners, and their slopes (8, 3)."""
-    parts = 1.0 + CORNER_SIGNS * natural
-    shape = parts.prod(axis=1) / 8.0
-    others = np.stack([parts[:, [1, 2]], parts[:, [0, 2]], parts[:, [0, 1]]], axis=1).prod(axis=2)
-    return shape, CORNER_SIGNS * others / 8.0
-
-
-def _natural(corners: Floats, point: Floats) -> Floats:
-    """Natural coordinates (3,) of a point in a hexahedron, by Newton's method."""
-    x = np.zeros(3)
-    for _ in range(MAX_LOCATING_STEPS):
-        shape, slopes = _trilinear(x)
-        step = np.linalg.solve(corners.T @ slopes, point - shape @ corners)
-        x = np.clip(x + step, -2.0, 2.0)
-        if np.abs(step).max() < LOCATING_TOLERANCE:
-            break
-    return x

@@ -32,6 +32,10 @@ CONTACT_STIFFNESS = 200.0
 SMALL_LOAD_SCALE = 0.01
 CORE_SIZE = 0.55  # of the least radius of a solid pin: half the side of the core, about
 CORE_ROUNDNESS = 0.4  # how round the core is: 0 a square, 1 a circle
+MAX_LOCATING_STEPS, LOCATING_TOLERANCE = 12, 1e-9  # of Newton's method for a point in an element
+CORNER_SIGNS = np.array(
+    [[x, y, z] for z in (-1.0, 1.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+)
 
 
 @dataclass(frozen=True)
@@ -245,3 +249,23 @@ def _quadratic(corners: Floats, elements: Ints, on: Floats) -> tuple[Floats, Int
     whole = np.concatenate([elements, len(corners) + number.reshape(-1, 12)], axis=1)
     used, compact = np.unique(whole, return_inverse=True)
     return np.concatenate([corners, middle])[used], compact.reshape(whole.shape)
+
+
+def trilinear(natural: Floats) -> tuple[Floats, Floats]:
+    """Shape functions (8,) of a hexahedron's corners, and their slopes (8, 3)."""
+    parts = 1.0 + CORNER_SIGNS * natural
+    shape = parts.prod(axis=1) / 8.0
+    others = np.stack([parts[:, [1, 2]], parts[:, [0, 2]], parts[:, [0, 1]]], axis=1).prod(axis=2)
+    return shape, CORNER_SIGNS * others / 8.0
+
+
+def natural_coordinates(corners: Floats, point: Floats) -> Floats:
+    """Natural coordinates (3,) of a point in a hexahedron, by Newton's method."""
+    x = np.zeros(3)
+    for _ in range(MAX_LOCATING_STEPS):
+        shape, slopes = trilinear(x)
+        step = np.linalg.solve(corners.T @ slopes, point - shape @ corners)
+        x = np.clip(x + step, -2.0, 2.0)
+        if np.abs(step).max() < LOCATING_TOLERANCE:
+            break
+    return x

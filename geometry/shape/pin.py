@@ -15,8 +15,8 @@ import numpy as np
 
 from geometry.shape.polygon import Leg, Rounding, bore_turn_at, corners, legs, roundings, turn_at
 from geometry.shape.profile import meridian, volume_within
-from geometry.shape.segment import Segment
-from geometry.shape.tolerance import DIMENSION_ROUND_OFF, LENGTH_TOLERANCE, merged, snapped
+from geometry.shape.segment import Segment, merged_segments
+from geometry.shape.tolerance import LENGTH_TOLERANCE, snapped
 from pinbase.arrays import Floats
 from pinbase.errors import CodedError
 
@@ -81,7 +81,7 @@ class Pin:
 
     def __post_init__(self) -> None:
         _check_dimensions(self)
-        segments, difference = _merged(self.segments, self.tolerance)
+        segments, difference = merged_segments(self.segments, self.tolerance)
         object.__setattr__(self, "segments", segments)
         object.__setattr__(self, "merged", difference)
         _check(self)
@@ -260,26 +260,6 @@ class Pin:
         segments = list(self.segments)
         segments[i] = replace(segments[i], bore=bore)
         return replace(self, segments=tuple(segments))
-
-
-def _merged(segments: tuple[Segment, ...], tolerance: float) -> tuple[tuple[Segment, ...], float]:
-    """Segments whose diameters and bores are equal or differ by more than the tolerance.
-
-    The second result is the largest change of a dimension, m, 0 if no more than round-off.
-    """
-    outer = merged((d for s in segments for d in s.diameters), tolerance)
-    inner = merged((0.0, *(d for s in segments for d in s.bores)), tolerance)
-    changes = [*outer.items(), *inner.items()]
-    difference = max(
-        (old - new for old, new in changes if old - new > DIMENSION_ROUND_OFF * old), default=0.0
-    )
-    unified = (
-        s.with_diameters(
-            (outer[s.diameters[0]], outer[s.diameters[1]]), (inner[s.bores[0]], inner[s.bores[1]])
-        )
-        for s in segments
-    )
-    return tuple(unified), difference
 
 
 def _check_dimensions(pin: Pin) -> None:

@@ -6,6 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
+from geometry.shape.tolerance import DIMENSION_ROUND_OFF, merged
+
 Pair = tuple[float, float]
 
 
@@ -123,3 +125,25 @@ class Segment:
 
 def _both(pair: Pair, change: Callable[[float], float]) -> Pair:
     return change(pair[0]), change(pair[1])
+
+
+def merged_segments(
+    segments: tuple[Segment, ...], tolerance: float
+) -> tuple[tuple[Segment, ...], float]:
+    """Segments whose diameters and bores are equal or differ by more than the tolerance.
+
+    The second result is the largest change of a dimension, m, 0 if no more than round-off.
+    """
+    outer = merged((d for s in segments for d in s.diameters), tolerance)
+    inner = merged((0.0, *(d for s in segments for d in s.bores)), tolerance)
+    changes = [*outer.items(), *inner.items()]
+    difference = max(
+        (old - new for old, new in changes if old - new > DIMENSION_ROUND_OFF * old), default=0.0
+    )
+    unified = (
+        s.with_diameters(
+            (outer[s.diameters[0]], outer[s.diameters[1]]), (inner[s.bores[0]], inner[s.bores[1]])
+        )
+        for s in segments
+    )
+    return tuple(unified), difference

@@ -105,8 +105,6 @@ def assess(
         drivers = _drivers(parameters, designs, None, shares[-1] if shares else None)
         system = SYSTEM_ROW, SYSTEM_ROW, RiskColumn(None), _worst(nominal), None, drivers
         assessed.insert(0, AssessedRow(*system))
-    vary = study.table.vary
-    assert vary is not None
     return Reliability(
         title=study.table.title,
         study=str(study.path),
@@ -117,13 +115,18 @@ def assess(
         seed=settings.seed,
         parameters=tuple((p.key, p.law_text) for p in parameters),
         risks=tuple(risk_of(row, sampled, weighted, settings) for row in assessed),
-        correlations=tuple(
-            f"{c.between[0]} and {c.between[1]}: {c.coefficient:g}" for c in vary.correlations
-        ),
+        correlations=_correlations(study),
         solved=dict(designs.solved),
         reasons=dict(designs.reasons),
         notes=tuple(_notes(study, nominal, evaluator.table)),
     )
+
+
+def _correlations(study: Study) -> tuple[str, ...]:
+    """Return the correlations of the study's numbers, as text."""
+    vary = study.table.vary
+    assert vary is not None
+    return tuple(f"{c.between[0]} and {c.between[1]}: {c.coefficient:g}" for c in vary.correlations)
 
 
 def _require_strengths(study: Study, evaluator: Evaluator) -> None:
