@@ -6,6 +6,7 @@ acts on every mass in addition to gravity (d'Alembert).
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import partial
 
@@ -167,3 +168,16 @@ def pushes(linkage: Linkage, landing: Landing, place: Touchdown) -> tuple[Applie
     load = partial(AppliedOverTime, landing=landing, place=place)
     masses = [load(i.name, i.centre, mass=i.mass) for i in linkage.items if i.mass]
     return (load(place.body, linkage.joint(place.joint).at), *masses)
+
+
+def fall(motion: Motion, applied: Iterable[object]) -> Floats:
+    """The acceleration of the axes in which a motion under loads is described, (T, 2) m/s^2: that
+    of the aircraft in a drop, else zero.
+    """
+    for load in applied:
+        if isinstance(load, AppliedOverTime) and load.mass is not None:
+            assert load.landing is not None
+            assert load.place is not None
+            down = load.landing.at(motion.times).forces.sprung
+            return np.outer(down, np.negative(load.place.up))
+    return np.zeros((len(motion.times), 2))

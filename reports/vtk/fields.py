@@ -92,7 +92,9 @@ def write_pin(field: Field, name: str, directory: Path, units: Units) -> None:
         return
     folder = directory / name
     folder.mkdir()
-    write_block(_loads(field.loads, units), folder / "loads.vtu")
+    # Here and not in the field's own file, for meshio reads none that has texts.
+    texts = {"pin": [field.pin], "case": [field.case], "verdict": [field.verdict]}
+    write_block(replace(_loads(field.loads, units), whole=texts), folder / "loads.vtu")
     write_block(_bands(field.loads, units), folder / "bands.vtu")
     kinds = ["loads", "bands"]
     if field.volume is not None:

@@ -170,7 +170,7 @@ def bands() -> tuple[BandLoad, ...]:
 
 
 def test_loads_and_bands_beside_the_pin(tmp_path: Path) -> None:
-    write_pin(replace(tube(), loads=bands()), "A_sharp", tmp_path, UNITS)
+    write_pin(replace(tube(), loads=bands(), verdict="converged"), "A_sharp", tmp_path, UNITS)
     blocks: Any = pyvista.read(tmp_path / "A_sharp.vtm")
     assert blocks.keys() == ["pin", "loads", "bands"]
     alone: Any = pyvista.read(tmp_path / "A_sharp.vtu")
@@ -181,6 +181,7 @@ def test_loads_and_bands_beside_the_pin(tmp_path: Path) -> None:
     np.testing.assert_allclose(loads.point_data["force [lbf]"], [[3.0, -4.0, 0.0], [0.0, 0.0, 0.0]])
     assert loads.point_data["held"].tolist() == [0, 1]
     assert list(loads.point_data["connection"]) == ["link", "root"]
+    assert [list(loads.field_data[k]) for k in ("pin", "verdict")] == [["A"], ["converged"]]
     band = blocks["bands"]
     # Of two cylinders, to what a polygon of 60 sides has less.
     area = band.compute_cell_sizes().cell_data["Area"].sum()

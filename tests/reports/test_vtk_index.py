@@ -75,7 +75,11 @@ def test_every_file_of_a_run_says_what_it_is_of(tmp_path: Path) -> None:
         "bands.vtu", "loads.vtu", "solid.vtu", "B_landing.vtm", "B_landing.vtu",
     ]  # fmt: skip
     for path in files:
-        assert by_vtk(path) == by_pyvista(path) == stated
+        own = {"pin", "case", "verdict"} if path.name == "loads.vtu" else set[str]()
+        data = by_vtk(path)
+        assert data == by_pyvista(path)
+        assert {key: x for key, x in data.items() if key not in own} == stated
+        assert own <= data.keys()
         assert path.read_bytes() == (again / path.relative_to(out)).read_bytes()
     whole = read_vtu((out / "vtk" / name).read_bytes(), name)
     blocks: Any = pyvista.read(out / "vtk/B_landing.vtm")

@@ -12,6 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from loads import Dynamics, Reactions, Resolved, resolved
+from loads.landing.through import fall
 from pinbase.arrays import Floats
 
 # With the accelerations (T, J, 2) m/s^2 of the joints, or (T, C, 3) of the pins in space
@@ -21,7 +22,8 @@ Acting = tuple[Reactions, Floats]
 def acting(dynamics: Dynamics) -> Acting:
     """Return the reactions of a mechanism, and the accelerations of its joints in their order."""
     accelerations = [acceleration for _, _, acceleration in dynamics.motion.joints()]
-    return dynamics.reactions, np.stack(accelerations, axis=1)
+    falling = fall(dynamics.motion, dynamics.applied)[:, None]  # with the aircraft of a drop
+    return dynamics.reactions, np.stack(accelerations, axis=1) + falling
 
 
 class MovingLoads:

@@ -350,13 +350,12 @@ def _own_weight(
         return reactions.to_pin_axes(case.space.gravity - at, connection)
     if case.dynamics is None:
         return np.zeros(3)
-    motion = case.dynamics.motion
-    for k, joint in enumerate(motion.linkage.joints):
+    linkage = case.dynamics.motion.linkage
+    if accelerations is None:
+        _, accelerations = acting(case.dynamics)
+    for k, joint in enumerate(linkage.joints):
         if any(c.name == connection for c in joint.connections):
-            acceleration = (
-                motion.joint(joint.name)[2] if accelerations is None else accelerations[:, k]
-            )
             across = np.zeros((len(reactions), 3))
-            across[:, :2] = np.array(motion.linkage.gravity) - acceleration
+            across[:, :2] = np.array(linkage.gravity) - accelerations[:, k]
             return reactions.to_pin_axes(across, connection)
     return np.zeros(3)

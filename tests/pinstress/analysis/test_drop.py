@@ -13,7 +13,7 @@ import pytest
 
 from pinstress import InputError, load_study, study_from
 from pinstress.analysis.gather.gather import loads_only
-from pinstress.analysis.plan import all_loads
+from pinstress.analysis.plan import all_loads, prepare
 from pinstress.cli.commands import run_command_line
 from pinstress.study.reading.file import Study
 from tests.conftest import ROOT
@@ -21,6 +21,7 @@ from tests.support.described import describe
 from tests.support.each import each
 
 SHIPPED = ROOT / "studies" / "drop.toml"
+PART_25 = ROOT / "studies" / "landing_gear_part25.toml"
 
 
 def vertical_leg(**case: Any) -> dict[str, Any]:
@@ -185,3 +186,21 @@ def test_a_strut_that_bottoms_is_an_error_of_the_case() -> None:
     with pytest.raises(InputError) as caught:
         all_loads(study_from(given), ["fall"])
     assert caught.value.codes == ("strut-bottoms",)
+
+
+def test_pins_fall_with_the_aircraft() -> None:
+    """Pin C, which nothing holds, is in balance with its own mass times gravity less the
+    deceleration, which is up to 3.25 times gravity; its weight in the linkage is that of its shape.
+    """
+    lines = PART_25.read_text(encoding="utf-8").splitlines()
+    weighed = [x for x in lines if not x.startswith("weight = { value = 4.557257799558378")]
+    assert len(weighed) == len(lines) - 1
+    study = study_from("\n".join(weighed), PART_25.parent)
+    plan = prepare(study, pins=["C"], cases=["landing-weight", "reserve-energy"])
+    (task,) = plan.tasks
+    mass = (task.material.density or 0.0) * task.pin.volume
+    for loads, factor in zip(task.loads, (3.25, 3.9), strict=True):
+        inertia = mass * np.broadcast_to(loads.body, (len(loads), 3))
+        assert np.abs(inertia).max() == pytest.approx((1.0 + factor) * 9.80665 * mass, rel=0.01)
+        residual = loads.forces.sum(axis=1) + inertia
+        assert np.abs(residual[:, :2]).max() < 1e-6 * np.abs(inertia).max()
