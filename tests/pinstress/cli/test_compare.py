@@ -39,6 +39,17 @@ def test_inputs_are_all_values_by_key_and_files_by_hash(tmp_path: Path) -> None:
     assert inputs(load_study(path))["case.c.table"] != before
 
 
+def test_inputs_have_the_numbers_of_lists(tmp_path: Path) -> None:
+    """They had "a list" for a force or a place, so that runs with other forces had the same."""
+    path = tmp_path / "study.toml"
+    path.write_text(ONE_PIN)
+    before = inputs(load_study(path))
+    path.write_text(ONE_PIN.replace("-988.86", "-1000.5"))
+    after = inputs(load_study(path))
+    changed = {key: (before[key], after[key]) for key in before if before[key] != after[key]}
+    assert changed == {"case.landing.forces.B": ("[0.0, -988.86]", "[0.0, -1000.5]")}
+
+
 @pytest.fixture(scope="module")
 def folders(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     """Runs of a pin as it ships, and thicker."""
