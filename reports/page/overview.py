@@ -66,6 +66,7 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
     axis = factor_axis(lines)
     matrix = matrix_rows(requirement_rows(results)) if len(lines) <= MAX_MATRIX_PINS else []
     steps = actions(results, lines)
+    pins = list(dict.fromkeys(line.pin for line in lines))
     linkage = _linkage(results, lines, anchors)
     return {
         "headline": headline(results),
@@ -86,9 +87,10 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "whatever": any(line.spread and whatever_words(line) != DASH for line in lines),
         "legend": _legend(lines, axis, bool(unknown)) if axis else "",
         "checks": any(check_words(line) != DASH for line in lines),
-        "matrix": [_matrix_row(row, lines) for row in matrix],
+        "pins": pins,
+        "matrix": [_matrix_row(row, pins) for row in matrix],
         "why": why(results, lines, MAX_PEAKS),
-        "why_title": "Why" if not lines or lines[0].outcome in GOOD else "Why they fail",
+        "why_title": "Why they fail" if _fails(lines) else "Why",
         "actions": [*steps.repairs, *steps.remarks],
         "nothing": _nothing(lines),
         "command": steps.command,
@@ -135,7 +137,8 @@ def _about(results: Results, lines: Sequence[PinLine]) -> str:
     """Return the number of pins, their material and the cases, in one line."""
     materials = list(dict.fromkeys(shape.material for shape in results.shapes))
     cases = list(dict.fromkeys(row.case for row in results.pins))
-    parts = [f"{len(lines)} pin{'s' * (len(lines) != 1)}"]
+    count = len({line.pin for line in lines})
+    parts = [f"{count} pin{'s' * (count != 1)}"]
     if len(materials) == 1:
         strength = next((r.yield_strength for r in results.pins if r.yield_strength), None)
         text = materials[0]
@@ -213,7 +216,11 @@ def _line(
     }
 
 
-def _matrix_row(row: MatrixRow, lines: Sequence[PinLine]) -> dict[str, Any]:
+def _fails(lines: Sequence[PinLine]) -> bool:
+    return any(line.outcome in (FAILS, YIELDS) for line in lines)
+
+
+def _matrix_row(row: MatrixRow, pins: Sequence[str]) -> dict[str, Any]:
     needs = [need.rpartition(".")[2] for need in row.needs]
     return {
         "check": _few(row.check.split(", ")) if needs else row.check,
@@ -224,7 +231,7 @@ def _matrix_row(row: MatrixRow, lines: Sequence[PinLine]) -> dict[str, Any]:
         "title": row.check,
         "cells": [
             (MARKS.get(state, ""), _css(CLASSES.get(state, state)), state)
-            for state in (row.cells.get(line.pin, "") for line in lines)
+            for state in (row.cells.get(pin, "") for pin in pins)
         ],
     }
 
