@@ -74,6 +74,8 @@ def test_two_runs_side_by_side(
     said = capsys.readouterr().out
     assert "diameter" in said
     assert {p.name for p in (tmp_path / "out").iterdir()} >= {"comparison.html", "comparison.md"}
+    # Of which axe says: "svg elements with an img role must have alternative text"
+    assert "graphics-symbol" not in (tmp_path / "out" / "comparison.html").read_text()
     assert run_command_line(["compare", a, b, "--out", str(tmp_path / "out")]) == 0  # replaced
 
 
