@@ -234,7 +234,7 @@ def _failing_pin(check: JudgedCheck, with_case: bool) -> str:
     if check.lug:
         more += [f"lug {check.lug}"]
     elif check.row is None:
-        more += [_margin_words(check if with_case else replace(check, case=""))]
+        more += [_margin_words(replace(check, case=""))]
     return f"{check.pin} ({', '.join(more)})" if more else check.pin
 
 

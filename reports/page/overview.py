@@ -90,7 +90,7 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "checks": any(check_words(line) != DASH for line in lines),
         "matrix": [_matrix_row(row, pins) for row in matrix],
         "why": why(results, lines, MAX_PEAKS),
-        "why_title": "Why" if not lines or lines[0].outcome in GOOD else "Why they fail",
+        "why_title": "Why they fail" if _fails(lines) else "Why",
         "actions": [*steps.repairs, *steps.remarks],
         "nothing": _nothing(lines),
         "command": steps.command,
@@ -215,6 +215,10 @@ def _line(
         "whatever": whatever_words(line),
         "check": "" if check_words(line) == DASH else check_words(line),
     }
+
+
+def _fails(lines: Sequence[PinLine]) -> bool:
+    return any(line.outcome in (FAILS, YIELDS) for line in lines)
 
 
 def _matrix_row(row: MatrixRow, pins: Sequence[str]) -> dict[str, Any]:

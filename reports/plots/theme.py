@@ -58,6 +58,7 @@ def _config(c: Mapping[str, str], font: str) -> dict[str, Any]:
     return {
         "font": font,
         "aria": False,
+        "mark": {"aria": False},  # each would need a label of its own
         "padding": 4,
         "axis": {**text, "gridColor": c["rule"], "domainColor": c["quiet"], "tickColor": c["quiet"],
                  "labelFontSize": 11, "titleFontSize": 11, "labelLimit": 260},

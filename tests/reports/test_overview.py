@@ -67,6 +67,20 @@ def test_a_single_pin_has_a_line_for_each_case(few: Results) -> None:
     assert {len(row["cells"]) for row in page["matrix"]} == {1}
 
 
+def test_a_single_pin_with_several_cases_is_one_pin_with_one_column(few: Results) -> None:
+    """It was counted, and had a column of the matrix, once for each case."""
+    alone = replace(few, pins=tuple(p for p in few.pins if p.pin == "A"))
+    part = overview_part(alone, {}, "")
+    assert len(part["lines"]) == 2
+    assert part["pins"] == ["A"]
+    assert part["about"].startswith("1 pin; ")
+    assert part["why_title"] == "Why they fail"
+    assert part["matrix"]
+    assert all(len(row["cells"]) == 1 for row in part["matrix"])
+    open_ = tuple(with_values(p, verdict="singular", decided=None) for p in alone.pins)
+    assert overview_part(replace(alone, pins=open_), {}, "")["why_title"] == "Why"
+
+
 def test_a_single_pin_that_is_not_decided_is_told_once(few: Results) -> None:
     """By the headline; of several pins, each with its reason; of other cases, these."""
     first = with_values(few.pins[0], verdict="singular", decided=None)

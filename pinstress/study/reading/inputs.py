@@ -40,6 +40,8 @@ def _leaves(node: Any, key: str) -> Iterator[tuple[str, Any]]:
 
 
 def _written(study: Study, value: Any) -> str:
+    if isinstance(value, list):
+        return f"[{', '.join(_written(study, x) for x in value)}]"
     if not isinstance(value, str):
         return in_toml(value)
     content = _file(study, value)

@@ -39,6 +39,17 @@ def test_inputs_are_all_values_by_key_and_files_by_hash(tmp_path: Path) -> None:
     assert inputs(load_study(path))["case.c.table"] != before
 
 
+def test_inputs_have_the_numbers_of_lists(tmp_path: Path) -> None:
+    """They had "a list" for a force or a place, so that runs with other forces had the same."""
+    path = tmp_path / "study.toml"
+    path.write_text(ONE_PIN)
+    before = inputs(load_study(path))
+    path.write_text(ONE_PIN.replace("-988.86", "-1000.5"))
+    after = inputs(load_study(path))
+    changed = {key: (before[key], after[key]) for key in before if before[key] != after[key]}
+    assert changed == {"case.landing.forces.B": ("[0.0, -988.86]", "[0.0, -1000.5]")}
+
+
 @pytest.fixture(scope="module")
 def folders(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     """Runs of a pin as it ships, and thicker."""
@@ -63,6 +74,8 @@ def test_two_runs_side_by_side(
     said = capsys.readouterr().out
     assert "diameter" in said
     assert {p.name for p in (tmp_path / "out").iterdir()} >= {"comparison.html", "comparison.md"}
+    # Of which axe says: "svg elements with an img role must have alternative text"
+    assert "graphics-symbol" not in (tmp_path / "out" / "comparison.html").read_text()
     assert run_command_line(["compare", a, b, "--out", str(tmp_path / "out")]) == 0  # replaced
 
 
