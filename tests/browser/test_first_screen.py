@@ -42,13 +42,16 @@ return [...document.querySelectorAll("table.lines tbody tr")].map((tr) => ({
 """
 
 # Names as drawings have them, with and without spaces.
+LONG_CASE = {"case.landing": 'case."maximum braked landing, 25.493(b), aft centre of gravity"'}
 LONG = (
+    LONG_CASE,
     {"pin.B": 'pin."Drag brace upper attachment pin LH-3221-0047-A"'},
-    {
-        "pin.B": 'pin."Hubzylinderlagerungsbolzen_am_Ausleger_Nr_0815"',
-        "case.landing": 'case."maximum braked landing, 25.493(b), aft centre of gravity"',
-    },
+    {"pin.B": 'pin."Hubzylinderlagerungsbolzen_am_Ausleger_Nr_0815"', **LONG_CASE},
 )
+UPRIGHT = """
+const head = document.querySelector(".matrix thead th:last-child");
+return getComputedStyle(head).writingMode === "vertical-rl";
+"""
 # Texts of the table of pins that lie on a neighbour's.
 OVERLAPS = """
 const faults = [];
@@ -164,7 +167,7 @@ def test_the_main_job_in_twenty_lines(shipped: Callable[[str], Path]) -> None:
         assert words in text
 
 
-@pytest.mark.parametrize("names", LONG, ids=["pin", "pin and case"])
+@pytest.mark.parametrize("names", LONG, ids=["case", "pin", "pin and case"])
 def test_long_names_wrap_and_push_nothing_out(
     browser: Any, tmp_path: Path, names: dict[str, str]
 ) -> None:
@@ -179,4 +182,6 @@ def test_long_names_wrap_and_push_nothing_out(
         with screen(browser, width):
             assert browser.execute_script(WIDER) == [], width
             assert browser.execute_script(OVERLAPS) == [], width
+            upright = browser.execute_script(UPRIGHT)
+            assert upright == ("pin.B" in names), width
     assert errors(browser) == []
