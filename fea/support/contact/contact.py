@@ -47,6 +47,7 @@ SPRING_FORCE, SPRING_SOFTENING, MAX_SPRING_ROUNDS = 1e-3, 1e-3, 30
 FACING_COSINE = 0.3
 # Round-off of double precision, with a margin chosen by judgement.
 BALANCE_TOLERANCE = 1e-9  # of the largest force
+FEASIBLE_RESIDUAL = 1e-6  # of the largest resultant: ten times the tolerance of HiGHS
 CLOSING_FORCE_ROUND_OFF = 1e-12  # of the forces that would close the gaps
 SIGN_TOLERANCE = 1e-12  # of the largest pressure or gap: a wrong sign below it is round-off
 # Of the stiffness of the cells: holds a lug that has lost all contact, and is far too soft to
@@ -382,15 +383,9 @@ class ContactProblem:
         """The contact found by descent of the energy, which finds every contact that exists; None
         where round-off hides it.
         """
-        from scipy.optimize import nnls  # takes long to import
-
-        # Any pressures with the resultants are a start; without any there is no contact.
-        force, lost = nnls((self._motions / self._reach).T, required / self._reach)
         size = float(np.abs(required / self._reach).max())
-        if lost > BALANCE_TOLERANCE * size:
-            raise SolveError(
-                "the links leave a couple on the pin that no lug reacts", "couple-not-reacted"
-            )
+        # Any pressures with the resultants are a start; without any there is no contact.
+        force = self._pressing(required, size)
         # The descent holds the pin by springs, whose far ends move by the loads: by all that the
         # springs have not passed on, until they have passed on everything (the method of
         # multipliers). Small parts of the loads need softer springs to get as far as the gaps.
@@ -406,6 +401,34 @@ class ContactProblem:
             if np.abs(missing / self._reach).max() > 0.1 * np.abs(before / self._reach).max():
                 spring *= SPRING_SOFTENING
         return None
+
+    def _pressing(self, required: Floats, size: float) -> Floats:
+        """Forces of the cells (U,), N, none of them negative, that have the required resultants.
+
+        size: the largest resultant, N.
+
+        Raises: SolveError where there are none.
+        """
+        from scipy.optimize import linprog  # takes long to import
+
+        # By the least sum of residuals, a linear program. `scipy.optimize.nnls` is not to be
+        # trusted here: from SciPy 1.15 on it returns a residual of 0.0 for resultants that no
+        # forces have (scipy/scipy#25389), and the descent then has no minimum to end at.
+        resultants = (self._motions / self._reach).T
+        count, cells = resultants.shape
+        residual = np.hstack([np.eye(count), -np.eye(count)])
+        least = linprog(
+            np.repeat([0.0, 1.0], [cells, 2 * count]),
+            A_eq=np.hstack([resultants, residual]),
+            b_eq=required / self._reach / (size or 1.0),
+        )
+        if least.x is None:
+            raise SolveError("contact does not settle", "contact-unsettled")
+        if least.fun > FEASIBLE_RESIDUAL:
+            raise SolveError(
+                "the links leave a couple on the pin that no lug reacts", "couple-not-reacted"
+            )
+        return np.asarray(np.maximum(least.x[:cells], 0.0) * size)
 
     def _on_springs(self, active: Mask, pull: Floats, spring: float) -> tuple[Floats, Floats]:
         return self._answer(active).on_springs(pull, spring)

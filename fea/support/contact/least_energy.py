@@ -2,7 +2,8 @@
 
 Cells that push a pin, held on springs, minimise a strictly convex energy over pressures that are
 not negative. The active set here only ever steps to less energy, so that it meets no set of cells
-twice, and there are finitely many; it takes more steps than the one of
+twice, and there are finitely many; where round-off decides what is less, the steps are counted
+instead. It takes more steps than the one of
 fea.support.contact.contact, which may run in circles where hardly more cells touch than hold the
 pin.
 
@@ -16,11 +17,15 @@ from collections.abc import Callable
 
 import numpy as np
 
+from fea.core.linear_solver import SolveError
 from pinbase.arrays import Floats, Mask
 
 # Of the largest gap or the step: a smaller overlap is round-off, and cells within it of the first
 # one that opens open together.
 ROUND_OFF = 1e-12
+# Minima met before the descent is given up, per cell. Of 400 random light loads none met more than
+# 0.08, and nonnegative least squares is commonly given 3.
+MAX_MINIMA_PER_CELL = 1.0
 
 
 def least_energy_cells(
@@ -35,10 +40,12 @@ def least_energy_cells(
     their forces of any sign.
     chosen: which of the cells that overlap to close at once, by gaps, overlapping cells and cells
     in contact.
+
+    Raises: SolveError where round-off hides the minimum.
     """
     active, force, gap = _descent(force > 0.0, force, least)
     minima = {active.tobytes()}
-    while True:
+    while len(minima) < MAX_MINIMA_PER_CELL * len(force):
         overlaps = ~active & (gap < -ROUND_OFF * np.abs(gap).max())
         if not overlaps.any():
             return active, force
@@ -54,6 +61,7 @@ def least_energy_cells(
             return active, force  # within round-off
         active, force = next_active, next_force
         minima.add(active.tobytes())
+    raise SolveError("contact does not settle", "contact-unsettled")
 
 
 def _descent(

@@ -215,9 +215,12 @@ def optimality(problem: WeightProblem, x: Array, places: tuple[StressPlace, ...]
     active = _active(problem, x, places)
     if not size or not active:
         return Optimality(1.0 if size else 0.0)
-    multipliers, rest = nnls(np.stack([slope for _, slope in active], axis=1), -gradient)
+    slopes = np.stack([slope for _, slope in active], axis=1)
+    # The residual that nnls returns may be 0.0 where much is left (scipy/scipy#25389).
+    multipliers, _ = nnls(slopes, -gradient)
+    left = float(np.linalg.norm(slopes @ multipliers + gradient))
     named = zip((name for name, _ in active), multipliers, strict=True)
-    return Optimality(float(rest) / size, {name: float(m) for name, m in named if m > 0.0})
+    return Optimality(left / size, {name: float(m) for name, m in named if m > 0.0})
 
 
 def _active(

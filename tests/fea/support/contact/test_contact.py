@@ -192,13 +192,13 @@ def test_forces_out_of_balance_cannot_be_answered() -> None:
         contact.solve(np.array([[1.0, 0.0], [-1.0, 0.0]]))
 
 
-def small_and_loose(sectors: int = 48, rings: int = 12) -> ContactProblem:
-    """Two lugs 50 mm thick on a pin of 50 mm of steel, in metres, loose by 60 um: half-planes, with
+def small_and_loose(sectors: int = 48, rings: int = 12, lugs: int = 2) -> ContactProblem:
+    """Lugs 50 mm thick on a pin of 50 mm of steel, in metres, loose by 60 um: half-planes, with
     bending and the tilt of the lugs.
     """
     ends = np.linspace(0.0, 0.05, rings + 1)
-    z = np.concatenate([0.5 * (ends[1:] + ends[:-1]) + start for start in (0.0, 0.052)])
-    length = np.full(2 * rings, 0.05 / rings)
+    z = np.concatenate([0.5 * (ends[1:] + ends[:-1]) + 0.052 * lug for lug in range(lugs)])
+    length = np.full(lugs * rings, 0.05 / rings)
     per_force, E = 4.0 * E_STAR**-1 * 0.025 / 200e9, 200e9
     flexible = np.zeros((17, len(z), len(z)))
     for n in range(17):
@@ -206,10 +206,10 @@ def small_and_loose(sectors: int = 48, rings: int = 12) -> ContactProblem:
     near, far = np.minimum(z[:, None], z), np.maximum(z[:, None], z)
     bending = near**2 * (3.0 * far - near) / (6.0 * E * math.pi * 0.025**4 / 4.0)
     flexible[1] += math.pi * 0.025 * length * bending
-    band = np.repeat([0, 1], rings)
+    band = np.repeat(np.arange(lugs), rings)
     bands = Bands(z, length, np.full(len(z), 0.025), band, np.full(len(z), 30e-6))
     tail = np.full(len(z), per_force)
-    return ContactProblem(bands, flexible, tail, [2e6, 2e6], sectors)
+    return ContactProblem(bands, flexible, tail, [2e6] * lugs, sectors)
 
 
 @pytest.mark.parametrize("load", [1e6, 1e4, 300.0, 10.0, 1.0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -124,6 +125,42 @@ def test_a_couple_that_no_lug_reacts_is_told(load: float) -> None:
         contact.solve(forces)
     with pytest.raises(SolveError, match="no lug reacts"):
         contact._by_energy(contact.required_resultants(forces))
+
+
+@pytest.mark.parametrize("rings", [6, 12])
+def test_three_free_lugs_bear_only_what_has_no_couple(rings: int) -> None:
+    """By statics: forces at equal distances balance where the outer ones are equal. SciPy's
+    nonnegative least squares says so of others, too (scipy/scipy#25389), and the descent had no end
+    then: `pinstress size` ran for hours.
+    """
+    contact = small_and_loose(4 * rings, rings, 3)
+    contact = contact.changed(contact.bands.gap, (0.0, 0.0, 0.0))
+    for left, load in itertools.product((1e-4, 1e-3, 0.01, 0.3, 0.5), (1.0, 1e3, -1e3, -1e6)):
+        required = contact.required_resultants(
+            load * np.array([[left, 0.0], [-1.0, 0.0], [1.0 - left, 0.0]])
+        )
+        if left == 0.5:
+            state = contact._by_energy(required)
+            assert state is not None
+            assert state.pressure.min() >= 0.0
+        else:
+            with pytest.raises(SolveError, match="no lug reacts"):
+                contact._by_energy(required)
+
+
+def test_a_descent_that_round_off_keeps_from_ending_is_told() -> None:
+    """Minima of cells that always find another one to close."""
+
+    def least(active: Mask) -> tuple[Floats, Floats]:
+        return np.where(active, 1.0, 0.0), np.where(active, 0.0, -random.uniform(size=20))
+
+    def another(gap: Floats, overlaps: Mask, active: Mask) -> Mask:
+        active[:] = random.uniform(size=20) < 0.5
+        return overlaps & (random.uniform(size=20) < 0.5)
+
+    random = np.random.default_rng(2)
+    with pytest.raises(SolveError, match="does not settle"):
+        least_energy_cells(np.zeros(20), least, another)
 
 
 def test_least_energy_is_that_of_nonnegative_least_squares() -> None:
