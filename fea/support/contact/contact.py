@@ -422,7 +422,7 @@ class ContactProblem:
             A_eq=np.hstack([resultants, residual]),
             b_eq=required / self._reach / (size or 1.0),
         )
-        if least.x is None:
+        if least.x is None or least.fun is None:
             raise SolveError("contact does not settle", "contact-unsettled")
         if least.fun > FEASIBLE_RESIDUAL:
             raise SolveError(
