@@ -21,8 +21,9 @@ import numpy as np
 
 from assess.derivatives.ring_work import Pair
 from fea.core.pin_loads import PinLoads
-from fea.support.contact.contact import rotation
+from fea.support.contact.contact_state import rotation
 from fea.support.contact.pressure_loads import waves_of_sectors
+from fea.support.contact.sectors import sector_factors, tail_weights
 from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.links import tilting_bands
 from pinbase.arrays import Floats, Mask
@@ -57,8 +58,8 @@ class FixedContact:
         both = self._at.by_gap.reshape(shape), self._at.force.reshape(shape)
         self._l, self._f = (np.fft.fft(x, axis=1) for x in both)  # harmonics, (R, M)
         count = len(model.flexibility)
-        self._factors = self._contact.factors(np.arange(count))
-        tail = self._contact.tail_weights(count)
+        self._factors = sector_factors(self._contact.sectors, np.arange(count))
+        tail = tail_weights(self._contact.sectors, count)
         self._tail = np.real(np.conj(self._l) * self._f) @ tail
         self._wavy = {
             model.likeness(lug, ends): model.wavy[:, :, rings, rings].sum(axis=0)

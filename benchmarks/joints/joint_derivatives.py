@@ -27,7 +27,7 @@ from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.section.section_stress import SectionField
 from fea.singular.singularities import singularities_of
 from fea.solve.solve import solve_in_lugs
-from fea.support.contact.contact import ContactState, rotation
+from fea.support.contact.contact_state import ContactState, rotation
 from fea.support.contact.flexibility import RingBody, lug_rings
 from fea.support.contact.held import HeldContact
 from fea.support.contact.solve_joint import ContactModel, Resolution

@@ -24,8 +24,8 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import replace
+from functools import cached_property, partial
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
@@ -33,8 +33,11 @@ from scipy.linalg import cho_factor, cho_solve
 from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats
 from fea.support.bands import Bands
-from fea.support.contact.least_energy import least_energy_cells
-from pinbase.arrays import Ints, Mask
+from fea.support.contact.contact_answer import AdjointContact, Answer
+from fea.support.contact.contact_state import ContactState, wide_gap_half_angle
+from fea.support.contact.least_energy import any_forces, least_energy_cells
+from fea.support.contact.sectors import CellFlexibility, Sectors
+from pinbase.arrays import Mask
 
 # Limits of the iteration and of the descent, chosen by judgement. They decide how soon contact is
 # found; the contact itself is unique.
@@ -45,146 +48,17 @@ MAX_ACTIVE_SET_STEPS = 60
 SPRING_FORCE, SPRING_SOFTENING, MAX_SPRING_ROUNDS = 1e-3, 1e-3, 30
 # A cell belongs to the first guess if the cosine between its normal and the load is larger.
 FACING_COSINE = 0.3
+# Of required resultants and rigid motions, which come in pairs along x and y.
+ALONG_X, ALONG_Y = slice(0, None, 2), slice(1, None, 2)
 # Round-off of double precision, with a margin chosen by judgement.
 BALANCE_TOLERANCE = 1e-9  # of the largest force
-FEASIBLE_RESIDUAL = 1e-6  # of the largest resultant: ten times the tolerance of HiGHS
 CLOSING_FORCE_ROUND_OFF = 1e-12  # of the forces that would close the gaps
 SIGN_TOLERANCE = 1e-12  # of the largest pressure or gap: a wrong sign below it is round-off
 # Of the stiffness of the cells: holds a lug that has lost all contact, and is far too soft to
 # change that of a lug in contact.
 SOFT_SPRING_STIFFNESS = 1e-13
-TAIL_HARMONICS_PER_SECTOR = 40  # times the sectors: harmonics of the half-plane that are summed
 # Numbers kept of the responses of sets of cells, counted by one value of each cell and motion.
 MAX_KEPT_NUMBERS = 4_000_000
-
-
-@dataclass(frozen=True)
-class ContactState:
-    """The contact of a pin at one instant.
-
-    pressure: (R, M), Pa, on the cells.
-    gap: (R, M), m.
-    shift: (B, 2), m, of the lugs against the pin along x and y.
-    turn: (2,), slopes dx / dz and dy / dz of the pin.
-    steps: number of active-set steps.
-    angle: of the first cells' middle from the x axis, rad.
-    """
-
-    pressure: Floats
-    gap: Floats
-    shift: Floats
-    turn: Floats
-    steps: int
-    angle: float = 0.0
-
-    @property
-    def active(self) -> Mask:
-        """A mask (R, M) of the cells in contact."""
-        return self.gap <= 0.0
-
-    def times(self, factor: float) -> ContactState:
-        """The state under so many times the loads, valid where there is no gap before loading."""
-        return ContactState(
-            factor * self.pressure,
-            factor * self.gap,
-            factor * self.shift,
-            factor * self.turn,
-            0,
-            self.angle,
-        )
-
-    def turned(self, angle: float) -> ContactState:
-        """The state turned about the axis by an angle, rad."""
-        turn = rotation(angle).T
-        return replace(
-            self, shift=self.shift @ turn, turn=self.turn @ turn, angle=self.angle + angle
-        )
-
-
-def rotation(angle: float) -> Floats:
-    """The matrix (2, 2) that rotates columns (x, y) by an angle, rad."""
-    c, s = math.cos(angle), math.sin(angle)
-    return np.array([[c, -s], [s, c]])
-
-
-def wide_gap_half_angle(load: Floats, closing: Floats) -> Floats:
-    """The half angle of contact, rad, of Persson's plane contact in the limit of large gaps,
-    E* gap / load = 2 / (pi tan^2(half / 2)); too wide for small ones.
-
-    load: per length, N/m, or all along a length, N.
-    closing: E* times the gap on the radius, in the same unit; 4 R / E* is the tail of pin and lug
-    together.
-    """
-    closed = np.sqrt(np.pi * np.maximum(closing, 0.0))
-    return np.asarray(2.0 * np.arctan2(np.sqrt(2.0 * load), closed))
-
-
-@dataclass(frozen=True)
-class AdjointContact:
-    """The contact of given cells and its adjoint, for a weighted sum of the cells' forces.
-
-    force: (U,) N.
-    motion: rigid motions (Y,).
-    by_gap: decrease of the sum per gap at each cell, (U,).
-    by_required: increase of the sum per required resultant of each motion, (Y,).
-    """
-
-    force: Floats
-    motion: Floats
-    by_gap: Floats
-    by_required: Floats
-
-
-@dataclass(frozen=True)
-class _Answer:
-    """The linear response of one active set of cells to the rigid motions.
-
-    force, gap: (U,) N and (U,) m without rigid motions.
-    yielding, moving: how much each rigid motion takes off the forces and adds to the gaps, (U, Y).
-    system, right: equations (Y, Y), (Y,) of the motions, without the required resultants.
-    motions: change of the gap by each motion, (U, Y).
-    reach: the largest change of a gap by each motion, (Y,), 1 where it moves nothing.
-    """
-
-    force: Floats
-    yielding: Floats
-    gap: Floats
-    moving: Floats
-    system: Floats
-    right: Floats
-    motions: Floats
-    reach: Floats
-
-    def on_springs(self, pull: Floats, stiffness: float) -> tuple[Floats, Floats]:
-        """The forces and gaps where springs, N/m of what each motion moves at most, hold the lugs
-        and the pin, and pull with given resultants as long as nothing moves.
-        """
-        springs = stiffness * self.reach**2
-        scale = np.outer(self.reach, self.reach)
-        system = (self.system + np.diag(springs)) / scale
-        motion, lost = np.zeros(len(pull)), self.right - pull
-        for _ in range(2):  # once more for round-off, as `under`
-            motion += np.linalg.solve(system, lost / self.reach) / self.reach
-            force = self.force - self.yielding @ motion
-            lost = self.motions.T @ force - pull - springs * motion
-        return force, self.gap + self.moving @ motion
-
-    def motion(self, lost: Floats) -> Floats:
-        """The motions (Y,) of least size that make up for lost resultants."""
-        # Every motion counts as what it moves at most: otherwise a turn, whose numbers are those
-        # of a shift over a length, is taken for one that moves nothing where few cells touch.
-        system = self.system / np.outer(self.reach, self.reach)
-        solved = np.linalg.lstsq(system, lost / self.reach)[0]
-        return np.asarray(solved / self.reach, dtype=np.float64)
-
-    def under(self, required: Floats) -> tuple[Floats, Floats, Floats]:
-        """The forces, gaps and rigid motions with which the cells have the required resultants."""
-        motion, lost = np.zeros(len(required)), self.right - required
-        for _ in range(2):  # once more for round-off: forces are small where gaps are large
-            motion += self.motion(lost)
-            force = self.force - self.yielding @ motion
-            lost = self.motions.T @ force - required
-        return force, self.gap + self.moving @ motion, motion
 
 
 class ContactProblem:
@@ -209,25 +83,25 @@ class ContactProblem:
         besides: Floats | None = None,
         gone: Mask | None = None,
     ) -> None:
-        self.bands, self.sectors = bands, sectors
-        self.angles = 2.0 * np.pi * np.arange(sectors) / sectors
-        self.area = self.cells_area(bands)
-        mean = np.sinc(1.0 / sectors)  # of cos and sin over a sector
-        e_r = mean * np.stack([np.cos(self.angles), np.sin(self.angles)], axis=1)
-        self._e_r = np.tile(e_r, (len(bands.z), 1))  # (U, 2)
-        self._link = np.repeat(bands.links[bands.band], sectors)
+        self.bands, self.sectors, self._cells = bands, sectors, Sectors(sectors)
         self._count = int(bands.links.max()) + 1
         self._tail = float(np.max(tail))
-        self._fixed = self._of_cells(flexibility, tail)
-        if besides is not None:
-            self._fixed = self._fixed + besides
+        area = self.cells_area(bands)
+        self._elastic = CellFlexibility(flexibility, tail, area[::sectors], sectors, besides)
         # A gap as wide as the pin never closes.
         self._beyond = 0.0 if gone is None else gone * bands.radius.max()
+        self._even = besides is None and gone is None
         self._fit(bands, tilt)
+
+    @property
+    def angles(self) -> Floats:
+        """The angles (M,) of the middles of the sectors, rad."""
+        return self._cells.angles
 
     def cells_area(self, bands: Bands) -> Floats:
         """The areas of all cells of bands with as many rings, (U,) m^2."""
-        return np.repeat(bands.length * bands.radius, self.sectors) * 2.0 * np.pi / self.sectors
+        of_ring = bands.length * bands.radius * 2.0 * np.pi / self.sectors
+        return np.outer(of_ring, self._cells.sizes).ravel()
 
     def changed(self, gap: Floats, tilt: Sequence[float]) -> ContactProblem:
         """The same problem with another initial gap (R,), m, and another tilt stiffness."""
@@ -245,52 +119,43 @@ class ContactProblem:
             self._freed[key] = self.changed(self.bands.gap, tilt)
         return self._freed[key]
 
+    @cached_property
+    def mirrored(self) -> ContactProblem:
+        """The same problem under loads along x, whose contact is mirrored about x."""
+        other = copy.copy(self)
+        other._cells = Sectors(self.sectors, mirrored=True)
+        other._fit(self.bands, self.tilt)
+        return other
+
     def _fit(self, bands: Bands, tilt: Sequence[float]) -> None:
         self.bands, self.tilt = bands, tuple(tilt)
         self._freed: dict[bytes, ContactProblem] = {}
-        self._open = np.repeat(bands.gap, self.sectors) + self._beyond
-        self._motions, tilts = self.rigid(bands, tilt)
-        self._compliance = self._fixed + tilts @ tilts.T if tilts.size else self._fixed
-        # Of a positive definite matrix the largest number is on the diagonal.
-        self._softest = float(self._compliance.diagonal().max())
-        self._soft = SOFT_SPRING_STIFFNESS / self._softest
+        self.area = self.cells_area(bands)
+        self._e_r = np.tile(self._cells.normals, (len(bands.z), 1))  # (U, 2)
+        self._link = np.repeat(bands.links[bands.band], len(self._cells))
+        self._open = np.repeat(bands.gap, len(self._cells)) + self._beyond
+        self._motions, self._tilts = self.rigid(bands, tilt)
         largest = np.abs(self._motions).max(axis=0)  # a turn counts as the shift at the far end
         self._reach = np.where(largest > 0.0, largest, 1.0)
-        self._answers: dict[bytes, _Answer] = {}
+        self._answers: dict[bytes, Answer] = {}
+        for made in ("_compliance", "mirrored"):
+            self.__dict__.pop(made, None)
+
+    @cached_property
+    def _compliance(self) -> Floats:
+        """The mean displacements (U, U) of the cells under forces on them, m/N."""
+        fixed = self._elastic.of(self._cells)
+        return fixed + self._tilts @ self._tilts.T if self._tilts.size else fixed
+
+    @property
+    def _softest(self) -> float:
+        """The largest compliance, m/N: of a positive definite matrix it is on the diagonal."""
+        return float(self._compliance.diagonal().max())
 
     @property
     def closed(self) -> bool:
         """Whether pin and bores fit everywhere before any load."""
         return not self.bands.gap.any()
-
-    def factors(self, n: Ints) -> Floats:
-        """Factors (N,) of harmonics in the mean displacement of a cell under pressure on a cell."""
-        return np.asarray(
-            np.where(n == 0, 1.0, 2.0) / self.sectors * np.sinc(n / self.sectors) ** 2
-        )
-
-    def tail_weights(self, first: int) -> Floats:
-        """Coefficients (M,) of cos(n a) on the sectors that sum the series u_n = p_n / n from
-        harmonic `first` on.
-        """
-        n = np.arange(first, TAIL_HARMONICS_PER_SECTOR * self.sectors)
-        terms = self.factors(n) / n
-        return np.asarray(np.bincount(n % self.sectors, terms, self.sectors), dtype=np.float64)
-
-    def _of_cells(self, flexibility: Floats, tail: Floats) -> Floats:
-        """Mean displacement of cells under forces on cells, (U, U) m/N."""
-        M, n = self.sectors, np.arange(len(flexibility))
-        # The flexibility depends on the angle between two cells alone: it is summed over harmonics
-        # for each angle, the half-plane's beyond, and then laid out for all pairs of cells.
-        waves = np.cos(np.outer(n, self.angles)) * self.factors(n)[:, None]  # (N + 1, M)
-        apart = np.tensordot(flexibility, waves, (0, 0))  # (R, R, M)
-        weights = self.tail_weights(len(flexibility))
-        near = weights @ np.cos(np.outer(np.arange(M), self.angles))  # the same a turn further on
-        apart[np.arange(len(tail)), np.arange(len(tail))] += tail[:, None] * near
-        turn = (np.arange(M)[:, None] - np.arange(M)) % M
-        rings = len(tail)
-        full = apart[:, :, turn].transpose(0, 2, 1, 3).reshape(rings * M, rings * M)
-        return np.asarray(full / self.area)
 
     def rigid(self, bands: Bands, tilt: Sequence[float]) -> tuple[Floats, Floats]:
         """Changes of the gap by the motions of lugs and pin, on bands with as many rings.
@@ -299,14 +164,16 @@ class ContactProblem:
         the pin, tilts of the free lugs. The second, (U, S), is that of sprung tilts over the root
         of their stiffness, so that its product with itself is their compliance.
         """
-        columns = [self._e_r * (self._link == k)[:, None] for k in range(self._count)]
-        band, z = (np.repeat(x, self.sectors) for x in (bands.band, bands.z))
+        # Mirrored about x, nothing moves along y.
+        e_r = self._e_r[:, :1] if self._cells.mirrored else self._e_r
+        columns = [e_r * (self._link == k)[:, None] for k in range(self._count)]
+        band, z = (np.repeat(x, len(self._cells)) for x in (bands.band, bands.z))
         middle = 0.5 * (z.min() + z.max())
-        columns.append(self._e_r * (z - middle)[:, None])
+        columns.append(e_r * (z - middle)[:, None])
         elastic = [np.zeros((len(z), 0))]
         for b, stiffness in enumerate(tilt):
             arm = (z - bands.middles[b]) * (band == b)
-            column = self._e_r * arm[:, None]
+            column = e_r * arm[:, None]
             if stiffness == 0.0:
                 columns.append(column)
             elif np.isfinite(stiffness):
@@ -330,12 +197,21 @@ class ContactProblem:
         """
         forces = np.asarray(forces, dtype=np.float64)
         required = self.required_resultants(forces, couple, moments)
+        if self._cells.mirrored:
+            required = required[ALONG_X]
+        elif self._even and self._along_x(required):
+            return self.mirrored.solve(forces, couple, start, moments)
         acting = self._acting(forces, moments)
-        first = self._facing(acting) if start is None else start.ravel().copy()
+        first = self._facing(acting) if start is None else self._cells.first(start)
         state = self._settled(required, first) or self._by_energy(required)
         if state is None:
             raise SolveError("contact does not settle", "contact-unsettled")
         return state
+
+    def _along_x(self, required: Floats) -> bool:
+        """Whether required resultants lie in the plane of x and the pin's axis."""
+        size = np.abs(required) / self._reach
+        return bool(size[ALONG_Y].max() <= BALANCE_TOLERANCE * size.max())
 
     def _settled(self, required: Floats, active: Mask) -> ContactState | None:
         """The contact found from a first set of cells in contact; None where the sets do not
@@ -372,11 +248,12 @@ class ContactProblem:
     def _deepest(self, gap: Floats, among: Mask) -> Mask:
         """A mask of the cell of least gap of each band, among some."""
         out, rings = np.zeros_like(among), len(self.bands.z)
-        shallow = np.where(among, gap, np.inf).reshape(rings, self.sectors)
+        shallow = np.where(among, gap, np.inf).reshape(rings, -1)
         for band in range(int(self.bands.band.max()) + 1):
             rows = np.flatnonzero(self.bands.band == band)
             cell = int(shallow[rows].argmin())
-            out[rows[cell // self.sectors] * self.sectors + cell % self.sectors] = True
+            ring, k = divmod(cell, len(self._cells))
+            out[rows[ring] * len(self._cells) + k] = True
         return out & among
 
     def _by_energy(self, required: Floats) -> ContactState | None:
@@ -385,7 +262,8 @@ class ContactProblem:
         """
         size = float(np.abs(required / self._reach).max())
         # Any pressures with the resultants are a start; without any there is no contact.
-        force = self._pressing(required, size)
+        scaled = required / self._reach / (size or 1.0)
+        force = size * any_forces((self._motions / self._reach).T, scaled)
         # The descent holds the pin by springs, whose far ends move by the loads: by all that the
         # springs have not passed on, until they have passed on everything (the method of
         # multipliers). Small parts of the loads need softer springs to get as far as the gaps.
@@ -402,38 +280,10 @@ class ContactProblem:
                 spring *= SPRING_SOFTENING
         return None
 
-    def _pressing(self, required: Floats, size: float) -> Floats:
-        """Forces of the cells (U,), N, none of them negative, that have the required resultants.
-
-        size: the largest resultant, N.
-
-        Raises: SolveError where there are none.
-        """
-        from scipy.optimize import linprog  # takes long to import
-
-        # By the least sum of residuals, a linear program. `scipy.optimize.nnls` is not to be
-        # trusted here: from SciPy 1.15 on it returns a residual of 0.0 for resultants that no
-        # forces have (scipy/scipy#25389), and the descent then has no minimum to end at.
-        resultants = (self._motions / self._reach).T
-        count, cells = resultants.shape
-        residual = np.hstack([np.eye(count), -np.eye(count)])
-        least = linprog(
-            np.repeat([0.0, 1.0], [cells, 2 * count]),
-            A_eq=np.hstack([resultants, residual]),
-            b_eq=required / self._reach / (size or 1.0),
-        )
-        if least.x is None or least.fun is None:
-            raise SolveError("contact does not settle", "contact-unsettled")
-        if least.fun > FEASIBLE_RESIDUAL:
-            raise SolveError(
-                "the links leave a couple on the pin that no lug reacts", "couple-not-reacted"
-            )
-        return np.asarray(np.maximum(least.x[:cells], 0.0) * size)
-
     def _on_springs(self, active: Mask, pull: Floats, spring: float) -> tuple[Floats, Floats]:
         return self._answer(active).on_springs(pull, spring)
 
-    def _answer(self, active: Mask) -> _Answer:
+    def _answer(self, active: Mask) -> Answer:
         """The response of given cells in contact, kept for later instants."""
         key = np.packbits(active).tobytes()
         if key not in self._answers:
@@ -442,13 +292,14 @@ class ContactProblem:
             self._answers[key] = self._compute_answer(active)
         return self._answers[key]
 
-    def _compute_answer(self, active: Mask) -> _Answer:
+    def _compute_answer(self, active: Mask) -> Answer:
         # On the cells in contact the gap is zero: C p = -open - G y. One factorisation of C serves
         # the initial gaps and every rigid motion y, which are then the only unknowns left.
         C, G = self._compliance, self._motions
         rows = np.flatnonzero(active)
         force, yielding = np.zeros(len(active)), np.zeros(G.shape)
-        system, right = self._soft * np.diag(self._reach**2), np.zeros(G.shape[1])
+        soft = SOFT_SPRING_STIFFNESS / self._softest
+        system, right = soft * np.diag(self._reach**2), np.zeros(G.shape[1])
         C = C[rows]  # symmetric
         if len(rows):
             factor = cho_factor(C[:, rows], lower=True, check_finite=False, overwrite_a=True)
@@ -460,7 +311,7 @@ class ContactProblem:
         change = (both.T @ C).T
         gap, moving = self._open + change[:, -1], G - change[:, :-1]
         gap[rows], moving[rows] = 0.0, 0.0
-        return _Answer(force, yielding, gap, moving, system, right, G, self._reach)
+        return Answer(force, yielding, gap, moving, system, right, G, self._reach)
 
     def required_resultants(
         self,
@@ -473,17 +324,14 @@ class ContactProblem:
         Their sign is negative since the cells push the pin against e_r.
         moments: of the lugs that are free to tilt, as of `solve`.
         """
-        out = np.zeros(self._motions.shape[1])
-        count = self._count
-        out[: 2 * count] = -np.asarray(forces, dtype=float).ravel()
         mx, my = couple  # x: by forces along -y at z, y: by forces along x at z
-        out[2 * count : 2 * count + 2] = my, -mx
+        free = np.array(self.tilt) == 0.0
+        of_free = np.zeros(2 * np.count_nonzero(free))
         if moments is not None:
-            of_free = moments[np.array(self.tilt) == 0.0]
-            out[2 * count + 2 :] = (of_free[:, ::-1] * [-1.0, 1.0]).ravel()
-        return out
+            of_free = (moments[free][:, ::-1] * [-1.0, 1.0]).ravel()
+        return np.concatenate([-np.asarray(forces, dtype=float).ravel(), [my, -mx], of_free])
 
-    def _balances(self, force: Floats, required: Floats, answer: _Answer) -> bool:
+    def _balances(self, force: Floats, required: Floats, answer: Answer) -> bool:
         """Whether the cells' forces have the required resultants.
 
         Raises: SolveError where round-off hides it.
@@ -528,7 +376,7 @@ class ContactProblem:
         """
         if moments is None or not moments.any():
             return np.asarray(forces[self._link])
-        band, z = (np.repeat(x, self.sectors) for x in (self.bands.band, self.bands.z))
+        band, z = (np.repeat(x, len(self._cells)) for x in (self.bands.band, self.bands.z))
         length = np.bincount(self.bands.band, self.bands.length)[band]
         slope = 12.0 * (z - self.bands.middles[band]) / length**2
         turning = np.stack([moments[:, 1], -moments[:, 0]], axis=1)[band]
@@ -557,11 +405,12 @@ class ContactProblem:
         return np.asarray(np.clip(np.cos(half), FACING_COSINE, nearest))
 
     def _state(self, force: Floats, gap: Floats, motion: Floats, steps: int) -> ContactState:
-        shape = (len(self.bands.z), self.sectors)
-        count = self._count
+        count, cells = self._count, self._cells
+        if cells.mirrored:
+            motion = np.stack([motion, np.zeros_like(motion)], axis=1).ravel()
         return ContactState(
-            np.maximum(force / self.area, 0.0).reshape(shape),
-            np.maximum(gap, 0.0).reshape(shape),
+            cells.all_round(np.maximum(force / self.area, 0.0)),
+            cells.all_round(np.maximum(gap, 0.0)),
             motion[: 2 * count].reshape(count, 2)[self.bands.links],
             motion[2 * count : 2 * count + 2],
             steps,

@@ -23,7 +23,7 @@ import numpy as np
 
 from fea.core.pin_loads import UnitLoad
 from fea.support.bands import Bands
-from fea.support.contact.contact import ContactState
+from fea.support.contact.contact_state import ContactState
 from fea.support.contact.pressure_loads import (
     MODE_TOLERANCE,
     PressureLoads,

@@ -26,6 +26,35 @@ ROUND_OFF = 1e-12
 # Minima met before the descent is given up, per cell. Of 400 random light loads none met more than
 # 0.08, and nonnegative least squares is commonly given 3.
 MAX_MINIMA_PER_CELL = 1.0
+FEASIBLE_RESIDUAL = 1e-6  # of the largest resultant: ten times the tolerance of HiGHS
+
+
+def any_forces(resultants: Floats, required: Floats) -> Floats:
+    """Forces of the cells (U,), none of them negative, that have the required resultants (Y,).
+
+    resultants: of a unit force of each cell, (Y, U). The largest one required is 1.
+
+    Raises: SolveError where there are none.
+    """
+    from scipy.optimize import linprog  # takes long to import
+
+    # By the least sum of residuals, a linear program. `scipy.optimize.nnls` is not to be trusted
+    # here: from SciPy 1.15 on it returns a residual of 0.0 for resultants that no forces have
+    # (scipy/scipy#25389), and the descent then has no minimum to end at.
+    count, cells = resultants.shape
+    residual = np.hstack([np.eye(count), -np.eye(count)])
+    least = linprog(
+        np.repeat([0.0, 1.0], [cells, 2 * count]),
+        A_eq=np.hstack([resultants, residual]),
+        b_eq=required,
+    )
+    if least.x is None or least.fun is None:
+        raise SolveError("contact does not settle", "contact-unsettled")
+    if least.fun > FEASIBLE_RESIDUAL:
+        raise SolveError(
+            "the links leave a couple on the pin that no lug reacts", "couple-not-reacted"
+        )
+    return np.asarray(np.maximum(least.x[:cells], 0.0))
 
 
 def least_energy_cells(

@@ -21,7 +21,7 @@ from fea.harmonic.field import HarmonicField
 from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.section.section_stress import SectionField
 from fea.singular.singularities import singularities_of
-from fea.support.contact.contact import ContactState
+from fea.support.contact.contact_state import ContactState
 from fea.support.contact.pressure_loads import (
     MODE_TOLERANCE,
     ROUGH_MODE_TOLERANCE,

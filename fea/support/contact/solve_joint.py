@@ -23,12 +23,8 @@ from fea.harmonic.first_mesh import FirstMesh
 from fea.singular.lug_edge import lug_edge_exponent
 from fea.support.bands import Bands
 from fea.support.contact.bending import LoadedJoint, mass_per_length
-from fea.support.contact.contact import (
-    ContactProblem,
-    ContactState,
-    rotation,
-    wide_gap_half_angle,
-)
+from fea.support.contact.contact import ContactProblem
+from fea.support.contact.contact_state import ContactState, rotation, wide_gap_half_angle
 from fea.support.contact.flexibility import (
     RingBody,
     half_plane,

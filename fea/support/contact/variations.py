@@ -23,7 +23,8 @@ from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.section.section_stress import SectionField
 from fea.singular.singularities import singularities_of
 from fea.support.contact.coarser_cells import on_coarser_cells
-from fea.support.contact.contact import ContactProblem, ContactState
+from fea.support.contact.contact import ContactProblem
+from fea.support.contact.contact_state import ContactState
 from fea.support.contact.friction import SLIDING, TURNING, coefficient_words, rubbed, rubs
 from fea.support.contact.pressure_loads import MODE_TOLERANCE, PressureLoads, PressureModes, stacked
 from fea.support.contact.solve_joint import ContactModel, JointContact

@@ -7,7 +7,6 @@ that the cut takes press no more. Half of the joint is solid, the loads lying in
 
 from __future__ import annotations
 
-import copy
 import math
 from dataclasses import dataclass, replace
 from functools import cache
@@ -24,7 +23,8 @@ from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh, area_vectors, slopes_at, surface
 from fea.solid.stress_recovery import nodal_stress
 from fea.solve.solve import solve_in_lugs
-from fea.support.contact.contact import ContactProblem, ContactState
+from fea.support.contact.contact import ContactProblem
+from fea.support.contact.contact_state import ContactState
 from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from fea.support.support import PinProblem
@@ -131,12 +131,12 @@ def real_contact(problem: ContactProblem, plain: Half, cut: Half) -> tuple[Conta
     change = 0.5 * (cut.flexibility - plain.flexibility)[np.ix_(own, own)]
     gone: Mask = cut.left[own] < LEFT
     change[gone], change[:, gone] = 0.0, 0.0
-    real = copy.copy(problem)
     # A cut makes nothing stiffer: what is negative is the difference of two meshes.
     values, modes = np.linalg.eigh(0.5 * (change + change.T))
-    real._fixed = problem._fixed + (modes * np.maximum(values, 0.0)) @ modes.T
-    real._fit(problem.bands, [lug.tilt for lug in LUGS])
-    real._open = real._open + np.where(gone, 0.01, 0.0)
+    added = (modes * np.maximum(values, 0.0)) @ modes.T
+    model = uncut_model()
+    tilt = [lug.tilt for lug in LUGS]
+    real = ContactProblem(problem.bands, model.flexibility, model.tail, tilt, M, added, gone)
     found = real.solve(LOADS.forces[0, :, :2])
     force = np.zeros(rings * count)
     force[own] = found.pressure.ravel() * problem.area
@@ -153,9 +153,15 @@ def bending(problem: ContactProblem, found: ContactState) -> float:
 
 
 @cache
+def uncut_model() -> ContactModel:
+    """The joint without a cut, once for all cuts."""
+    return ContactModel(CLEVIS, STEEL, LUGS)
+
+
+@cache
 def uncut_joint() -> tuple[ContactProblem, Half]:
     """The joint and its solid without a cut, once for all cuts."""
-    problem = ContactModel(CLEVIS, STEEL, LUGS).contact
+    problem = uncut_model().contact
     return problem, half_of(NOTHING, problem)
 
 

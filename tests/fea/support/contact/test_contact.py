@@ -10,7 +10,8 @@ import pytest
 from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats
 from fea.support.bands import Bands
-from fea.support.contact.contact import ContactProblem, ContactState
+from fea.support.contact.contact import ContactProblem
+from fea.support.contact.contact_state import ContactState
 from tests.support.exact.plane_contact import (
     E_STAR,
     NU,
@@ -134,6 +135,34 @@ def test_a_symmetric_case_is_symmetric() -> None:
     assert found.pressure == pytest.approx(found.pressure[::-1], abs=1e-9)  # end for end
     mirrored = np.roll(found.pressure[:, ::-1], 1, axis=1)  # about the plane of the load
     assert found.pressure == pytest.approx(mirrored, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("sectors", "clearance", "tilt"),
+    [(32, 0.3, math.inf), (33, 0.0, math.inf), (24, 0.1, 3.0), (25, 0.2, 0.0)],
+)
+def test_half_the_circumference_has_the_contact_of_all_of_it(
+    sectors: int, clearance: float, tilt: float
+) -> None:
+    """Loads along x press mirrored about x; a load aside, too small to matter, shows all cells.
+
+    Any solution satisfies all conditions of contact, which have only one.
+    """
+    contact = three(clearance, tilt, sectors=sectors)
+    forces = np.array([[-0.7, 0.0], [1.0, 0.0], [-0.3, 0.0]])
+    moments = np.array([[0.0, 0.1], [0.0, 0.0], [0.0, -0.05]]) if tilt == 0.0 else None
+    half = contact.solve(forces, (0.0, 0.4), moments=moments)
+    assert "_compliance" not in contact.__dict__  # of all cells it was not needed
+    aside = forces + 1e-8 * np.array([[0.0, 1.0], [0.0, -2.0], [0.0, 1.0]])
+    whole = contact.solve(aside, (0.0, 0.4), moments=moments)
+    assert "_compliance" in contact.__dict__
+    largest = whole.pressure.max()
+    assert half.pressure == pytest.approx(whole.pressure, abs=1e-6 * largest)
+    assert (half.pressure[:, 1:] == half.pressure[:, :0:-1]).all()
+    assert half.gap == pytest.approx(whole.gap, abs=1e-6 * whole.gap.max())
+    assert half.shift == pytest.approx(whole.shift, abs=1e-6 * np.abs(whole.shift).max())
+    assert half.turn == pytest.approx(whole.turn, abs=1e-6 * np.abs(whole.turn).max())
+    assert resultants(contact, half)[:2].sum(axis=0) == pytest.approx(forces[0], abs=1e-9)
 
 
 def test_turned_loads_turn_the_pressure() -> None:

@@ -16,7 +16,7 @@ import pytest
 from fea.core.requirement import Requirement
 from fea.solve.solve import solve_in_lugs
 from fea.support.bands import Bands
-from fea.support.contact.contact import ContactState
+from fea.support.contact.contact_state import ContactState
 from fea.support.contact.friction import band_torques, coefficient_words, opposed
 from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug

@@ -12,7 +12,8 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import Floats
 from fea.support.bands import Bands
-from fea.support.contact.contact import ContactProblem, ContactState
+from fea.support.contact.contact import ContactProblem
+from fea.support.contact.contact_state import ContactState
 from fea.support.contact.flexibility import half_plane, lug_rings, pin_rings
 from fea.support.lugs.lug import Lug
 from fea.support.lugs.rings import annulus, graded, ring, ringed

@@ -10,7 +10,8 @@ import pytest
 
 from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats
-from fea.support.contact.contact import ContactProblem, ContactState, rotation
+from fea.support.contact.contact import ContactProblem
+from fea.support.contact.contact_state import ContactState, rotation
 from fea.support.contact.least_energy import least_energy_cells
 from pinbase.arrays import Mask
 from tests.fea.support.contact.test_contact import resultants, small_and_loose

@@ -1,0 +1,77 @@
+"""What given cells in contact answer: everything is linear in the loads as long as they touch."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.core.pin_loads import Floats
+
+
+@dataclass(frozen=True)
+class AdjointContact:
+    """The contact of given cells and its adjoint, for a weighted sum of the cells' forces.
+
+    force: (U,) N.
+    motion: rigid motions (Y,).
+    by_gap: decrease of the sum per gap at each cell, (U,).
+    by_required: increase of the sum per required resultant of each motion, (Y,).
+    """
+
+    force: Floats
+    motion: Floats
+    by_gap: Floats
+    by_required: Floats
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The linear response of one active set of cells to the rigid motions.
+
+    force, gap: (U,) N and (U,) m without rigid motions.
+    yielding, moving: how much each rigid motion takes off the forces and adds to the gaps, (U, Y).
+    system, right: equations (Y, Y), (Y,) of the motions, without the required resultants.
+    motions: change of the gap by each motion, (U, Y).
+    reach: the largest change of a gap by each motion, (Y,), 1 where it moves nothing.
+    """
+
+    force: Floats
+    yielding: Floats
+    gap: Floats
+    moving: Floats
+    system: Floats
+    right: Floats
+    motions: Floats
+    reach: Floats
+
+    def on_springs(self, pull: Floats, stiffness: float) -> tuple[Floats, Floats]:
+        """The forces and gaps where springs, N/m of what each motion moves at most, hold the lugs
+        and the pin, and pull with given resultants as long as nothing moves.
+        """
+        springs = stiffness * self.reach**2
+        scale = np.outer(self.reach, self.reach)
+        system = (self.system + np.diag(springs)) / scale
+        motion, lost = np.zeros(len(pull)), self.right - pull
+        for _ in range(2):  # once more for round-off, as `under`
+            motion += np.linalg.solve(system, lost / self.reach) / self.reach
+            force = self.force - self.yielding @ motion
+            lost = self.motions.T @ force - pull - springs * motion
+        return force, self.gap + self.moving @ motion
+
+    def motion(self, lost: Floats) -> Floats:
+        """The motions (Y,) of least size that make up for lost resultants."""
+        # Every motion counts as what it moves at most: otherwise a turn, whose numbers are those
+        # of a shift over a length, is taken for one that moves nothing where few cells touch.
+        system = self.system / np.outer(self.reach, self.reach)
+        solved = np.linalg.lstsq(system, lost / self.reach)[0]
+        return np.asarray(solved / self.reach, dtype=np.float64)
+
+    def under(self, required: Floats) -> tuple[Floats, Floats, Floats]:
+        """The forces, gaps and rigid motions with which the cells have the required resultants."""
+        motion, lost = np.zeros(len(required)), self.right - required
+        for _ in range(2):  # once more for round-off: forces are small where gaps are large
+            motion += self.motion(lost)
+            force = self.force - self.yielding @ motion
+            lost = self.motions.T @ force - required
+        return force, self.gap + self.moving @ motion, motion
