@@ -76,7 +76,8 @@ def size_of(value: object) -> int:
     seen: set[int] = set()
 
     def size(x: object) -> int:
-        if isinstance(x, SCALARS) or id(x) in seen:
+        # Named tuples in values are unit loads, of names and numbers, in thousands.
+        if isinstance(x, SCALARS) or id(x) in seen or hasattr(type(x), "_fields"):
             return 0
         seen.add(id(x))
         if isinstance(x, np.ndarray):

@@ -185,8 +185,8 @@ class PinLoads:
         out: dict[UnitLoad, Floats] = {}
 
         def add(load: UnitLoad, first: Floats, second: Floats) -> None:
-            both = np.stack([first, second], axis=1)
-            if both.any():
+            if first.any() or second.any():
+                both = np.stack([first, second], axis=1)
                 both.flags.writeable = False
                 out[load] = both
 

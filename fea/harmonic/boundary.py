@@ -6,6 +6,7 @@ from copy import copy
 
 import numpy as np
 
+from fea.core.pin_loads import UnitLoad
 from fea.core.tractions import Traction
 from fea.harmonic.assembly import Section, around
 from pinbase.arrays import Floats, Ints
@@ -28,12 +29,15 @@ class Outline:
 
     nodes: (E, 3) ends and middle of each, counter-clockwise.
     after: (E,) which edge follows each, -1 at the axis.
+    of_rings: the latest unit loads on rings, with their forces on the unknowns over those around
+    the axis, and their tractions.
     """
 
     def __init__(self, space: Section) -> None:
         edges = space.section.edges
         self._nodes = space.nodes
         self._surface_weights: dict[str, tuple[Floats, Floats]] = {}
+        self.of_rings: dict[tuple[UnitLoad, ...], tuple[Floats, Floats]] = {}
         self.nodes: Ints = np.concatenate(list(edges.values()))
         self.after = _after(self.nodes)
         ends = np.cumsum([len(edge_nodes) for edge_nodes in edges.values()])
@@ -45,7 +49,7 @@ class Outline:
     def moved(self, nodes: Floats) -> Outline:
         """The same edges on a section whose nodes are elsewhere, (N, 2), m."""
         other = copy(self)
-        other._nodes, other._surface_weights = nodes, {}
+        other._nodes, other._surface_weights, other.of_rings = nodes, {}, {}
         return other
 
     @property
@@ -72,14 +76,16 @@ class Outline:
         """Nodal forces (N, 3), N, along r, theta and z of tractions of harmonic n."""
         if not parts:
             return np.zeros((len(self._nodes), 3))
-        surfaces = tuple(part.surface for part in parts)
-        nodes, by_part = self.nodes[np.concatenate([self.rows[name] for name in surfaces])], []
+        nodes, by_part = self.nodes[np.concatenate([self.rows[x.surface] for x in parts])], []
         for part in parts:
             z, weight = self._quadrature(part.surface)
             by_part.append(np.einsum("eqi,eqa->eia", weight, part.at(z)))
-        edge_forces = around(n) * np.concatenate(by_part).reshape(-1, 3)
-        rows = nodes.ravel()
-        return np.stack([np.bincount(rows, x, len(self._nodes)) for x in edge_forces.T], axis=1)
+        edge_forces, out = (
+            around(n) * np.concatenate(by_part).reshape(-1, 3),
+            np.zeros((len(self._nodes), 3)),
+        )
+        np.add.at(out, nodes.ravel(), edge_forces)
+        return out
 
     def weights(self, rows: Ints) -> Floats:
         """Weights (E, 3), m^2, of the nodes' values in integrals over edges, length times r."""

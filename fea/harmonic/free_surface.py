@@ -252,8 +252,8 @@ class FreeSurface:
         """Whether points (J,) are read at instants (J,), each on one arc (J,)."""
         out = np.empty(len(points), dtype=bool)
         for instant, here in _by_instant(instants):
-            rows = self._shut_by.rows[points[here]]
-            out[here] = ~self._table(instant)[rows.T, arcs[here]].any(axis=0)
+            places = self._shut_by.rows[points[here]] * ARC_COUNT + arcs[here][:, None]
+            out[here] = ~self._table(instant).ravel().take(places).any(axis=1)
         return out
 
     def _table(self, instant: int) -> Mask:

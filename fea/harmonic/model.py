@@ -287,7 +287,16 @@ def applied(
         return np.stack(forces, axis=1), np.stack([outline.traction(p) for p in parts], axis=3)
 
     alone = list(dict.fromkeys(one for load in loads for one in load.single_surface_loads))
-    forces, tractions = spread([tractions_of(pin, load) for load in alone])
+    # Pressures on rings differ between harmonics by what is around the axis alone.
+    alike = tuple(load._replace(n=0) for load in alone if load.parts and not load.fades)
+    if len(alike) < len(alone):
+        forces, tractions = spread([tractions_of(pin, load) for load in alone])
+    else:
+        if alike not in outline.of_rings:
+            forces, tractions = spread([tractions_of(pin, load) for load in alike])
+            outline.of_rings = {alike: (forces / around(n), tractions)}
+        forces, tractions = (x.copy() for x in outline.of_rings[alike])
+        forces *= around(n)
     if alone != list(loads):
         share = shares(alone, loads)
         forces = np.asarray(forces @ share, np.float64)

@@ -279,7 +279,7 @@ class SuperposedStress:
         return back, forth
 
     def envelope(self, points: Ints, angles: Floats, read: Mask | None = None) -> Floats:
-        """The largest von Mises stress (J, A), Pa, over all instants.
+        """The largest von Mises stress (J, A), Pa, over all instants, to seven digits.
 
         points: (J,) numbers.
         angles: (A,) rad.
@@ -312,11 +312,12 @@ class SuperposedStress:
                 for wave in self._waves
             ]
             if amounts:
-                parts.append((np.concatenate(signed, axis=1), np.stack(amounts)))
+                factors = np.concatenate(signed, axis=1)
+                parts.append((factors.astype(np.float32), np.stack(amounts).astype(np.float32)))
         out = np.empty((len(points), len(angles)))
         for k in range(0, len(angles), CACHED_ANGLE_BATCH):
             here = slice(k, k + CACHED_ANGLE_BATCH)
-            total = np.zeros((len(angles[here]), len(points) * self.count))
+            total = np.zeros((len(angles[here]), len(points) * self.count), dtype=np.float32)
             for factors, amount in parts:
                 # Each of the five numbers is combined from all harmonics at each angle, squared
                 # and summed.

@@ -26,13 +26,16 @@ class CellPressure:
 
     def rings(self, points: Floats) -> NDArray[np.int64]:
         """The numbers of the rings on which points (N, 3), m, lie, (N,); -1 on none."""
-        near = RING_RADIUS_TOLERANCE * self.bands.radius
-        half = 0.5 * self.bands.length + near
-        r = np.hypot(points[:, 0], points[:, 1])[:, None]
-        on = (np.abs(r - self.bands.radius) < near) & (
-            np.abs(points[:, 2, None] - self.bands.z) < half
-        )
-        return np.where(on.any(axis=1), on.argmax(axis=1), -1)
+        bands, near = self.bands, RING_RADIUS_TOLERANCE * self.bands.radius
+        half = 0.5 * bands.length + near
+        order, out = np.argsort(points[:, 2], kind="stable"), np.full(len(points), -1)
+        r, z = np.hypot(points[:, 0], points[:, 1])[order], points[order, 2]
+        first = np.searchsorted(z, bands.z - half, side="right")
+        last = np.searchsorted(z, bands.z + half)
+        for k in reversed(range(len(near))):  # where rings share an end, it is the first one's
+            here = slice(first[k], last[k])
+            out[order[here][np.abs(r[here] - bands.radius[k]) < near[k]]] = k
+        return out
 
     def at(self, points: Floats) -> Floats:
         """The pressure (N,), Pa, at points (N, 3), m; zero where nothing is in contact."""

@@ -234,11 +234,19 @@ class Pin:
             return name
         return self.labels[self._position(name)]
 
+    @cached_property
+    def _numbers(self) -> dict[str | None, int]:
+        """The number of the first segment with each connection, name or label."""
+        out: dict[str | None, int] = {}
+        for i, (s, label) in enumerate(zip(self.segments, self.labels, strict=True)):
+            for name in (s.connection, s.name, label):
+                out.setdefault(name, i)
+        return out
+
     def _position(self, name: str) -> int:
         """Number (from 0) of the segment with this connection, name or label."""
-        for i, s in enumerate(self.segments):
-            if name in (s.connection, s.name, self.labels[i]):
-                return i
+        if (number := self._numbers.get(name)) is not None:
+            return number
         known = ", ".join((*END_FACES, *self.labels))
         raise GeometryError(
             f"pin {self.name} has no surface {name!r}; its surfaces are {known}", "unknown-surface"

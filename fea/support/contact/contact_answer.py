@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -61,11 +62,21 @@ class Answer:
 
     def motion(self, lost: Floats) -> Floats:
         """The motions (Y,) of least size that make up for lost resultants."""
+        modes, compliance = self._modes
+        solved = modes @ (compliance * (modes.T @ (lost / self.reach)))
+        return np.asarray(solved / self.reach, dtype=np.float64)
+
+    @cached_property
+    def _modes(self) -> tuple[Floats, Floats]:
+        """The modes of the equations of the motions, (Y, Y), and the compliance of each, (Y,), zero
+        where nothing moves.
+        """
         # Every motion counts as what it moves at most: otherwise a turn, whose numbers are those
         # of a shift over a length, is taken for one that moves nothing where few cells touch.
-        system = self.system / np.outer(self.reach, self.reach)
-        solved = np.linalg.lstsq(system, lost / self.reach)[0]
-        return np.asarray(solved / self.reach, dtype=np.float64)
+        stiffness, modes = np.linalg.eigh(self.system / np.outer(self.reach, self.reach))
+        size = np.abs(stiffness)
+        moves = size > len(size) * np.finfo(np.float64).eps * size.max(initial=0.0)
+        return modes, np.divide(1.0, stiffness, out=np.zeros_like(stiffness), where=moves)
 
     def under(self, required: Floats) -> tuple[Floats, Floats, Floats]:
         """The forces, gaps and rigid motions with which the cells have the required resultants."""

@@ -20,7 +20,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from scipy.special import iti0k0, k1
@@ -63,7 +63,13 @@ class RingBody:
 
     def forces(self, n: int) -> Floats:
         """The nodal forces (unknowns, R) of unit pressures of harmonic n on the rings."""
-        return self.body.forces(n, [(Traction(r, 0.0, self.pushed, NO_SLOPE),) for r in self.rings])
+        return around(n) * self._unit_forces
+
+    @cached_property
+    def _unit_forces(self) -> Floats:
+        """The nodal forces for each unit around the axis, alike for all harmonics."""
+        unit = [(Traction(name, 0.0, self.pushed, NO_SLOPE),) for name in self.rings]
+        return self.body.forces(0, unit) / around(0)
 
     def balanced(self, n: int, forces: Floats) -> Floats:
         """The forces of harmonic n with the reaction of what guides the body."""

@@ -249,9 +249,9 @@ def _verified(search: _Search, scale: float, result: SizingResult) -> SizingResu
                 return _limited(search, limit, result)
             scale = limit.scale
         answer = search.solve(scale, "full")
-        if _accepted(answer, sized):
+        if _accepted(answer, search):
             answer = search.whole(answer)
-        if _accepted(answer, sized):
+        if _accepted(answer, search):
             break
         factor = answer.trial.factor
         if factor < required and scale == limit.scale:
@@ -271,9 +271,12 @@ def _verified(search: _Search, scale: float, result: SizingResult) -> SizingResu
     return _reached(search, result)
 
 
-def _accepted(answer: PinAnswer, sized: SizedStudy) -> bool:
-    """Return whether a factor is reached, and closely where diameters may be any."""
-    most = math.inf if sized.standard else sized.required * (1.0 + _close(sized))
+def _accepted(answer: PinAnswer, search: _Search) -> bool:
+    """Return whether a factor is reached, and closely where diameters may be any: the less so, the
+    more full solutions have missed it already.
+    """
+    sized, close = search.sized, len(search.full) * _close(search.sized)
+    most = math.inf if sized.standard else sized.required * (1.0 + close)
     return sized.required <= answer.trial.factor <= most
 
 
