@@ -155,7 +155,6 @@ def _settle_environment() -> None:
 )
 @click.option("--plots", is_flag=True, help=PLOTS_HELP)
 @click.option("--pdf", is_flag=True, help="Also write report.pdf, as `pinstress pdf` does.")
-@click.option("--no-pictures", is_flag=True, hidden=True)  # the default, which it was not
 @click.option(
     "--vtk",
     type=click.Choice(["model", "surface", "solid", "motion", "none"]),
@@ -219,7 +218,6 @@ def run(
     model: Model | None,
     tolerance: float | None,
     plots: bool,
-    no_pictures: bool,
     memory_limit: float | None,
     second_opinion: str | None,
     limit_load: bool,
@@ -232,7 +230,7 @@ def run(
     from pinstress.cli.run import OutputOptions, run_and_write
 
     wanted = OutputOptions(
-        plots=plots and not no_pictures,
+        plots=plots,
         second=second_opinion is not None,
         cached=not no_cache,
         **more,
@@ -271,23 +269,19 @@ def _require_calculix() -> None:
 @output_folder("<study name>-loads")
 @CASES_OPTION
 @click.option("--plots", is_flag=True, help=PLOTS_HELP)
-@click.option("--no-pictures", is_flag=True, hidden=True)
 @click.option("--quiet", is_flag=True, help="No notes; errors are still reported.")
 def loads(
     study: Path,
     out: Path | None,
     cases: list[str] | None,
     plots: bool,
-    no_pictures: bool,
     quiet: bool,
 ) -> int:
     loaded = read_study(study)
     from pinstress.cli.run import loads_and_write
 
     directory = out or Path("out") / f"{loaded.name}-loads"
-    return loads_and_write(
-        loaded, directory, plots=plots and not no_pictures, cases=cases, quiet=quiet
-    )
+    return loads_and_write(loaded, directory, plots=plots, cases=cases, quiet=quiet)
 
 
 @commands.command(

@@ -82,7 +82,7 @@ def test_the_exit_status_counts_it_as_a_miss(
         "[analysis]", '[analysis]\njoints = "prescribed"'
     )
     (tmp_path / "c.toml").write_text(text, encoding="utf-8")
-    command = ["run", str(tmp_path / "c.toml"), "--no-pictures", "--out", str(tmp_path / "out")]
+    command = ["run", str(tmp_path / "c.toml"), "--out", str(tmp_path / "out")]
     assert run_command_line(command) == 0
     said = capsys.readouterr()
     assert "fails within the range of the joint" in " ".join(said.out.split())
@@ -195,7 +195,7 @@ def test_a_converged_maximum_counts_with_its_error(
     (tmp_path / "p.toml").write_text(
         re.sub(r"required_safety_factor = .*", f"required_safety_factor = {required}", study.text)
     )
-    command = ["run", str(tmp_path / "p.toml"), "--no-pictures", "--out", str(tmp_path / "out")]
+    command = ["run", str(tmp_path / "p.toml"), "--out", str(tmp_path / "out")]
     assert run_command_line(command) == status
     (found,) = json.loads((tmp_path / "out" / "results.json").read_text())["pins"]
     assert (found["verdict"], found["outcome"]) == ("converged", expected)

@@ -37,7 +37,7 @@ def test_they_are_in_table_page_and_file(
     """
     monkeypatch.chdir(tmp_path)
     Path("a.toml").write_text(QUICK)
-    assert run_command_line(["run", "a.toml", "--no-pictures", "--vtk", "none"]) == 0
+    assert run_command_line(["run", "a.toml", "--vtk", "none"]) == 0
     capsys.readouterr()
     (found,) = json.loads(Path("out/a/results.json").read_text("utf-8"))["sensitivities"]
     rows = list(csv.DictReader(Path("out/a/sensitivities.csv").read_text("utf-8").splitlines()))
