@@ -27,7 +27,7 @@ from pinstress.study.model.requirements import sizing_factor
 from pinstress.study.reading.choices import require_positive
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
-from reports.data.results import Units
+from reports.data.row import Units
 from reports.format.numbers import DASH, short
 from reports.text.sizes import SizeRow, print_sizes
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fea.support.records import BandContact, JointResult, LugStress, Variation
-from reports.data.results import PinResult, Units
+from reports.data.row import PinResult, Units
 from reports.format.numbers import DASH, engineering, short
 from reports.format.ranges import END_DIGITS, joint_range, part_words
 from reports.tables.column import Column, Grid, PinRow, Table, grid_of, in_order, read_only, texts

@@ -14,8 +14,9 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
+from pinbase.dimensions import Floats
 from pinbase.records import plain
-from reports.data.results import Floats, PinResult, Units
+from reports.data.row import PinResult, Units
 from reports.format.files import markdown, parquet
 from reports.format.files.csv import Cell, write_csv
 from reports.format.files.parquet import Cells, write_parquet

@@ -8,15 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from assess.judgement import DEPENDS
+from fea.core.peak import SingularZone
 from pinbase.records import plain
+from reports.data.drop import DropRecord
 from reports.data.headline import headline_json
-from reports.data.results import (
-    DriveTable,
-    DropRecord,
-    ReactionTable,
-    Results,
-    SingularZone,
-)
+from reports.data.mechanics import DriveTable, ReactionTable
+from reports.data.results import Results
 from reports.format.numbers import finite
 from reports.format.words import headline
 from reports.tables.column import Column, Table, fields, json_of

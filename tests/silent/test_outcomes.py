@@ -20,7 +20,8 @@ from pinstress import changed_study, load_study, run
 from pinstress.cli.commands import run_command_line
 from reports.data.dependence import depends_on
 from reports.data.headline import headline_json, worst_checks
-from reports.data.results import LandingRange, PinResult, Results
+from reports.data.results import Results
+from reports.data.row import LandingRange, PinResult
 from reports.format.words import headline, result_words
 from reports.tables.json_results import to_json
 from reports.tables.strength.safety_factors import safety_factors_table

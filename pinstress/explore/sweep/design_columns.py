@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pinbase.dimensions import Floats
 from pinstress.explore.sweep.table import METADATA_KEY, RESULT_COLUMNS
-from reports.data.results import Floats
 from reports.tables.column import in_order
 
 if TYPE_CHECKING:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from reports.data.mechanics import ReactionTable, WheelLoad
-from reports.data.results import Results, Units
+from reports.data.results import Results
+from reports.data.row import Units
 from reports.format.numbers import short
 from reports.tables.column import Column, Table, texts, unit_columns
 

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from math import inf
 
 from reports.data.envelope import EnvelopeCell, case_names, envelope, omitted_note, paragraphs
-from reports.data.results import PeakReaction, Results, Units
+from reports.data.mechanics import PeakReaction
+from reports.data.results import Results
+from reports.data.row import Units
 from reports.format.numbers import DASH
 from reports.tables.column import Column, Table, fields, unit_columns
 

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from assess.margin import Margin
-from reports.data.results import PinResult, Results, Units
+from reports.data.results import Results
+from reports.data.row import PinResult, Units
 from reports.format.files import markdown
 from reports.format.numbers import DASH, components, engineering, short
 from reports.format.ranges import factor_range

@@ -10,7 +10,8 @@ from assess.margin import RATIO_DIMENSION, Margin, PinMargin
 from assess.strength.bending_arms import BendingArms
 from reports.data.governing import governing, skipped
 from reports.data.requirements import keys_in
-from reports.data.results import PinResult, Results, Units
+from reports.data.results import Results
+from reports.data.row import PinResult, Units
 from reports.format.numbers import DASH, engineering, short
 from reports.format.units import unit_name
 from reports.format.work_words import passing_text, work_text

@@ -12,8 +12,8 @@ from fea.support.records import JointRange
 from reports.data.decision import common_factor, limit, worst_first
 from reports.data.dependence import BENEATH_CONTACT
 from reports.data.envelope import detailed_rows, omitted_note
-from reports.data.results import PinResult, Results, Units
-from reports.data.row import SharingRange
+from reports.data.results import Results
+from reports.data.row import PinResult, SharingRange, Units
 from reports.format.files import markdown
 from reports.format.numbers import finite, ratio, short
 from reports.format.ranges import (

@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from reports.data.results import PinSensitivities, Results, Sensitivity, Units
+from reports.data.results import Results
+from reports.data.row import Units
+from reports.data.sensitivities import PinSensitivities, Sensitivity
 from reports.format.numbers import DASH, engineering, short
 from reports.format.units import unit_name
 from reports.tables.column import Column, Table, fields, in_order, json_of, read_only, texts

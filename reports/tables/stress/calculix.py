@@ -8,7 +8,8 @@ from itertools import pairwise
 from typing import Any
 
 from assess.opinion.opinions import ContactOpinion, Opinion
-from reports.data.results import Results, Units
+from reports.data.results import Results
+from reports.data.row import Units
 from reports.format.files.csv import Cell
 from reports.tables.column import Column, Table, fields, json_of, unit_columns
 

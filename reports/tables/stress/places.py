@@ -14,7 +14,8 @@ from fea.core.places import (
     SurfacePlace,
 )
 from pinbase.records import plain
-from reports.data.results import PinResult, Results, Units
+from reports.data.results import Results
+from reports.data.row import PinResult, Units
 from reports.format.numbers import finite
 from reports.tables.column import PIN_AND_CASE, Column, PinRow, Table, fields, unit_columns
 

@@ -6,7 +6,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from math import hypot
 
-from reports.data.results import PinResult, Results, SingularZone, Units
+from fea.core.peak import SingularZone
+from reports.data.results import Results
+from reports.data.row import PinResult, Units
 from reports.format.numbers import DASH, engineering
 from reports.tables.column import (
     PIN_AND_CASE,

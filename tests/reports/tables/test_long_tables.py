@@ -11,7 +11,7 @@ from pyarrow import parquet
 
 from pinstress.analysis.mechanics import gather_space
 from pinstress.cli.commands import run_command_line
-from reports.data.results import ReactionTable
+from reports.data.mechanics import ReactionTable
 from reports.format.files import parquet as ours
 from reports.format.files.csv import Cell, write_csv
 from reports.format.files.parquet import write_parquet

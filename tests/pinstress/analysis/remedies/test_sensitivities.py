@@ -18,7 +18,7 @@ from pinstress.analysis.remedies.joint_parameters import joint_parameters
 from pinstress.analysis.remedies.sensitivities import differentiated_in_lugs
 from pinstress.analysis.solve import solutions, solve_tasks
 from pinstress.cli.commands import run_command_line
-from reports.data.results import PinSensitivities
+from reports.data.sensitivities import PinSensitivities
 from tests.support.pins.clevis import CLEVIS
 from tests.support.pins.studies import BY_SEGMENTS_AND_CORNERS
 from tests.support.programs.command_line import QUICK
