@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 ROW_COLUMNS = ("pin", "case", *(c.key for c in RESULT_COLUMNS if not c.numeric))  # texts
 # In the order of the page
-COLUMN_TITLES = {c.key: c.heading for c in in_order(RESULT_COLUMNS, ("mass",)) if c.numeric}
+COLUMN_TITLES = {c.key: c.heading for c in in_order(RESULT_COLUMNS, "mass") if c.numeric}
 
 
 @dataclass(frozen=True)

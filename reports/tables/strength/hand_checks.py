@@ -74,8 +74,8 @@ COLUMNS: list[Column[CheckRow]] = [
     *fields("pin.max_von_mises", "stress"),
     *fields("pin.safety_factor pin.verdict"),
     *unit_columns("stress time"),
-    Column("safety_factor_low", lambda row: (row.pin.safety_factor_interval or (None,))[0]),
-    Column("safety_factor_high", lambda row: (row.pin.safety_factor_interval or (None,))[-1]),
+    *fields("safety_factor_low=pin.safety_factor_interval?.0"),
+    *fields("safety_factor_high=pin.safety_factor_interval?.1"),
     *fields("check.basis check.governs"),
 ]  # fmt: skip
 

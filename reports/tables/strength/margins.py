@@ -17,10 +17,7 @@ from reports.format.units import unit_name
 from reports.format.work_words import passing_text, work_text
 from reports.tables.column import Column, Table, fields, in_order, read_only, texts
 
-MARGIN_COLUMN_ORDER = (
-    "pin", "case", "method", "margin", "utilisation", "level", "at", "time", "demand", "allowable",
-    "clause",
-)  # fmt: skip
+MARGIN_COLUMN_ORDER = "pin case method margin utilisation level at time demand allowable clause"
 STRENGTH_SUFFIX = "_strength"  # of keys of materials
 MARGINS_NOTE = (
     "Margin of safety = allowable / (factor × demand) − 1, of the check that governs each pin in "
