@@ -8,7 +8,7 @@ import numpy as np
 
 from loads import GROUND, Applied, Dynamics, Gear, Linkage, Motion, OverTime, Rack, Teeth, ledger
 from loads.linkage.parts import Point, Slider
-from loads.motion.loop_equations import pairs
+from loads.motion.complex_points import pairs
 from loads.motion.planar_equations import is_particle
 from loads.motion.transmission_angles import transmission_angles
 from pinbase.arrays import Floats
