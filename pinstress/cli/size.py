@@ -261,6 +261,6 @@ def _row(study: Study, new: Study, sized: SizingResult) -> SizeRow:
 
 def _weight(study: Study, name: str) -> float | None:
     """Return a pin's weight in the study's units; None without a density."""
-    density = study.table.material[study.table.pin[name].material].density
+    density = study.material_of(name).density
     heavy = weight(pin_of(study, name), density) if density else None
     return None if heavy is None else heavy / study.system.factor("force")
