@@ -49,6 +49,9 @@ FILES = {
     "loads/forces/inverse_dynamics.py": (
         "tests/loads/forces/test_energy.py", "tests/loads/motion/test_four_bar.py",
         "tests/loads/motion/test_slider_crank.py", "tests/loads/forces/test_reactions.py"),
+    "loads/forces/force_balance.py": (
+        "tests/loads/forces/test_energy.py", "tests/loads/motion/test_four_bar.py",
+        "tests/loads/motion/test_slider_crank.py", "tests/loads/forces/test_reactions.py"),
     "loads/forces/power_balance.py": (
         "tests/loads/forces/test_energy.py", "tests/loads/motion/test_slider_crank.py"),
     "loads/landing/impulse.py": ("tests/loads/forces/test_reactions.py",),

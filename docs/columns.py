@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from reports.data.results import Results, Units
+from reports.data.results import Results
+from reports.data.row import Units
 from reports.tables.all import load_tables, stress_tables
 
 if TYPE_CHECKING:

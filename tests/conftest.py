@@ -98,7 +98,7 @@ def shipped(tmp_path_factory: pytest.TempPathFactory) -> Shipped:
         def run(folder: Path) -> None:
             out, path = folder / "out", ROOT / "studies" / f"{study}.toml"
             command = [sys.executable, "-m", "pinstress", "run", str(path), "--out", str(out)]
-            status, printed = on_terminal([*command, "--no-pictures", "--quiet"], folder)
+            status, printed = on_terminal([*command, "--quiet"], folder)
             assert status in (0, 1), printed
             (folder / "status").write_text(str(status))
             (folder / "terminal").write_text(printed, encoding="utf-8")

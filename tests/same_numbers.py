@@ -49,7 +49,6 @@ def solve(folder: Path, names: list[str]) -> None:
             out = folder / f"{study.stem}-{name}"
             out.mkdir(parents=True, exist_ok=True)
             where = ["sized.toml"] if command[0] == "size" else ["."]
-            where += ["--no-pictures"] if command[0] in ("run", "loads") else []
             words = [command[0], str(study), *command[1:], "--out", *where]
             start = time.perf_counter()
             done = subprocess.run(

@@ -12,7 +12,8 @@ from pinstress.analysis.results import solve
 from pinstress.study.model.pins import material
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
-from reports.data.results import PinResult, Results
+from reports.data.results import Results
+from reports.data.row import PinResult
 from reports.format.numbers import engineering, ratio
 from reports.format.ranges import error_words
 

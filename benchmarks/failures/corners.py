@@ -15,10 +15,11 @@ from benchmarks.failures.asked import command, error_of, off, row, task, told
 from benchmarks.failures.draw import INK, decades, line_style, note, ratio_line, ticks
 from benchmarks.failures.entry import Entry
 from benchmarks.failures.fields import MPA, Mesh, even, finest, graded, revolved, towards
+from fea.core.peak import SingularZone
 from fea.core.pin_loads import Floats
 from fea.harmonic.fields import MeridianFields
 from fea.singular.williams import plane_exponent
-from reports.data.results import PinResult, SingularZone
+from reports.data.row import PinResult
 from reports.format.numbers import engineering
 
 ACROSS = (5.0, 10.0, 20.0, 40.0)

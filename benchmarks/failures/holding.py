@@ -32,7 +32,7 @@ from fea.solid.boundary import Patch, resultants
 from fea.solid.model import SolidModel
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
-from reports.data.results import PinResult
+from reports.data.row import PinResult
 from reports.format.numbers import engineering, ten_to
 
 ACROSS = (3.0, 4.0, 5.0, 6.0, 8.0)

@@ -48,7 +48,7 @@ from fea.solid.model import SolidModel
 from fea.solid.nodal_loads import nodal_loads
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
-from reports.data.results import PinResult
+from reports.data.row import PinResult
 from reports.format.numbers import engineering
 
 FORCE = 5e3  # N

@@ -18,7 +18,7 @@ from fea.core.requirement import Requirement
 from fea.solve.solve import solve_pin
 from geometry import Pin
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
-from reports.data.results import PinResult
+from reports.data.row import PinResult
 from reports.format.numbers import engineering, ten_to
 
 SCALES = tuple(10.0**k for k in (-6, -3, 0, 3, 6))

@@ -86,7 +86,7 @@ def _row(shape: str, given: str, study: Path, runs: int, *more: str) -> tuple[st
     out, spent = study.with_suffix(""), []
     for _ in range(runs):
         start = time.perf_counter()
-        command = [sys.executable, "-m", "pinstress", "run", str(study), "--no-pictures"]
+        command = [sys.executable, "-m", "pinstress", "run", str(study)]
         subprocess.run(
             [*command, "--out", str(out), "--quiet", *more], check=False, capture_output=True
         )

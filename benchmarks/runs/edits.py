@@ -25,7 +25,7 @@ from benchmarks.timing import table
 from pinbase.records import pack, plain, unpack
 from pinstress import Engine, InputError, Study
 from pinstress.study.reading.file import raw_study
-from reports.data.results import PinResult
+from reports.data.row import PinResult
 
 COUNT, RUN_ANEW, SEED = 1_000, 50, 7
 MAX_CHANGES = 3  # at once

@@ -6,7 +6,7 @@ import time
 
 from benchmarks.timing import table
 from pinstress.explore.size.least_weight import lighten
-from pinstress.explore.size.lightest_pin import WeightGoal
+from pinstress.explore.size.weight_search import WeightGoal
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import load_study
 from pinstress.study.reading.shipped import shipped

@@ -13,7 +13,7 @@ the planes is meshed, and the system is factored once for each class that acts.
 
 `LocalModel.solve` takes the uncut stress and goes through these steps for each class: nodal forces
 of the relieving tractions (`_forces`); lost loads moved to the rest of their bands (`_spread`);
-balance and constraints (`_balanced`, `_fixed`); solution (`_displace`); motions of the ends
+balance, constraints and solution (fea.cut.piece_system); motions of the ends
 (`_moved`); stress on the faces from surface strains and known tractions (`_stress`).
 """
 
@@ -24,18 +24,15 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import scipy.linalg
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from fea.core.linear_solver import ConstrainedSystem, SolveError
 from fea.core.material import Material
 from fea.core.voigt import TENSOR_TO_VOIGT
 from fea.cut.interior import InnerFields
 from fea.cut.lost_loads import Bearing, trial_forces, trials
 from fea.cut.parity import Parities
+from fea.cut.piece_system import PieceSystem
 from fea.cut.surface_reading import Face, FaceReading, read_face
-from fea.cut.two_level import MAX_FACTORED_UNKNOWNS, TwoLevel
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import QUARTER_TRIANGLES, area_vectors, quadrature, slopes_at, surface
 from fea.solid.model import rigid_modes
@@ -45,8 +42,6 @@ from pinbase.arrays import Floats, Ints, Mask
 
 # Chosen by judgement, as parts of the tractions on the cuts or of the pin's largest stress:
 MIN_CLASS_TRACTION = 2e-4  # a smaller class is the noise of the section's mesh
-TRACTION_RANK_TOLERANCE = 1e-5  # smaller singular values of a class's forces are not solved
-MAX_UNBALANCED_TRACTION = 0.1  # a larger imbalance is not due to the section's mesh
 MIN_READ_STRESS = 0.02  # stress below it is not resolved
 # Relative scatter of stress on rounded corners on the first mesh, measured on flats and keyways
 # (`python -m benchmarks cut-scatter`).
@@ -97,6 +92,7 @@ class LocalModel:
         self.space = Discretisation(solid.mesh)
         self.surface = surface(self.space)
         self.parities = Parities(piece.mirrors)
+        self.system = PieceSystem(piece.profile.name, self.space, material, clamps, self.parities)
         self.readings = tuple(self._readings())
 
     @property
@@ -186,7 +182,7 @@ class LocalModel:
         for c, parity in enumerate(self.parities.classes):
             if acting[c]:
                 more, spread = self._spread(by_class[c] / scale, parity, by_kind)
-                u = self._displace(forces[c] + more, parity, whole)
+                u = self.system.displace(forces[c] + more, parity, whole)
                 moved += self._moved(u, parity) * scale
                 inside[c] = (u.reshape(-1, 3, u.shape[1]) * scale).astype(np.float32)
                 displaced[c] = u.reshape(-1, 3, u.shape[1])[self.nodes] * scale
@@ -224,7 +220,7 @@ class LocalModel:
                 continue
             modes = rigid_modes(self.space.nodes)[:, self.parities.rigid(parity)]
             every = f + self._spread(part, parity, shears)[0]
-            out.append(self._balanced(every, modes, whole))
+            out.append(self.system.balanced(every, modes, whole))
         return out
 
     def _relieving(self, by_class: Floats) -> tuple[list[Floats], list[bool], Floats]:
@@ -240,7 +236,7 @@ class LocalModel:
 
     def displaced(self, forces: Floats, parity: tuple[int, ...]) -> Floats:
         """Displacements (3 N, L) of a class under balanced nodal forces (3 N, L)."""
-        return self._displace(forces, parity, _size(forces))
+        return self.system.displace(forces, parity, _size(forces))
 
     def _moved(self, u: Floats, parity: tuple[int, ...]) -> Floats:
         """The rigid motions (2, 6, L) of both ends by displacements (3 N, L) of a class.
@@ -344,97 +340,6 @@ class LocalModel:
             t = np.einsum("q,fqabl,fqb->fqal", weight, at, area)
             np.add.at(out, corners, -np.einsum("qi,fqal->fial", shapes, t))
         return out.reshape(-1, stress.shape[2])
-
-    def _displace(self, forces: Floats, parity: tuple[int, ...], whole: Floats) -> Floats:
-        """Displacements (3 N, L) of a class, after balancing its forces.
-
-        forces: (3 N, L) N.
-        parity: of the class.
-        whole: (3 N,) size of all classes' forces.
-        """
-        free = np.ones(self.unknowns)
-        free[self._fixed(parity)] = 0.0
-        held = np.zeros(0, dtype=np.int64)
-        # Without clamps rigid motions are left: forces are balanced, and one corner's unknown is
-        # held for each motion, chosen by pivoted QR so that they are independent.
-        if not self.clamps:
-            modes = rigid_modes(self.space.nodes)[:, self.parities.rigid(parity)]
-            forces = self._balanced(forces, modes, whole)
-            if count := modes.shape[1]:
-                at = np.flatnonzero(free * self._at_corners)
-                _, _, pivot = scipy.linalg.qr(modes[at].T, mode="economic", pivoting=True)
-                held = at[pivot[:count]]
-        # Many loads stress the cuts in few ways: solve for the singular vectors of the forces
-        # alone.
-        left, size, right = scipy.linalg.svd(free[:, None] * forces, full_matrices=False)
-        rank = int(np.sum(size > TRACTION_RANK_TOLERANCE * size[0]))
-        some = left[:, :rank] * size[:rank]
-        u = (
-            self._two_level.solve(free, held, some)
-            if self.unknowns > MAX_FACTORED_UNKNOWNS
-            else None
-        )
-        # Small systems are factored, and those on which the iteration fails.
-        if u is None:
-            free[held] = 0.0
-            u = self._system.solve(self.stiffness.copy(), free, some)
-        return np.asarray(u @ right[:rank])
-
-    @cached_property
-    def _at_corners(self) -> Floats:
-        """1 for unknowns at corners of elements, 0 amid their edges, (3 N,)."""
-        out = np.zeros((len(self.space.nodes), 3))
-        out[self.space.elements[:, :4]] = 1.0
-        return out.ravel()
-
-    @cached_property
-    def _two_level(self) -> TwoLevel:
-        return TwoLevel(self.space, self.stiffness)
-
-    @cached_property
-    def _system(self) -> ConstrainedSystem:
-        return ConstrainedSystem(self.stiffness, np.arange(self.unknowns) // 3)
-
-    @cached_property
-    def stiffness(self) -> sp.csr_matrix:
-        """The stiffness matrix, N/m."""
-        return self.space.stiffness(self.material)
-
-    def _fixed(self, parity: tuple[int, ...]) -> Ints:
-        """Numbers of the unknowns that are zero on mirror planes and clamps."""
-        unknowns = [np.zeros(0, dtype=np.int64)]
-        boundaries = self.space.mesh.boundaries
-
-        def add(name: str, components: tuple[int, ...]) -> None:
-            nodes = self.space.basis.get_dofs(boundaries[name]).flatten()
-            unknowns.extend(3 * nodes + a for a in components)
-
-        for mirror, components in self.parities.fixed(parity).items():
-            add("start" if mirror == "z" else f"mirror {mirror}", components)
-        for name in self.clamps:
-            add(name, (0, 1, 2))
-        return np.unique(np.concatenate(unknowns))
-
-    def _balanced(self, forces: Floats, modes: Floats, whole: Floats) -> Floats:
-        """Forces without the small resultant that the mesh of the section leaves.
-
-        It is taken up by the cuts' nodes, in proportion to the forces there.
-        modes: (3 N, m) rigid motions.
-
-        Raises: SolveError when the resultant is more than that.
-        """
-        if not modes.shape[1]:
-            return forces
-        lost = np.abs(modes.T @ forces) / (np.abs(modes).T @ whole + 1e-300)
-        if not lost.max() < MAX_UNBALANCED_TRACTION:
-            raise SolveError(
-                f"pin {self.piece.profile.name}: the stress of the uncut pin on the cuts is not in "
-                f"equilibrium (by {lost.max():.1e}), so a load acts on the removed area",
-                "cut-unbalanced",
-            )
-        force_size = np.linalg.norm(forces.reshape(len(self.space.nodes), -1), axis=1)
-        weight = force_size.repeat(3)[:, None] * modes
-        return np.asarray(forces - weight @ np.linalg.solve(modes.T @ weight, modes.T @ forces))
 
     def _stress(self, u: Floats, uncut: Floats, spread: Floats, c: int) -> Floats:
         """The stress (P, 6, L) that displacements (3 N, L) add, along faces' directions.

@@ -13,7 +13,7 @@ from loads.forces.curve import ForceTable
 from loads.forces.measures import Distance, Measure, Position
 from loads.linkage.linkage import LinkageError
 from loads.linkage.parts import Point, Slider, Turn
-from loads.motion.loop_equations import cross, number
+from loads.motion.complex_points import cross, number
 from loads.motion.motion import Motion
 from pinbase.arrays import Complex, Floats
 

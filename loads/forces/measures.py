@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from loads.linkage.parts import Point, Slider, Turn
-from loads.motion.loop_equations import number
+from loads.motion.complex_points import number
 from loads.motion.motion import Motion
 from pinbase.arrays import Floats
 

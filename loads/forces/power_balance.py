@@ -8,7 +8,7 @@ import numpy as np
 
 from loads.forces.acting import power
 from loads.forces.inverse_dynamics import Dynamics
-from loads.motion.loop_equations import number
+from loads.motion.complex_points import number
 from loads.motion.motion import Motion
 from pinbase.arrays import Floats
 

@@ -19,7 +19,7 @@ from loads.landing.travel import Levered
 from loads.linkage.drives import ConstantDrive, Law, StateDrive, Values
 from loads.linkage.linkage import Linkage
 from loads.linkage.parts import Point
-from loads.motion.loop_equations import number
+from loads.motion.complex_points import number
 from loads.motion.motion import Course, Motion
 from pinbase.arrays import Complex, Floats
 from pinbase.errors import ArgumentError

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from loads.linkage.parts import Turn
-from loads.motion.loop_equations import Loops, cross
+from loads.motion.complex_points import cross
+from loads.motion.loop_equations import Loops
 from pinbase.arrays import Complex, Floats
 
 

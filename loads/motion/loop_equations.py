@@ -16,81 +16,19 @@ Angles are scaled by a typical length, so that all columns are lengths.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from loads.linkage.gears import gap_weights, row
 from loads.linkage.linkage import Linkage
-from loads.linkage.parts import Point, Slider, Turn
+from loads.linkage.parts import Slider, Turn
+from loads.motion.complex_points import PointMotion, Points, Pose, number
 from loads.motion.least_squares import Factors, Step, elimination
 from loads.motion.spanning_tree import LENGTH_ROUND_OFF, ends_of, frames, shortest, spanning_tree
 from pinbase.arrays import Complex, Floats, Ints
 
 MATRIX_BATCH_ENTRIES = 2**20  # in the matrices of a batch of instants: 8 MB
-
-
-def number(point: Point) -> complex:
-    """A point or vector as a complex number."""
-    return complex(point[0], point[1])
-
-
-def pairs(z: Complex) -> Floats:
-    """Components x, y (..., 2) of complex numbers (...)."""
-    return np.stack([z.real, z.imag], axis=-1)
-
-
-def cross(a: Complex, b: Complex) -> Floats:
-    """Cross product of complex vectors, such as the moment of forces b at arms a."""
-    return np.asarray(a.real * b.imag - a.imag * b.real)
-
-
-@dataclass(frozen=True)
-class Points:
-    """N points (or gaps of loops) as sums of vectors that rotate and slide.
-
-    turning: (F, N) complex, m, A of every frame.
-    sliding: (S, N) B of every slider, 0 or +-1.
-    """
-
-    turning: Complex
-    sliding: Floats
-
-    def __sub__(self, other: Points) -> Points:
-        return Points(self.turning - other.turning, self.sliding - other.sliding)
-
-
-@dataclass(frozen=True)
-class Pose:
-    """The position of a linkage at T instants.
-
-    turn: (T, F) u of every frame, the ground's first.
-    axis: (T, S) directions of the sliders, complex unit vectors.
-    extension: (T, S) m, of the sliders since the drawing.
-    """
-
-    turn: Complex
-    axis: Complex
-    extension: Floats
-
-    def __getitem__(self, chosen: slice | Ints) -> Pose:
-        return Pose(self.turn[chosen], self.axis[chosen], self.extension[chosen])
-
-
-@dataclass(frozen=True)
-class PointMotion:
-    """A quantity of points at T instants, linear in where they are on their frames and sliders.
-
-    turning: (T, F), by the frame. sliding: (T, S), by the slider.
-    """
-
-    turning: Complex
-    sliding: Complex
-
-    def of(self, points: Points) -> Complex:
-        """The quantity of N points, (T, N) complex."""
-        return np.asarray(self.turning @ points.turning + self.sliding @ points.sliding)
 
 
 class Loops:

@@ -14,9 +14,9 @@ from loads.linkage.drives import Law, StateDrive, Values
 from loads.linkage.linkage import Linkage, LinkageError
 from loads.linkage.parts import Connection, Joint, Point, Slider, Turn
 from loads.motion.as_drawn import RANK_TOLERANCE
+from loads.motion.complex_points import Points, Pose, number, pairs
 from loads.motion.equations import Equations, drive_side
 from loads.motion.least_squares import Factors
-from loads.motion.loop_equations import Points, Pose, number, pairs
 from loads.motion.mobility import Mobility, require_determined
 from loads.motion.planar_equations import PlanarEquations
 from loads.motion.positions import Path

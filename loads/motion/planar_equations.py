@@ -8,9 +8,10 @@ import numpy as np
 
 from loads.linkage.linkage import Linkage
 from loads.linkage.parts import GROUND, Slider
+from loads.motion.complex_points import Pose
 from loads.motion.equations import CLOSING_GEARS, MIN_PARTICIPATION
 from loads.motion.joint_forces import connection_members
-from loads.motion.loop_equations import Loops, Pose
+from loads.motion.loop_equations import Loops
 from pinbase.arrays import Floats
 
 

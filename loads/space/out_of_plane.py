@@ -25,8 +25,8 @@ from loads.forces.inverse_dynamics import Dynamics
 from loads.forces.reactions import Reactions
 from loads.linkage.linkage import Linkage, LinkageError
 from loads.linkage.parts import GROUND, Slider
+from loads.motion.complex_points import number
 from loads.motion.joint_forces import connection_members, slider_members
-from loads.motion.loop_equations import number
 from loads.space.stiffness import LinkStiffness, cantilever, complete
 from pinbase.arrays import Complex, Floats
 

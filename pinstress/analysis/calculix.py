@@ -9,7 +9,7 @@ from geometry import body_of_revolution
 from pinbase.processes.pool import Tell
 from pinstress.analysis.plan import Plan
 from pinstress.study.model.tasks import Task
-from reports.data.results import PinResult
+from reports.data.row import PinResult
 
 
 def ask_calculix(

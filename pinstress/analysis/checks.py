@@ -12,7 +12,7 @@ from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.published_tables import Published
 from pinstress.study.schema.tables import MotionCheckTable
-from reports.data import results as plain
+from reports.data.motion import MotionCheck
 
 
 def require_cantilever(study: Study, task: Task, case: str) -> None:
@@ -44,7 +44,7 @@ def beam_check(study: Study, task: Task) -> BeamCheck:
 
 def motion_check(
     study: Study, loads: dict[str, CaseLoads], published: Published
-) -> plain.MotionCheck | None:
+) -> MotionCheck | None:
     """Return a joint's speed and acceleration beside the closed form; None if not requested."""
     check = study.table.motion_check
     case = loads.get(check.case) if check else None
@@ -69,7 +69,7 @@ def motion_check(
         _, *rates = instant_loads.dynamics.motion.joint(check.joint)
         at_v, at_a = (float(np.linalg.norm(x)) for x in rates)
         rows.append((t, their_v, their_a, at_v, at_a))
-    return plain.MotionCheck(
+    return MotionCheck(
         joint=check.joint,
         case=check.case,
         time=motion.times,

@@ -43,7 +43,7 @@ from pinstress.study.reading.extras import require_fatigue
 from pinstress.study.reading.file import Study, raw_study, with_raw
 from pinstress.study.reading.in_python import changed_raw, changed_study
 from pinstress.study.schema.shown import as_text, near
-from reports.data.results import PinResult
+from reports.data.row import PinResult
 
 T = TypeVar("T")
 Accuracy = Literal["full", "quick"]

@@ -18,7 +18,8 @@ from pinstress.analysis.plan import prepare
 from pinstress.analysis.solve import solve_tasks
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
-from reports.data.results import PinResult, Results
+from reports.data.results import Results
+from reports.data.row import PinResult
 from reports.format.ranges import factor_range
 from reports.text.pin_sentence import pin_sentence
 

@@ -16,7 +16,7 @@ from fea.support.support import Solution
 from pinstress.analysis.plan import ExtraFields
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.tasks import Task
-from reports.data import results as plain
+from reports.data.fields import BandLoad, Field, Still, Volume
 
 MAX_STILLS = 50  # of a motion, besides the governing instant
 MIN_DEPTH = 1e-3  # of the radius: what is less deep counts as the surface
@@ -28,7 +28,7 @@ def field(
     case: CaseLoads,
     also: ExtraFields = None,
     pressure: CellPressure | None = None,
-) -> plain.Field | None:
+) -> Field | None:
     """Return a pin's field at its governing instant; None if not solved, or if the model has none.
 
     also: adds the other instants, at most MAX_STILLS of them, or the whole of the pin.
@@ -44,7 +44,7 @@ def field(
     pressed = shown.pressed
     if pressed is None and contact is not None:  # a pin with cuts
         pressed = contact > 0.0
-    return plain.Field(
+    return Field(
         pin=peak.pin,
         case=peak.case,
         points=shown.points,
@@ -75,14 +75,14 @@ def field(
     )
 
 
-def _volume(shown: Picture | None, pressure: CellPressure | None) -> plain.Volume | None:
+def _volume(shown: Picture | None, pressure: CellPressure | None) -> Volume | None:
     """Return the whole of a pin; None for a solid model, whose field has it already."""
     if shown is None:
         return None
     pressed = shown.pressed
     if pressed is None and pressure is not None:  # a pin with cuts
         pressed = pressure.at(shown.points) > 0.0
-    return plain.Volume(
+    return Volume(
         shown.points,
         shown.cells,
         shown.cell_type,
@@ -110,13 +110,11 @@ def at_samples(solution: Solution, case: CaseLoads) -> Solution:
     return replace(solution, loads=solution.loads.at(shown), instant=instant)
 
 
-def _still(
-    task: Task, answer: StressField, loads: PinLoads, instant: int, time: float
-) -> plain.Still:
+def _still(task: Task, answer: StressField, loads: PinLoads, instant: int, time: float) -> Still:
     # Whose envelope is then of this instant only
     shown = answer.picture(loads.at(np.array([instant])), 0)
     assert shown is not None
-    return plain.Still(
+    return Still(
         time,
         shown.displacement.astype(np.float32),
         von_mises(shown.stress).astype(np.float32),
@@ -125,7 +123,7 @@ def _still(
     )
 
 
-def _bands(task: Task, loads: PinLoads, instant: int) -> tuple[plain.BandLoad, ...]:
+def _bands(task: Task, loads: PinLoads, instant: int) -> tuple[BandLoad, ...]:
     """Return every band on which a link bears; held bands carry no load here."""
     out, loads = [], loads.links
     for name in (*loads.surfaces, *task.left_out[loads.case]):
@@ -137,7 +135,7 @@ def _bands(task: Task, loads: PinLoads, instant: int) -> tuple[plain.BandLoad, .
             moment = loads.moments[instant, c]
         ends = (band.z0, band.z1)
         radius = band.radius
-        out.append(plain.BandLoad(name, ends, radius, force, moment, held))
+        out.append(BandLoad(name, ends, radius, force, moment, held))
     return tuple(out)
 
 

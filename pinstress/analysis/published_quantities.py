@@ -12,7 +12,7 @@ from pinstress.study.model.cases import CaseLoads, at_time
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.published_tables import Published, PublishedRow
-from reports.data import results as plain
+from reports.data.mechanics import PublishedValue
 
 # quantity: what it is of, and its dimension
 PUBLISHED_QUANTITIES = {
@@ -38,7 +38,7 @@ PUBLISHED_QUANTITIES = {
 
 def published_values(
     study: Study, loads: dict[str, CaseLoads], published: Published
-) -> tuple[plain.PublishedValue, ...]:
+) -> tuple[PublishedValue, ...]:
     """Return the study's published single values with the computed ones.
 
     Raises: InputError for an unknown quantity.
@@ -47,7 +47,7 @@ def published_values(
     return tuple(_beside(study, row, loads[row.case]) for row in rows)
 
 
-def _beside(study: Study, row: PublishedRow, case: CaseLoads) -> plain.PublishedValue:
+def _beside(study: Study, row: PublishedRow, case: CaseLoads) -> PublishedValue:
     if row.quantity not in PUBLISHED_QUANTITIES:
         known = ", ".join(PUBLISHED_QUANTITIES)
         raise InputError(
@@ -80,7 +80,7 @@ def _beside(study: Study, row: PublishedRow, case: CaseLoads) -> plain.Published
         dimension = _of_rate(row, case)
     ours = float(np.degrees(value)) if dimension == "degrees" else float(value)
     unit = study.system.unit(dimension)
-    return plain.PublishedValue(
+    return PublishedValue(
         row.case, row.time, row.quantity, row.name, ours, row.value, unit, row.reason, dimension
     )
 

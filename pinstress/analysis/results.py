@@ -22,7 +22,8 @@ from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.extras import EXTRAS, require_fatigue
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.shown import as_text
-from reports.data.results import Field, Results
+from reports.data.fields import Field
+from reports.data.results import Results
 from reports.format.words import headline
 from reports.tables.all import load_tables, stress_tables
 from reports.tables.column import Table

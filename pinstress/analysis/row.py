@@ -8,7 +8,8 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from reports.data.results import PinResult, Results
+from reports.data.results import Results
+from reports.data.row import PinResult
 from reports.text.pin_sentence import pin_sentence
 
 if TYPE_CHECKING:

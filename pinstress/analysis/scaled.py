@@ -26,7 +26,7 @@ from pinbase.arrays import Floats
 from pinstress.analysis.gather.gather_landing import range_of
 from pinstress.study.model.impulses import ImpulseLoads
 from pinstress.study.model.tasks import Task
-from reports.data.results import LandingRange, PinResult
+from reports.data.row import LandingRange, PinResult
 
 # Relative: ratios of places that differ by less are those of one factor on all loads.
 PROPORTIONAL_TOLERANCE = 1e-7

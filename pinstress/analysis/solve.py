@@ -27,7 +27,8 @@ from pinstress.study.model.pins import shape_notes
 from pinstress.study.model.requirements import required_factors
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
-from reports.data.results import Field, PinResult
+from reports.data.fields import Field
+from reports.data.row import PinResult
 
 if TYPE_CHECKING:  # what solves is imported where a task is not in the cache
     from fea.support.support import PinProblem, Solution

@@ -20,7 +20,8 @@ from pinstress.analysis.plan import Plan
 from pinstress.study.model.requirements import required_factors
 from pinstress.study.model.tasks import Task
 from reports.data.changes import Remedy
-from reports.data.results import Field, PinResult
+from reports.data.fields import Field
+from reports.data.row import PinResult
 from reports.data.sensitivities import PinSensitivities
 from reports.data.surface import Surface
 

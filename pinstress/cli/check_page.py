@@ -15,7 +15,7 @@ from pinstress.study.model.balance import given_warnings
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from reports.data.check import CheckedPin, CheckedStudy, PlannedRow
-from reports.data.results import Units
+from reports.data.row import Units
 from reports.page.check import write_check
 
 

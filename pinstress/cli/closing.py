@@ -9,12 +9,14 @@ from collections.abc import Iterable
 import click
 
 from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, YIELDS
+from fea.core.peak import SingularZone
 from pinbase.grouped import grouped
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import PinOutcome
 from reports.data.headline import judged_checks
 from reports.data.requirements import NOT_CHECKED, requirement_rows
-from reports.data.results import PinResult, Results, SingularZone
+from reports.data.results import Results
+from reports.data.row import PinResult
 from reports.format.words import but_words, spare_words, undecided_because
 
 EXIT_NUMERICS_FAILED, EXIT_REQUIREMENT_MISSED = 3, 4  # exit statuses

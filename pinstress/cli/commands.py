@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
@@ -43,11 +43,8 @@ from pinstress.cli.shared import (
     output_folder,
     read_study,
 )
-from pinstress.study.reading.choices import ChoiceError
+from pinstress.study.reading.choices import ChoiceError, Selection
 from pinstress.study.reading.errors import InputError, clipped
-
-if TYPE_CHECKING:
-    from fea.core.requirement import Model
 
 PLOTS_HELP = "Also draw plots and pictures as SVG and PNG, as `pinstress plots` does (slower)."
 MAX_TIMESTAMP = 253_402_300_799  # the end of the year 9999, the last that Python supports
@@ -155,7 +152,6 @@ def _settle_environment() -> None:
 )
 @click.option("--plots", is_flag=True, help=PLOTS_HELP)
 @click.option("--pdf", is_flag=True, help="Also write report.pdf, as `pinstress pdf` does.")
-@click.option("--no-pictures", is_flag=True, hidden=True)  # the default, which it was not
 @click.option(
     "--vtk",
     type=click.Choice(["model", "surface", "solid", "motion", "none"]),
@@ -167,6 +163,7 @@ def _settle_environment() -> None:
 )
 @click.option(
     "--memory-limit",
+    "memory",
     type=POSITIVE,
     metavar="MB",
     help="Memory limit of a model [80 % of free memory]; finer meshes are not solved.",
@@ -212,42 +209,16 @@ def _settle_environment() -> None:
 @click.option("--json", "as_json", is_flag=True, help="Print results.json instead of the table.")
 @click.option("--open", "opens", is_flag=True, help="Open the report in the browser when done.")
 def run(
-    study: Path,
-    out: Path | None,
-    pins: list[str] | None,
-    cases: list[str] | None,
-    model: Model | None,
-    tolerance: float | None,
-    plots: bool,
-    no_pictures: bool,
-    memory_limit: float | None,
-    second_opinion: str | None,
-    limit_load: bool,
-    no_cache: bool,
-    **more: Any,
+    study: Path, out: Path | None, second_opinion: str | None, no_cache: bool, **options: Any
 ) -> int:
     if second_opinion is not None:
         _require_calculix()
     loaded = read_study(study)
     from pinstress.cli.run import OutputOptions, run_and_write
 
-    wanted = OutputOptions(
-        plots=plots and not no_pictures,
-        second=second_opinion is not None,
-        cached=not no_cache,
-        **more,
-    )
-    return run_and_write(
-        loaded,
-        out or Path("out") / loaded.name,
-        wanted,
-        pins=pins,
-        cases=cases,
-        model=model,
-        tolerance=tolerance,
-        memory=memory_limit,
-        limit_load=limit_load,
-    )
+    chosen = {key: options.pop(key) for key in Selection.__annotations__}
+    wanted = OutputOptions(second=second_opinion is not None, cached=not no_cache, **options)
+    return run_and_write(loaded, out or Path("out") / loaded.name, wanted, **chosen)
 
 
 def _require_calculix() -> None:
@@ -271,23 +242,13 @@ def _require_calculix() -> None:
 @output_folder("<study name>-loads")
 @CASES_OPTION
 @click.option("--plots", is_flag=True, help=PLOTS_HELP)
-@click.option("--no-pictures", is_flag=True, hidden=True)
 @click.option("--quiet", is_flag=True, help="No notes; errors are still reported.")
-def loads(
-    study: Path,
-    out: Path | None,
-    cases: list[str] | None,
-    plots: bool,
-    no_pictures: bool,
-    quiet: bool,
-) -> int:
+def loads(study: Path, out: Path | None, **options: Any) -> int:
     loaded = read_study(study)
     from pinstress.cli.run import loads_and_write
 
     directory = out or Path("out") / f"{loaded.name}-loads"
-    return loads_and_write(
-        loaded, directory, plots=plots and not no_pictures, cases=cases, quiet=quiet
-    )
+    return loads_and_write(loaded, directory, **options)
 
 
 @commands.command(
@@ -336,17 +297,7 @@ def loads(
 )
 @QUIET_OPTION
 def chart(
-    study: Path,
-    pin: str,
-    case: str,
-    out: Path | None,
-    tolerance: float | None,
-    meshes: int | None,
-    runs: int,
-    time_limit: float,
-    memory_limit: float,
-    second_opinion: str | None,
-    quiet: bool,
+    study: Path, time_limit: float, memory_limit: float, second_opinion: str | None, **options: Any
 ) -> int:
     if second_opinion is not None:
         _require_calculix()
@@ -356,7 +307,7 @@ def chart(
 
     limits = MeasureLimits(time_limit, memory_limit)
     calculix = second_opinion is not None
-    return chart_and_write(loaded, pin, case, out, tolerance, meshes, runs, limits, calculix, quiet)
+    return chart_and_write(loaded, limits=limits, calculix=calculix, **options)
 
 
 @commands.command(

@@ -38,23 +38,14 @@ from pinstress.cli.shared import (
 @click.option("--resume", is_flag=True, help="Resume a sweep, or extend it to a larger count.")
 @click.option("--open", "opens", is_flag=True, help="Open the page in the browser when done.")
 def sweep(
-    study: Path,
-    out: Path | None,
-    pins: list[str] | None,
-    cases: list[str] | None,
-    jobs: int | None,
-    resume: bool,
-    opens: bool,
-    quiet: bool,
-    **cluster: Any,
+    study: Path, out: Path | None, pins: list[str] | None, cases: list[str] | None, **way: Any
 ) -> int:
-    connection = chosen_connection(jobs, **cluster)
+    connection = chosen_connection(way)
     loaded = read_study(study)
     from pinstress.cli.sweep import Way, sweep_and_write
 
     directory = out or Path("out") / f"{loaded.name}-sweep"
-    way = Way(jobs, connection, resume, opens, quiet)
-    return sweep_and_write(loaded, directory, pins, cases, way)
+    return sweep_and_write(loaded, directory, pins, cases, Way(connection=connection, **way))
 
 
 @click.command(
@@ -71,21 +62,13 @@ def sweep(
 @output_folder("<study name>-reliability")
 @choices
 @cluster_choices
-def reliability(
-    study: Path,
-    out: Path | None,
-    pins: list[str] | None,
-    cases: list[str] | None,
-    jobs: int | None,
-    quiet: bool,
-    **cluster: Any,
-) -> int:
-    connection = chosen_connection(jobs, **cluster)
+def reliability(study: Path, out: Path | None, **options: Any) -> int:
+    connection = chosen_connection(options)
     loaded = read_study(study)
     from pinstress.cli.reliability import reliability_and_write
 
     directory = out or Path("out") / f"{loaded.name}-reliability"
-    return reliability_and_write(loaded, directory, pins, cases, jobs, connection, quiet)
+    return reliability_and_write(loaded, directory, connection=connection, **options)
 
 
 @click.command(

@@ -17,10 +17,11 @@ from pinstress.cli.streams import unneeded
 from pinstress.explore.size.at_probability import lighten_at
 from pinstress.explore.size.judged_pin import judged_pin
 from pinstress.explore.size.least_weight import LightStudy, lighten
-from pinstress.explore.size.lightest_pin import Lightest, WeightGoal
+from pinstress.explore.size.lightest_pin import Lightest
 from pinstress.explore.size.pin_shape import DIMENSION_KINDS, Proportions
 from pinstress.explore.size.scaled_study import moved
 from pinstress.explore.size.size_pin import SizingGoal
+from pinstress.explore.size.weight_search import WeightGoal
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.pins import weight
 from pinstress.study.reading.errors import InputError
@@ -107,7 +108,7 @@ def lighten_and_write(
             if probability is None
             else lighten_at(study, aim, probability, pins, processes(jobs), progress)
         )
-    heavy = all(_density(study, lightest.pin) for lightest in design.pins)
+    heavy = all(study.material_of(lightest.pin).density for lightest in design.pins)
     rows = [_row(study, design, lightest, aim, heavy) for lightest in design.pins]
     if changed := design.study.text != study.text and any(x.values or x.scale for x in design.pins):
         text = moved(design.study.text, study.path.parent, target.parent)
@@ -134,10 +135,6 @@ def lighten_and_write(
     for row in missed:
         click.echo(f"{row.result.capitalize()}: pin {row.pin}: {row.why}.", err=True)
     return int(bool(missed) or not design.settled)
-
-
-def _density(study: Study, name: str) -> float | None:
-    return study.table.material[study.table.pin[name].material].density
 
 
 def _row(
@@ -195,7 +192,10 @@ def _amount(study: Study, name: str, volume: float, heavy: bool) -> float:
     """Convert a volume, m^3, to a weight in the study's units, or to a volume in them."""
     if not heavy:
         return volume / study.system.factor("length") ** 3
-    of_one = weight(pin_of(study, name), _density(study, name) or 0.0) / pin_of(study, name).volume
+    of_one = (
+        weight(pin_of(study, name), study.material_of(name).density or 0.0)
+        / pin_of(study, name).volume
+    )
     return of_one * volume / study.system.factor("force")
 
 

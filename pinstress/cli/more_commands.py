@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -274,23 +275,11 @@ def completion(context: click.Context, shell: str) -> None:
     help="With --least-weight: of missing the factor, by the laws in [vary.parameters].",
 )
 def size(
-    study: Path,
-    fos: float | None,
-    pins: list[str] | None,
-    step: str | None,
-    out: Path | None,
-    quiet: bool,
-    jobs: int | None,
-    resume: bool,
-    least_weight: bool,
-    scheduler: str | None,
-    tls: Path | None,
-    insecure: bool,
-    **wishes: Any,
+    study: Path, fos: float | None, step: str | None, least_weight: bool, **options: Any
 ) -> int:
     from pinstress.study.schema.units import to_si
 
-    connection = chosen_connection(jobs, scheduler=scheduler, tls=tls, insecure=insecure)
+    connection = chosen_connection(options)
     loaded = read_study(study)
     try:
         metres = None if step is None else to_si(step, "length", loaded.system)
@@ -301,19 +290,19 @@ def size(
     from pinstress.cli.least_weight import Wishes, lighten_and_write, require_aim
     from pinstress.cli.size import SizeOptions, require_wish, size_and_write
 
-    wished = Wishes(**wishes)
+    wished = Wishes(**{field.name: options.pop(field.name) for field in fields(Wishes)})
     if wished.given and not least_weight:
         raise InputError(f"{wished.given[0]} needs --least-weight", code="needs-least-weight")
-    if least_weight and resume:
+    if least_weight and options["resume"]:
         raise InputError("--resume is not for --least-weight", code="contradiction")
     if least_weight and connection is not None:
         raise InputError("--scheduler is not for --least-weight", code="contradiction")
     goal = require_wish(loaded, fos, metres)
     if least_weight:
         aim = require_aim(goal, wished, metres)
-        return lighten_and_write(loaded, aim, out, pins, quiet, jobs, wished.probability)
-    options = SizeOptions(out, pins, jobs, resume, quiet, connection)
-    return size_and_write(loaded, goal, options)
+        del options["resume"]
+        return lighten_and_write(loaded, aim, probability=wished.probability, **options)
+    return size_and_write(loaded, goal, SizeOptions(connection=connection, **options))
 
 
 @click.command(
@@ -346,19 +335,11 @@ def size(
 @JOBS_OPTION
 @QUIET_OPTION
 def curve(
-    study: Path,
-    key: str,
-    first: str | None,
-    last: str | None,
-    points: int,
-    pins: list[str] | None,
-    out: Path | None,
-    jobs: int | None,
-    quiet: bool,
+    study: Path, key: str, out: Path | None, first: str | None, last: str | None, **options: Any
 ) -> int:
     loaded = read_study(study)
     from pinstress.cli.curve import curve_and_write, number_or_text
 
     directory = out or Path("out") / f"{loaded.name}-curve.{quote(key, safe='.[]')}"
     ends = number_or_text(first), number_or_text(last)
-    return curve_and_write(loaded, key, ends, points, pins, directory, jobs, quiet)
+    return curve_and_write(loaded, key, ends, out=directory, **options)

@@ -41,7 +41,9 @@ from pinstress.study.reading.choices import Selection
 from pinstress.study.reading.extras import require_fatigue, require_package
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.file_names import field_name
-from reports.data.results import Field, Results, Units
+from reports.data.fields import Field
+from reports.data.results import Results
+from reports.data.row import Units
 from reports.files import write_loads, write_pages, write_reports, write_stress_tables
 from reports.junit import junit_xml
 from reports.page.scripts import REPORT_PAGE

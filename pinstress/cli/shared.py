@@ -86,14 +86,17 @@ def cluster_choices(command: Command) -> Command:
     return scheduler(tls(insecure(command)))
 
 
-def chosen_connection(jobs: int | None, **cluster: Any) -> ClusterConnection | None:
+def chosen_connection(options: dict[str, Any]) -> ClusterConnection | None:
     """Return the connection to a cluster by the options of a command, None without one.
+
+    options: those of `cluster_choices` are taken out.
 
     Raises: InputError.
     """
     from pinstress.explore.sweep.connection import connection_to
 
-    return connection_to(jobs=jobs, **cluster)
+    cluster = {key: options.pop(key) for key in ("scheduler", "tls", "insecure")}
+    return connection_to(jobs=options["jobs"], **cluster)
 
 
 @contextmanager

@@ -27,7 +27,7 @@ from pinstress.study.model.requirements import sizing_factor
 from pinstress.study.reading.choices import require_positive
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
-from reports.data.results import Units
+from reports.data.row import Units
 from reports.format.numbers import DASH, short
 from reports.text.sizes import SizeRow, print_sizes
 
@@ -261,6 +261,6 @@ def _row(study: Study, new: Study, sized: SizingResult) -> SizeRow:
 
 def _weight(study: Study, name: str) -> float | None:
     """Return a pin's weight in the study's units; None without a density."""
-    density = study.table.material[study.table.pin[name].material].density
+    density = study.material_of(name).density
     heavy = weight(pin_of(study, name), density) if density else None
     return None if heavy is None else heavy / study.system.factor("force")

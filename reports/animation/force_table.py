@@ -7,9 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pinbase.dimensions import Floats
 from reports.animation.frames import nice
 from reports.animation.scene import APPLIED_GAP, Scene
-from reports.data.results import DriveTable, Floats, Units
+from reports.data.mechanics import DriveTable
+from reports.data.row import Units
 from reports.format.numbers import DASH, short, ten_to
 
 DIGITS_OF_LARGEST = 4  # of a changing value, in the decimals that all instants share

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from reports.data.results import DriveTable, Floats, ReactionTable
+from pinbase.dimensions import Floats
+from reports.data.mechanics import DriveTable, ReactionTable
 from reports.data.skeleton import Skeleton
 from reports.format.drawing.projection import Projection
 

@@ -7,12 +7,15 @@ from pathlib import Path
 
 import numpy as np
 
+from pinbase.dimensions import Floats
 from reports.animation.force_table import Shown, applied_arrows, arrows, couple_arrows, key, rows
 from reports.animation.frames import frames, nice
 from reports.animation.player_data import player_data, speeds
 from reports.animation.scene import AXIS_REACH, PIN_REACH, Scene, clipped
 from reports.animation.strip_chart import Strip, strip
-from reports.data.results import DriveTable, Floats, ReactionTable, Results, Units
+from reports.data.mechanics import DriveTable, ReactionTable
+from reports.data.results import Results
+from reports.data.row import Units
 from reports.data.skeleton import Skeleton
 from reports.format.file_names import animation_name
 from reports.format.numbers import short

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from pinbase.dimensions import Floats
 from reports.animation.frames import nice
 from reports.animation.scene import (
     APPLIED_GAP,
@@ -14,7 +15,8 @@ from reports.animation.scene import (
     PIN_REACH,
     Scene,
 )
-from reports.data.results import DriveTable, Floats, Units
+from reports.data.mechanics import DriveTable
+from reports.data.row import Units
 from reports.format.drawing.projection import three_views
 from reports.format.numbers import short
 

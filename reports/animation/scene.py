@@ -10,8 +10,9 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from pinbase.dimensions import Floats
 from reports.animation.frames import PICTURE_WIDTH, Viewport
-from reports.data.results import Floats, ReactionTable
+from reports.data.mechanics import ReactionTable
 from reports.data.skeleton import Skeleton
 from reports.format.drawing.projection import PLANE, Projection, isometric, three_views
 from reports.format.drawing.svg_labels import label_offsets

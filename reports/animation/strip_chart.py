@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pinbase.dimensions import Floats
 from reports.animation.frames import PICTURE_WIDTH, nice
-from reports.data.results import Floats
 from reports.format.numbers import short
 
 STRIP_LEFT, STRIP_RIGHT = 70.0, PICTURE_WIDTH - 14.0

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from pinbase.dimensions import Force
 from reports.data.motion import LinkageMotion
-from reports.data.results import PinShape, Units
+from reports.data.results import PinShape
+from reports.data.row import Units
 from reports.data.skeleton import Skeleton, planar_skeleton
 
 

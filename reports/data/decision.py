@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from math import inf
 
 from assess.judgement import OUTCOME_ORDER
-from reports.data.results import PinResult, Results
+from reports.data.results import Results
+from reports.data.row import PinResult
 
 Ends = tuple[float, float]
 

@@ -13,8 +13,9 @@ from assess.judgement import BELOW_YIELD, NOT_DECIDED, SAFE
 from fea.core.places import ContactPlace
 from fea.support.records import FRICTION, JointResult, Variation
 from pinbase.arrays import Mask
+from pinbase.dimensions import Floats
 from reports.data.decision import factor_ends
-from reports.data.results import Dependence, Floats, LandingRange, PinResult
+from reports.data.row import Dependence, LandingRange, PinResult
 
 OverStrength = Literal[
     "strength and joint",

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 from pinbase.grouped import grouped
 from reports.data.decision import limit, utilisation, worst_first
 from reports.data.mechanics import PeakReaction
-from reports.data.results import PinResult, Results
+from reports.data.results import Results
+from reports.data.row import PinResult
 
 # Cases; of more, a report shows only the governing one of each pin in detail
 MAX_DETAILED_CASES = 8

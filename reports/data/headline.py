@@ -20,7 +20,8 @@ from reports.data.requirements import (
     RequirementRow,
     requirement_rows,
 )
-from reports.data.results import PinResult, Results
+from reports.data.results import Results
+from reports.data.row import PinResult
 
 
 @dataclass(frozen=True)

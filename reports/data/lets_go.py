@@ -17,7 +17,8 @@ from assess.strength.lug_stress import METHOD as LUG_METHOD
 from assess.strength.model_stress import CLAUSE, YIELD_METHOD
 from fea.support.records import LugStress
 from reports.data.decision import factor_ends, worst_first
-from reports.data.results import PinResult, PinShape, Results
+from reports.data.results import PinShape, Results
+from reports.data.row import PinResult
 
 LOCAL, YIELDS, PLASTIC = "begins to yield locally", "begins to yield", "is fully plastic"
 COLLAPSES, ALLOWED = "collapses", "reaches what the clause allows"

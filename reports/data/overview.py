@@ -12,7 +12,8 @@ from reports.data.changes import unsized
 from reports.data.decision import beneath_factor, factor_ends, limit, utilisation
 from reports.data.envelope import MAX_DETAILED_CASES
 from reports.data.headline import JudgedCheck, judged_checks, worst_checks
-from reports.data.results import PinResult, PinShape, Results
+from reports.data.results import PinShape, Results
+from reports.data.row import PinResult
 from reports.data.unknowns import Ends, factor_spread
 
 GOOD = (SAFE, BELOW_YIELD)

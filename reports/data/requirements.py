@@ -37,7 +37,8 @@ from assess.strength.model_stress import RUPTURE_METHOD, YIELD_METHOD
 from pinbase.grouped import grouped
 from reports.data.decision import factor_ends
 from reports.data.dependence import depends_on
-from reports.data.results import PinResult, Results
+from reports.data.results import Results
+from reports.data.row import PinResult
 
 MET, MISSED, NOT_CHECKED = "met", "missed", "not checked"
 Outcome = Literal["met", "missed", "depends", "not decided", "not checked"]

@@ -14,78 +14,25 @@ from assess.margin import PinMargin
 from assess.opinion.records import BeamCheck
 from assess.requirement import StatedRequirement
 from assess.strength.bending_arms import BendingArms
-from fea.core.peak import Refinement, SingularZone
-from pinbase.dimensions import Floats, Force, Length
+from pinbase.dimensions import Force, Length
 from pinbase.records import Unit, in_units
 from reports.data.changes import Remedy
-from reports.data.drop import DropPeak, DropRecord
-from reports.data.fields import BandLoad, Field, Still, Volume
+from reports.data.drop import DropRecord
 from reports.data.mechanics import (
-    DriveEffort,
     DriveTable,
-    PeakReaction,
     PublishedValue,
     ReactionTable,
 )
 from reports.data.motion import (
     BodyMotion,
-    Extremes,
-    GuideForces,
     LinkageMotion,
     MotionCheck,
-    PitchCurve,
-    PointPath,
-    PowerLedger,
 )
-from reports.data.row import SI, Dependence, GoverningLoad, LandingRange, PinResult, Units
-from reports.data.sensitivities import PinSensitivities, Sensitivity
+from reports.data.row import LandingRange, PinResult, Units
+from reports.data.sensitivities import PinSensitivities
 from reports.data.skeleton import Skeleton, planar_skeleton
 from reports.data.surface import Surface
 from reports.data.wear import BandWear
-
-__all__ = [
-    "SI",
-    "BandLoad",
-    "BandWear",
-    "BeamCheck",
-    "BodyMotion",
-    "Dependence",
-    "DriveEffort",
-    "DriveTable",
-    "DropPeak",
-    "DropRecord",
-    "Extremes",
-    "Fatigue",
-    "Field",
-    "Floats",
-    "GoverningLoad",
-    "GuideForces",
-    "LandingRange",
-    "LinkageMotion",
-    "LugSketch",
-    "MotionCheck",
-    "PeakReaction",
-    "PinResult",
-    "PinSensitivities",
-    "PinShape",
-    "PitchCurve",
-    "PointPath",
-    "PowerLedger",
-    "Provenance",
-    "PublishedValue",
-    "ReactionTable",
-    "Refinement",
-    "Remedy",
-    "Results",
-    "Sensitivity",
-    "ShankSketch",
-    "SingularZone",
-    "Still",
-    "Surface",
-    "TitleBlock",
-    "Units",
-    "Volume",
-]  # fmt: skip
 
 
 @dataclass(frozen=True)

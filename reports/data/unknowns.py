@@ -10,7 +10,7 @@ from typing import Literal
 from fea.support.records import FRICTION
 from pinbase.grouped import grouped
 from reports.data.dependence import BENEATH_CONTACT, YIELD_STRENGTH, landing_axes
-from reports.data.results import Dependence, LandingRange, PinResult
+from reports.data.row import Dependence, LandingRange, PinResult
 
 Owner = Literal["joint", "landing", "links", "strength"]
 Ends = tuple[float, float]

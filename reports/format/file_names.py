@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from urllib.parse import quote
 
-from reports.data.results import DriveTable
+from reports.data.mechanics import DriveTable
 
 SVG_SUFFIX, PNG_SUFFIX = ".svg", ".png"
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from itertools import pairwise
 
 from assess.diameter_law import BENDING_EXPONENT, SHEAR_EXPONENT
-from reports.data.results import PinResult, PinShape, Units
+from reports.data.results import PinShape
+from reports.data.row import PinResult, Units
 from reports.format.numbers import engineering
 
 NEAR_STEP = 0.1  # of the diameter: what is nearer to a change of diameter lies at it

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from reports.data.decision import utilisation
-from reports.data.results import PinResult
+from reports.data.row import PinResult
 from reports.format.numbers import DASH, engineering
 
 END_DIGITS = 3  # digits of factors and of an interval's ends

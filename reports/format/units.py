@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from reports.data.results import Units
+from reports.data.row import Units
 
 
 def unit_name(dimension: str, units: Units) -> str:

@@ -10,7 +10,8 @@ from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIE
 from reports.data.decision import worst_first
 from reports.data.dependence import BENEATH_CONTACT
 from reports.data.headline import JudgedCheck, worst_checks
-from reports.data.results import Dependence, PinResult, Results, Units
+from reports.data.results import Results
+from reports.data.row import Dependence, PinResult, Units
 from reports.format.numbers import engineering, short, threshold
 from reports.format.ranges import factor_range, factor_text
 from reports.format.units import unit_name

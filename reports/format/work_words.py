@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from assess.margin import Margin
 from assess.work import Work, WorkQuantity
-from reports.data.results import Units
+from reports.data.row import Units
 from reports.format.numbers import engineering, ten_to
 from reports.format.units import unit_name
 

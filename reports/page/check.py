@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from reports.data.check import CheckedStudy, PlannedRow
-from reports.data.results import PinShape, Units
+from reports.data.results import PinShape
+from reports.data.row import Units
 from reports.data.skeleton import Skeleton
 from reports.format.numbers import short
 from reports.format.template import rendered

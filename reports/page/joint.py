@@ -5,21 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fea.support.records import BandContact, JointResult, LugStress, Variation
-from reports.data.results import PinResult, Units
+from reports.data.row import PinResult, Units
 from reports.format.numbers import DASH, engineering, short
 from reports.format.ranges import END_DIGITS, joint_range, part_words
 from reports.tables.column import Column, Grid, PinRow, Table, grid_of, in_order, read_only, texts
 from reports.tables.stress.joint import BAND_COLUMNS, LUG_COLUMNS
 
 JOINT_TITLES = {"contact": "Contact with the lugs", "foundation": "Load from the lugs"}
-BAND_ORDER = (
-    "connection",
-    "force",
-    "contact_angle",
-    "mean_pressure",
-    "bearing_share",
-    "carrying_share",
-)
+BAND_ORDER = "connection force contact_angle mean_pressure bearing_share carrying_share"
 BANDS_NOTE = (
     "The force is that of the link on the pin. Half contact angle: half of the arc of the bore "
     "that carries, where it is widest. Carries over: the part of the lug's thickness along "
@@ -31,18 +24,8 @@ BANDS_NOTE = (
     "carries), and the size of the bending moment."
 )
 LUG_ORDER = (
-    "connection",
-    "wall",
-    "place",
-    "max_von_mises",
-    "error_estimate",
-    "interface",
-    "other_interface",
-    "max_hoop_stress",
-    "angle",
-    "time",
-    "safety_factor",
-    "limit_load",
+    "connection wall place max_von_mises error_estimate interface other_interface max_hoop_stress "
+    "angle time safety_factor limit_load"
 )
 LUGS_NOTE = (
     "Stress of a lug: the largest about its bore over all instants. Free: where the pin does not "

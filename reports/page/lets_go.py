@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from reports.data.lets_go import PinSteps, lets_go
-from reports.data.results import Results, Units
+from reports.data.results import Results
+from reports.data.row import Units
 from reports.tables.column import Grid
 from reports.tables.strength.lets_go import MAX_STEPS, first_sentence, notes, shown_steps
 

@@ -12,7 +12,7 @@ from html import escape
 
 import numpy as np
 
-from reports.data.results import Floats
+from pinbase.dimensions import Floats
 from reports.format.drawing.projection import PLANE, Projection, isometric, three_views
 from reports.format.drawing.svg_labels import label_offsets
 from reports.format.numbers import engineering

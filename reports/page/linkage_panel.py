@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reports.data.results import Floats, ReactionTable
+from pinbase.dimensions import Floats
+from reports.data.mechanics import ReactionTable
 from reports.data.skeleton import Skeleton
 from reports.format.drawing.projection import Projection
 

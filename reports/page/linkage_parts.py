@@ -9,7 +9,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from reports.data.results import Floats, ReactionTable
+from pinbase.dimensions import Floats
+from reports.data.mechanics import ReactionTable
 from reports.format.drawing.svg_labels import label_offsets
 from reports.page.linkage_panel import Instant, LinkagePanel, Points
 

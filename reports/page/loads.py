@@ -8,14 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from reports.data.results import (
-    GoverningLoad,
-    PeakReaction,
-    PinResult,
-    ReactionTable,
-    Results,
-    Units,
-)
+from reports.data.mechanics import PeakReaction, ReactionTable
+from reports.data.results import Results
+from reports.data.row import GoverningLoad, PinResult, Units
 from reports.format.numbers import DASH, components, engineering, short
 from reports.plots.loads.reactions import NO_PIN_NAME
 from reports.tables.column import Column, Grid, Table, grid_of, read_only, texts

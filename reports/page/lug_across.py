@@ -9,7 +9,9 @@ from math import cos, degrees, hypot, radians, sin
 
 import numpy as np
 
-from reports.data.results import Floats, LugSketch, PinShape, Results, Units
+from pinbase.dimensions import Floats
+from reports.data.results import LugSketch, PinShape, Results
+from reports.data.row import Units
 from reports.format.drawing.svg import INK_COLOUR, line, text
 from reports.format.numbers import engineering
 from reports.page.lug_drawing import BUSHING_COLOUR, LUG_PATTERN

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from assess.margin import Margin
 from reports.data.lug_modes import LUG_MODES, lug_mode
-from reports.data.results import PinResult, Units
+from reports.data.row import PinResult, Units
 from reports.format.numbers import engineering, short
 from reports.format.work_words import passing_text, work_text
 from reports.tables.strength.margins import MarginRow

@@ -10,7 +10,8 @@ from typing import Any
 from reports.data.changes import command
 from reports.data.decision import largest_factor, worst_first
 from reports.data.envelope import EnvelopeCell, detailed_rows
-from reports.data.results import PinResult, Provenance, Results
+from reports.data.results import Provenance, Results
+from reports.data.row import PinResult
 from reports.format.file_names import plot_name
 from reports.format.words import headline
 from reports.page.joint import joint_part

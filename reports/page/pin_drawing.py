@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from html import escape
 
-from reports.data.results import CutShape, PinShape, Units
+from reports.data.results import CutShape, PinShape
+from reports.data.row import Units
 from reports.format.drawing.spread import rows
 from reports.format.drawing.svg import INK_COLOUR, line, text, wide
 from reports.format.numbers import engineering, short

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from reports.data.decision import worst_first
 from reports.data.governing import governing
 from reports.data.headline import worst_checks
-from reports.data.results import PinResult, Results
+from reports.data.results import Results
+from reports.data.row import PinResult
 from reports.format.numbers import engineering, ratio
 from reports.format.ranges import error_range, factor_range
 from reports.page.joint import JointPart, joint_part

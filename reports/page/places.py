@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fea.core.places import BENEATH_DISTANCE, ContactEdge, ContactPlace, SectionPlace
-from reports.data.results import PinResult, Units
+from reports.data.row import PinResult, Units
 from reports.format.numbers import DASH, components, engineering, short
 from reports.format.ranges import factor_text
 from reports.tables.column import Column, Grid, Table, read_only, texts

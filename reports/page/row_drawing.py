@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from reports.data.results import PinResult, PinShape, Results
+from reports.data.results import PinShape, Results
+from reports.data.row import PinResult
 from reports.page.drawing_places import place_marks
 from reports.page.pin_drawing import DRAWING_WIDTH, draw_pin
 from reports.page.stress_along import stress_along

@@ -8,7 +8,7 @@ from itertools import pairwise
 from operator import mul
 
 from assess.opinion.opinions import BandOpinion, Opinion
-from reports.data.results import Units
+from reports.data.row import Units
 from reports.format.numbers import percent
 from reports.tables.column import Column, Grid, Table, read_only
 from reports.text.second_opinion import outcome_of, sentences

@@ -8,8 +8,10 @@ from math import atan2, cos, degrees, radians, sin
 
 import numpy as np
 
+from pinbase.dimensions import Floats
 from reports.data.decision import worst_first
-from reports.data.results import Floats, PinResult, PinShape, Results
+from reports.data.results import PinShape, Results
+from reports.data.row import PinResult
 from reports.data.surface import Surface, SurfaceCase
 from reports.plots.stress.surface import outline_sides, unread_points
 

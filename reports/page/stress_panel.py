@@ -7,7 +7,7 @@ from math import floor, log10
 
 import numpy as np
 
-from reports.data.results import Floats
+from pinbase.dimensions import Floats
 from reports.format.drawing.svg import INK_COLOUR, line, text, wide
 from reports.format.numbers import engineering
 from reports.page.drawing_zones import ZONE_COLOUR

@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
+from pinbase.dimensions import Floats
 from reports.data.decision import common_factor
-from reports.data.results import Floats, PinResult, PinShape, Results
+from reports.data.results import PinShape, Results
+from reports.data.row import PinResult
 from reports.data.surface import SURFACE_SECTORS, HalfSection, LoadCourse, Surface, SurfaceCase
 from reports.format.drawing.camera import View
 from reports.format.numbers import DASH, engineering

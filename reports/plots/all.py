@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from reports.data.decision import common_factor
-from reports.data.results import PinResult, ReactionTable, Results
+from reports.data.mechanics import ReactionTable
+from reports.data.results import Results
+from reports.data.row import PinResult
 from reports.plots.loads.histories import drive_plot, drop_plots, motion_plot
 from reports.plots.loads.linkage import linkage_plot
 from reports.plots.loads.motion import motion_plots

@@ -8,20 +8,8 @@ from reports.data.reliability import Reliability, Risk
 from reports.plots.spec import Plot, Spec, clipped, rows
 
 PROBABILITY_TICKS = (
-    1e-8,
-    1e-6,
-    1e-5,
-    1e-4,
-    1e-3,
-    0.01,
-    0.1,
-    0.3,
-    0.5,
-    0.7,
-    0.9,
-    0.99,
-    0.999,
-    0.9999,
+    *(1e-8, 1e-6, 1e-5, 1e-4, 1e-3, 0.01, 0.1),
+    *(0.3, 0.5, 0.7, 0.9, 0.99, 0.999, 0.9999),
 )
 SAMPLING_NAMES = "plain sampling", "importance sampling"
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from geometry.shape.chords import needed
 from pinbase.arrays import Mask
-from reports.data.results import Floats
+from pinbase.dimensions import Floats
 from reports.plots.theme import dashes
 
 Spec = dict[str, Any]

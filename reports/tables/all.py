@@ -36,16 +36,9 @@ from reports.tables.stress.singular_zones import zones_table
 
 # Long tables of the motion, seldom read in a spreadsheet, are left out of the workbook.
 CSV_ONLY_TABLES = (
-    "line_loads",
-    "stress_history",
-    "second_opinion_loads",
-    "reactions_pin_axes",
-    "motion",
-    "joints",
-    "transmission",
-    "linkage",
-    "sliders",
-)
+    "line_loads", "stress_history", "second_opinion_loads", "reactions_pin_axes", "motion",
+    "joints", "transmission", "linkage", "sliders",
+)  # fmt: skip
 # Rows of a sheet; longer tables are written as CSV only, which is much faster
 MAX_SHEET_ROWS = 2000
 

@@ -14,8 +14,9 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
+from pinbase.dimensions import Floats
 from pinbase.records import plain
-from reports.data.results import Floats, PinResult, Units
+from reports.data.row import PinResult, Units
 from reports.format.files import markdown, parquet
 from reports.format.files.csv import Cell, write_csv
 from reports.format.files.parquet import Cells, write_parquet
@@ -82,13 +83,31 @@ def fields(names: str, dimension: str = "", **same: Any) -> list[Column[Any]]:
     """Return columns of files, all of one dimension, that are attributes of the row.
 
     names: "attribute" or "key=attribute", separated by blanks; the attribute may be dotted, and its
-    last part is the key.
+    last part is the key. A part that is a number is a place in a tuple or an array. Behind a part
+    with a question mark, the cell is None where that part is None or an empty tuple.
     """
     pairs = (name.rpartition("=") for name in names.split())
     return [
-        Column(key or name.rpartition(".")[2], attrgetter(name), dimension, **same)
-        for key, _, name in pairs
+        Column(key or path.rpartition(".")[2], _reader(path), dimension, **same)
+        for key, _, path in pairs
     ]
+
+
+def _reader(path: str) -> Callable[[Any], Any]:
+    """Return the function that reads a path (`fields`) of a row."""
+    parts = path.split(".")
+    if all(part.isidentifier() for part in parts):
+        return attrgetter(path)
+
+    def read(value: Any) -> Any:
+        for part in parts:
+            name = part.removesuffix("?")
+            value = value[int(name)] if name.isdecimal() else getattr(value, name)
+            if name != part and (value is None or (isinstance(value, tuple) and not value)):
+                return None
+        return value
+
+    return read
 
 
 def texts(names: str, **same: Any) -> list[Column[Any]]:
@@ -280,6 +299,7 @@ def grid_of(table: Table[Any] | None, units: Units) -> Grid | None:
     return table.grid(units) if table is not None and table.rows else None
 
 
-def in_order(columns: Iterable[Column[R]], keys: Sequence[str]) -> list[Column[R]]:
-    """Return the columns in the order of their keys; those whose key is not named come last."""
-    return sorted(columns, key=lambda c: keys.index(c.key) if c.key in keys else len(keys))
+def in_order(columns: Iterable[Column[R]], keys: str) -> list[Column[R]]:
+    """Return the columns in the order of keys, separated by blanks; those not named come last."""
+    order = {key: k for k, key in enumerate(keys.split())}
+    return sorted(columns, key=lambda c: order.get(c.key, len(order)))

@@ -8,15 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from assess.judgement import DEPENDS
+from fea.core.peak import SingularZone
 from pinbase.records import plain
+from reports.data.drop import DropRecord
 from reports.data.headline import headline_json
-from reports.data.results import (
-    DriveTable,
-    DropRecord,
-    ReactionTable,
-    Results,
-    SingularZone,
-)
+from reports.data.mechanics import DriveTable, ReactionTable
+from reports.data.results import Results
 from reports.format.numbers import finite
 from reports.format.words import headline
 from reports.tables.column import Column, Table, fields, json_of
@@ -36,11 +33,6 @@ from reports.tables.stress.places import places_json
 RESULTS_SCHEMA = "pinstress-results/2"
 
 
-def _strength(key: str, name: str) -> Column[SingularZone]:
-    """Return a column for the strength of a singular field, where it was measured."""
-    return Column(key, lambda zone: getattr(zone.strength, name, None))
-
-
 # The keys of what no table has.
 PIN = fields(
     "max_von_mises_interval error_parts why location safety_factor_interval dofs seconds history "
@@ -49,11 +41,8 @@ PIN = fields(
 DEPENDENCE = fields("what value over given at flips_at reach safety_factor=factor")
 ZONE: list[Column[SingularZone]] = [
     *fields("location kind between exponent exponent_theory excluded_radius=excluded governs"),
-    *fields("max_von_mises"),
-    _strength("strength", "along"),
-    _strength("strength_exponent", "exponent"),
-    _strength("notch_stress_intensity", "notch"),
-    *fields("advice"),
+    *fields("max_von_mises strength=strength?.along strength_exponent=strength?.exponent"),
+    *fields("notch_stress_intensity=strength?.notch advice"),
 ]
 CHECK = fields(
     "name=method at time stress=demand strength=allowable factor=safety_factor formula "
@@ -62,7 +51,7 @@ CHECK = fields(
 PEAK = fields("connection force time frictionless")
 DRIVE: list[Column[DriveTable]] = [
     *fields("drive=name kind largest mean rms largest_power stroke"),
-    Column("frictionless", lambda drive: drive.effort and drive.effort.frictionless),
+    *fields("effort?.frictionless"),
     Column("position", lambda drive: drive.position[0] if drive.time is None else None),
 ]
 DROP = fields(

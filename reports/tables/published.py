@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from reports.data.results import PinResult, PublishedValue, ReactionTable, Results
+from reports.data.mechanics import PublishedValue, ReactionTable
+from reports.data.results import Results
+from reports.data.row import PinResult
 from reports.format.files import markdown
 from reports.format.numbers import engineering, ratio
 from reports.format.ranges import factor_range

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
@@ -52,25 +52,6 @@ def _ends(key: str, spread: Callable[[R], Spread | None]) -> list[Column[R]]:
     return [Column(name, end(part)) for name, part in ends.items()]
 
 
-def _form(key: str, name: str) -> Column[RiskRow]:
-    """Return a column of a number of FORM, empty where FORM has no result."""
-    return Column(key, lambda row: getattr(row.risk.form, name, None))
-
-
-def _by(errors: str) -> list[Column[RiskRow]]:
-    """Return the columns of the probabilities under an error of the stress."""
-
-    def value(row: RiskRow, end: str) -> float | None:
-        return getattr(getattr(getattr(row.risk, errors), end, None), "value", None)
-
-    return [
-        Column(f"{errors}_least", lambda row: getattr(getattr(row.risk, errors), "least", None)),
-        Column(f"{errors}_most", lambda row: getattr(getattr(row.risk, errors), "most", None)),
-        Column(f"{errors}_lower", lambda row: value(row, "lower")),
-        Column(f"{errors}_higher", lambda row: value(row, "higher")),
-    ]
-
-
 COLUMNS: list[Column[RiskRow]] = [
     *fields("risk.pin risk.case"),
     Column("result", lambda row: row.risk.result(row.whole.probability)),
@@ -81,14 +62,14 @@ COLUMNS: list[Column[RiskRow]] = [
     *_ends("sampled", lambda row: row.risk.sampled),
     *fields("risk.failures whole.samples risk.unknown"),
     *_ends("weighted", lambda row: row.risk.weighted),
-    _form("form", "probability"),
-    _form("form_index", "index"),
-    _form("form_design_points", "points"),
-    *(replace(c, key="mesh_error" if c.key == "mesh_most" else c.key) for c in _by("mesh")[1:]),
-    *_by("joint"),
+    *fields("form=risk.form?.probability form_index=risk.form?.index"),
+    *fields("form_design_points=risk.form?.points mesh_error=risk.mesh?.most"),
+    *fields("mesh_lower=risk.mesh?.lower.value mesh_higher=risk.mesh?.higher.value"),
+    *fields("joint_least=risk.joint?.least joint_most=risk.joint?.most"),
+    *fields("joint_lower=risk.joint?.lower.value joint_higher=risk.joint?.higher.value"),
     *fields("quantile_probability=whole.probability"),
     *_ends("quantile", lambda row: row.risk.quantile),
-    _form("quantile_form", "quantile"),
+    *fields("quantile_form=risk.form?.quantile"),
     Column("remark", lambda row: remark(row.risk)),
 ]
 DRIVER_COLUMNS: list[Column[DriverRow]] = [

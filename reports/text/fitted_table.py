@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, TypeVar
 
-from reports.data.results import Units
+from reports.data.row import Units
 from reports.tables.column import Column, Table
 
 if TYPE_CHECKING:

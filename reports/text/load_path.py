@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from reports.data.results import GoverningLoad, PinResult, Results, Units
+from reports.data.results import Results
+from reports.data.row import GoverningLoad, PinResult, Units
 from reports.data.skeleton import Skeleton
 from reports.format.numbers import engineering
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from reports.data.results import PeakReaction, ReactionTable, Results
+from reports.data.mechanics import PeakReaction, ReactionTable
+from reports.data.results import Results
 from reports.format.numbers import DASH, engineering, short
 from reports.tables.column import Column, Table, read_only
 from reports.tables.loads.drop import drop_words

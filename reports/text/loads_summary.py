@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from reports.data.results import DriveTable, LinkageMotion, PeakReaction, ReactionTable, Results
+from reports.data.mechanics import DriveTable, PeakReaction, ReactionTable
+from reports.data.motion import LinkageMotion
+from reports.data.results import Results
 from reports.format.files import markdown
 from reports.format.numbers import engineering, short
 from reports.tables.column import Column, Grid, Table, read_only, texts

@@ -20,7 +20,8 @@ from assess.judgement import FAILS
 from reports.data.headline import JudgedCheck
 from reports.data.lug_modes import BORE_STRESS, lug_mode
 from reports.data.overview import PinLine
-from reports.data.results import LugSketch, PinShape, Results, Units
+from reports.data.results import LugSketch, PinShape, Results
+from reports.data.row import Units
 from reports.format.numbers import engineering
 from reports.format.units import unit_name
 

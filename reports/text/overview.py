@@ -11,7 +11,8 @@ from reports.data.changes import Remedy, command
 from reports.data.decision import largest_factor, limit
 from reports.data.dependence import BENEATH_CONTACT, IMPULSE_RANGES_TOGETHER, TOGETHER
 from reports.data.overview import GOOD, PinLine, QuietCase, quiet_cases
-from reports.data.results import Dependence, PinResult, PinShape, Results, Units
+from reports.data.results import PinShape, Results
+from reports.data.row import Dependence, PinResult, Units
 from reports.data.unknowns import NO_SPREAD, Unknown, decided_by, factor_spread, without_range
 from reports.format.numbers import DASH, engineering, short, threshold
 from reports.format.place_words import action, place_words

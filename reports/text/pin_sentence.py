@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from assess.judgement import DEPENDS
-from reports.data.results import PinResult, PinShape, Units
+from reports.data.results import PinShape
+from reports.data.row import PinResult, Units
 from reports.format.numbers import components, engineering, short
 from reports.format.ranges import error_words, factor_range
 from reports.format.words import but_words, verdict_words

@@ -14,7 +14,8 @@ from assess.opinion.opinions import (
     ContactOpinion,
     Opinion,
 )
-from reports.data.results import Results, Units
+from reports.data.results import Results
+from reports.data.row import Units
 from reports.format.numbers import DASH, engineering, percent
 from reports.tables.column import Column, Table, read_only, texts
 from reports.tables.stress.calculix import opinions_of, over_answer

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from reports.data.results import Units
+from reports.data.row import Units
 from reports.format.numbers import DASH, engineering, short
 from reports.tables.column import Column, Table, read_only, texts
 from reports.text.fitted_table import fitted_table

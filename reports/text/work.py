@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from assess.margin import RATIO_DIMENSION, Margin, PinMargin
 from assess.work import WorkQuantity
-from reports.data.results import Results, Units
+from reports.data.results import Results
+from reports.data.row import Units
 from reports.format.numbers import engineering, short
 from reports.format.work_words import passing_text, quantity_text, work_lines
 

@@ -11,22 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.plastic.records import FlowField
-from reports.data.results import BandLoad, Field, Units, Volume
-from reports.vtk.render import render_pin
-from reports.vtk.renderer import renderer_problem
+from reports.data.fields import BandLoad, Field, Volume
+from reports.data.row import Units
 from reports.vtk.writer import Block, write_block, write_multiblock, write_series
-
-__all__ = [
-    "block",
-    "local_solids",
-    "point_data",
-    "render_pin",
-    "renderer_problem",
-    "surface",
-    "write_flow",
-    "write_pin",
-    "write_vtu",
-]
 
 # From xx, yy, zz, yz, xz, xy to the order of VTK's symmetric tensors, XX YY ZZ XY YZ XZ.
 VTK_TENSOR_ORDER = (0, 1, 2, 5, 3, 4)

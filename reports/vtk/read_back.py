@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 
 from loads import MB
+from pinbase.dimensions import Floats
 from pinbase.errors import Damaged
-from reports.data.results import Field, Floats, Units
+from reports.data.fields import Field
+from reports.data.row import Units
 from reports.folder.inside import read_inside
 from reports.folder.results_json import read_results
 from reports.format.numbers import engineering

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from reports.data.results import Field, Floats, Units
+from pinbase.dimensions import Floats
+from reports.data.fields import Field
+from reports.data.row import Units
 from reports.format.drawing.camera import VIEW_ANGLE, View
 from reports.format.numbers import engineering
 from reports.vtk.writer import VTK_CELL_TYPES

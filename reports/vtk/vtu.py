@@ -16,8 +16,8 @@ from xml.parsers import expat
 import numpy as np
 from numpy.typing import NDArray
 
+from pinbase.dimensions import Floats
 from pinbase.errors import Damaged
-from reports.data.results import Floats
 from reports.vtk.writer import VTK_CELL_TYPES
 
 NODES_PER_CELL = {

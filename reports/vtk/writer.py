@@ -12,7 +12,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from reports.data.results import Floats
+from pinbase.dimensions import Floats
 
 VTK_CELL_TYPES = {
     **{"vertex": 1, "triangle": 5, "quad": 9, "tetra": 10, "wedge": 13},

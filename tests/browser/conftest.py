@@ -84,7 +84,7 @@ def odd_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
         text = text.replace(old, new)
     study = directory / "odd.toml"
     study.write_text(text, encoding="utf-8")
-    return run(study, directory / "out", "--no-pictures")
+    return run(study, directory / "out")
 
 
 @pytest.fixture(scope="session")
@@ -104,7 +104,7 @@ def _run_clevis(directory: Path) -> None:
     ]
     table = "\n".join(["connection,fx,fy,time", *rows])
     (directory / "loads.csv").write_text(table + "\n", encoding="utf-8")
-    run(study, directory / "out", "--no-pictures")
+    run(study, directory / "out")
 
 
 def _quoted(text: str) -> str:

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from pinbase.dimensions import Floats
 from reports.animation.page import render_animation
-from reports.data.results import Floats
 from tests.support.results.browser_page import errors, wait
 from tests.support.results.space_results import landing_gear, rssr
 

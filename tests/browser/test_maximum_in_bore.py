@@ -22,7 +22,7 @@ def tube_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     text = (STUDIES / "clevis.toml").read_text(encoding="utf-8")
     study = folder / "tube.toml"
     study.write_text(text.replace("diameter = 20", "diameter = 20, bore = 12"), encoding="utf-8")
-    return run(study, folder / "out", "--no-pictures")
+    return run(study, folder / "out")
 
 
 def test_the_probe_reads_it_where_it_is(browser: Any, tube_run: Path) -> None:

@@ -107,7 +107,6 @@ def test_the_path_is_walked_as_told(tmp_path: Path) -> None:
     command += [
         "--cases",
         "retract",
-        "--no-pictures",
         "--jobs",
         "1",
         "--out",

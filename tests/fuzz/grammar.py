@@ -25,7 +25,7 @@ from tests.fuzz.quantity import Tree, write
 
 TOLERANCE = 0.2  # of all studies
 OPTIONS = {
-    "run": ("--no-cache", "--no-pictures", "--vtk", "none", "--jobs", "1", "--memory-limit", "500"),
+    "run": ("--no-cache", "--vtk", "none", "--jobs", "1", "--memory-limit", "500"),
     "sweep": ("--jobs", "1", "--quiet"),
     "reliability": ("--jobs", "1", "--quiet"),
 }

@@ -17,7 +17,7 @@ from tests.fuzz.mutate_file import damaged
 STUDIES = sorted(
     [*(ROOT / "studies").glob("*.toml"), *(ROOT / "studies" / "failures").glob("*.toml")]
 )
-QUICK = ("--no-pictures", "--tolerance", "0.5", "--memory-limit", "300")
+QUICK = ("--tolerance", "0.5", "--memory-limit", "300")
 
 
 Break = Callable[[Path, random.Random], str]
@@ -82,7 +82,7 @@ def hunt(seed: int, place: Path, run_too: bool, broken: Break = break_study) -> 
         bad |= bool(case.end.wrong)
         yield case
         if arguments[0] == "check" and case.end.status == 0:
-            commands.append(["loads", "study.toml", "--no-pictures"])
+            commands.append(["loads", "study.toml"])
         elif arguments[0] == "loads" and case.end.status == 0 and run_too:
             jobs = "1" if broken is break_study else "2"
             commands.append(["run", "study.toml", "--no-cache", *QUICK, "--jobs", jobs])

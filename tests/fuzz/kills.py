@@ -97,7 +97,7 @@ def kill(seed: int, folder: Path, jobs: int, longest: float) -> Killed:
 
 
 def _run(folder: Path, out: str, jobs: int) -> subprocess.Popen[bytes]:
-    command = "run", "study.toml", "--out", out, "--no-pictures", "--no-cache", "--jobs", str(jobs)
+    command = "run", "study.toml", "--out", out, "--no-cache", "--jobs", str(jobs)
     with (folder / f"{out}.err").open("wb") as messages, heard():
         return subprocess.Popen(
             [sys.executable, "-X", "faulthandler", "-m", "pinstress", *command],

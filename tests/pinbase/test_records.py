@@ -19,15 +19,10 @@ from pinstress.analysis.stored import Entry, PinOutcome
 from pinstress.study.schema.units import UNIT_SYSTEMS
 from reports.data import results as data
 from reports.data import row
-from reports.data.results import (
-    BodyMotion,
-    DriveEffort,
-    DriveTable,
-    Field,
-    GoverningLoad,
-    PinResult,
-    ReactionTable,
-)
+from reports.data.fields import Field
+from reports.data.mechanics import DriveEffort, DriveTable, ReactionTable
+from reports.data.motion import BodyMotion
+from reports.data.row import GoverningLoad, PinResult
 from tests.support.each import each
 from tests.support.results.made_up_run import make_results
 

@@ -52,7 +52,7 @@ TABLE = "connection,fx,fy,time\nA,0,100,0\nA,50,90,1\nB,10,20,0\nB,30,10,1\n"
 def results(folder: Path, name: str, hash_seed: str, *options: str) -> dict[str, bytes]:
     """Every file that is no page or plot, with all times left out."""
     done = subprocess.run(
-        [sys.executable, "-m", "pinstress", "run", "study.toml", "--no-pictures", "--out", name,
+        [sys.executable, "-m", "pinstress", "run", "study.toml", "--out", name,
          *options],
         cwd=folder,
         env=os.environ | {"PYTHONHASHSEED": hash_seed, "PYTHONPATH": str(ROOT)},

@@ -176,14 +176,14 @@ def test_an_install_initialises_checks_and_runs(from_wheel: Installed) -> None:
     studies = {Path(name).stem for name in files("studies") if name.count("/") == 1}
     listed = done(folder, from_wheel.python, "-c", SHIPPED)
     assert set(listed.split()) == studies
-    printed = done(folder, program, "run", "trial/one_pin.toml", "--no-pictures")
+    printed = done(folder, program, "run", "trial/one_pin.toml")
     assert "safe" in printed
     out = folder / "out" / "one_pin"
     (pin,) = json.loads((out / "results.json").read_text(encoding="utf-8"))["pins"]
     assert pin["verdict"] == "converged"
     assert pin["meets_required"] is True
     assert "<title>" in (out / "report.html").read_text(encoding="utf-8")
-    again = done(folder, program, "run", "trial/one_pin.toml", "--no-pictures")
+    again = done(folder, program, "run", "trial/one_pin.toml")
     assert again == printed
     assert any((folder / "cache").iterdir())
 

@@ -93,7 +93,7 @@ def pinstress(folder: Path, *arguments: str, **environment: str) -> str:
 
 
 STUDIES = ROOT / "studies"
-TWO_PINS = "--pins", "S,K", "--cases", "dig", "--tolerance", "0.3", "--jobs", "2", "--no-pictures"
+TWO_PINS = "--pins", "S,K", "--cases", "dig", "--tolerance", "0.3", "--jobs", "2"
 
 
 @pytest.mark.slow
@@ -108,7 +108,7 @@ def test_a_run_gives_the_same_but_for_rounding(
     """
     run = "run", str(STUDIES / f"{study}.toml"), *options
     pinstress(tmp_path, *run, "--out", "linux", PINSTRESS_PORTABLE="0")
-    pinstress(tmp_path, "loads", run[1], "--out", "twin-loads", "--no-pictures", **TWIN)
+    pinstress(tmp_path, "loads", run[1], "--out", "twin-loads", **TWIN)
     for _ in range(1 + (study == "one_pin")):
         pinstress(tmp_path, *run, "--out", "twin", **TWIN)
     require_same(tmp_path / "linux", tmp_path / "twin")
@@ -156,7 +156,7 @@ def test_processes_import_nothing_from_the_current_folder(tmp_path: Path) -> Non
 @pytest.mark.slow
 def test_an_interrupt_ends_a_run_with_nothing_written(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(SLOW)
-    command = "run", "study.toml", "--out", "out", "--no-pictures", "--jobs", "2", *ROOM
+    command = "run", "study.toml", "--out", "out", "--jobs", "2", *ROOM
     with started(
         [sys.executable, "-m", "pinstress", *command],
         cwd=tmp_path,

@@ -62,7 +62,7 @@ def test_the_whole_pipeline(shipped: Shipped, study: str, pin: str, verdict: str
 @pytest.mark.parametrize("study", MECHANISMS)
 def test_loads_alone(tmp_path: Path, study: str, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
-    command = ["loads", str(STUDIES / f"{study}.toml"), "--out", str(out), "--no-pictures"]
+    command = ["loads", str(STUDIES / f"{study}.toml"), "--out", str(out)]
     assert run_command_line(command) == 0
     printed = capsys.readouterr().out
     assert "power balance" in printed
@@ -93,7 +93,7 @@ def test_loads_alone(tmp_path: Path, study: str, capsys: pytest.CaptureFixture[s
 def test_the_leg_in_space(tmp_path: Path) -> None:
     """Force and moment on the hinge, and what the drives do, from the momenta of leg and wheel."""
     out = tmp_path / "out"
-    command = ["loads", str(STUDIES / "kuleuven2014.toml"), "--out", str(out), "--no-pictures"]
+    command = ["loads", str(STUDIES / "kuleuven2014.toml"), "--out", str(out)]
     assert run_command_line(command) == 0
 
     def read(name: str, key: str, of: str, columns: str) -> np.ndarray:
@@ -147,7 +147,7 @@ def test_the_gear_under_regulations_is_the_landing_gear() -> None:
 
 def test_guides_are_written_with_their_friction(tmp_path: Path) -> None:
     out = tmp_path / "out"
-    command = ["loads", str(STUDIES / "slider_crank.toml"), "--out", str(out), "--no-pictures"]
+    command = ["loads", str(STUDIES / "slider_crank.toml"), "--out", str(out)]
     assert run_command_line(command) == 0
     rows = list(csv.DictReader((out / "sliders.csv").read_text().splitlines()))
     assert len(rows) == 241
@@ -173,7 +173,7 @@ def test_the_linkage_of_the_docs_runs(tmp_path: Path) -> None:
     study = tmp_path / "four_bar.toml"
     study.write_text(text.split("```toml\n")[1].split("```")[0], encoding="utf-8")
     out = tmp_path / "out"
-    assert run_command_line(["loads", str(study), "--out", str(out), "--no-pictures"]) == 0
+    assert run_command_line(["loads", str(study), "--out", str(out)]) == 0
 
 
 def test_the_study_that_scatters(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import pytest
 
 import pinstress
 from reports.data.decision import beneath_factor
-from reports.data.results import PinResult
+from reports.data.row import PinResult
 
 CLEVIS = """
 title = "Hardened clevis pin"

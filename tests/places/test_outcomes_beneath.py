@@ -23,7 +23,8 @@ from pinstress import load_study, run
 from pinstress.cli.closing import EXIT_REQUIREMENT_MISSED, report_violations
 from pinstress.study.schema.units import UNIT_SYSTEMS
 from reports.data.dependence import depends_on
-from reports.data.results import LandingRange, PinResult, Results
+from reports.data.results import Results
+from reports.data.row import LandingRange, PinResult
 from reports.format.words import headline, result_words
 from reports.tables.json_results import to_json
 from reports.tables.strength.envelope import envelope_table

@@ -16,7 +16,8 @@ from fea.core.places import (
     SectionPlace,
     SurfacePlace,
 )
-from reports.data.results import PinResult, Results, Units
+from reports.data.results import Results
+from reports.data.row import PinResult, Units
 from reports.page.drawing_places import place_marks
 from reports.page.joint import joint_part
 from reports.page.paper import document

@@ -17,11 +17,12 @@ from pinstress.analysis.remedies.changes import change
 from pinstress.analysis.results import run
 from pinstress.analysis.solve import solutions
 from pinstress.explore.size.counted import beneath, surface_and_section
-from pinstress.explore.size.lightest_pin import WeightGoal, problem_of
+from pinstress.explore.size.lightest_pin import problem_of
 from pinstress.explore.size.pin_answers import design_stresses
 from pinstress.explore.size.pin_stress import PinStress
 from pinstress.explore.size.scaled_study import resized_study
 from pinstress.explore.size.size_pin import SizingGoal, size_pin
+from pinstress.explore.size.weight_search import WeightGoal
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.tasks import tasks
 from pinstress.study.reading.file import Study, parse_study

@@ -47,7 +47,7 @@ SPARE = (
         ),
     ],
 )
-@pytest.mark.parametrize("command", [("check",), ("run", "--no-pictures")])
+@pytest.mark.parametrize("command", [("check",), ("run",)])
 def test_it_is_refused(
     old: str, new: str, said: tuple[str, ...], command: tuple[str, ...], tmp_path: Path
 ) -> None:

@@ -18,7 +18,9 @@ from pinstress.analysis.gather.gather import results_of
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.solve import solve_tasks
 from pinstress.study.reading.file import load_study
-from reports.data.results import Field, PinResult, Results
+from reports.data.fields import Field
+from reports.data.results import Results
+from reports.data.row import PinResult
 from reports.vtk.fields import write_pin
 from tests.conftest import ROOT
 from tests.support.pins.clevis import CLEVIS

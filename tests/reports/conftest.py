@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from reports.data.results import Field, Results
+from reports.data.fields import Field
+from reports.data.results import Results
 from tests.support.results.made_up_run import make_field, make_results
 
 

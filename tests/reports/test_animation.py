@@ -19,7 +19,8 @@ from reports.animation.page import render_animation, write_animations
 from reports.animation.player_data import speeds
 from reports.animation.strip_chart import ticks
 from reports.data.motion import AppliedForce
-from reports.data.results import Results, Units
+from reports.data.results import Results
+from reports.data.row import Units
 from reports.data.skeleton import AppliedCouple
 from reports.format.drawing.projection import isometric, three_views
 from reports.format.drawing.svg_labels import label_offsets

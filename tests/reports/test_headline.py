@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from reports.data.decision import utilisation, worst_first
-from reports.data.results import PinResult, Results
+from reports.data.results import Results
+from reports.data.row import PinResult
 from reports.format.words import headline
 from reports.page.loads import loads_at, timings
 from reports.text.summary import summary

@@ -17,7 +17,8 @@ from fea.support.records import JointRange, JointResult, Variation
 from pinbase.records import in_units
 from pinstress.study.schema.units import UNIT_SYSTEMS
 from reports.data.dependence import depends_on
-from reports.data.results import Field, Results
+from reports.data.fields import Field
+from reports.data.results import Results
 from reports.files import write_reports
 from reports.format.ranges import joint_range, part_words
 from reports.format.words import JOINT_RANGE_NOTE

@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from reports.data.results import Floats
+from pinbase.dimensions import Floats
 from reports.format.drawing import svg_labels
 from reports.format.drawing.svg_labels import LABEL_DIRECTIONS, LABEL_REACHES, label_offsets
 

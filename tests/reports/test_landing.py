@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from reports.data.results import PublishedValue, Results
+from reports.data.mechanics import PublishedValue
+from reports.data.results import Results
 from reports.page.page import write_page
 from reports.plots.strength.landing import landing_plot
 from reports.tables.published import published_values_table, write_published

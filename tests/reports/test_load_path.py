@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from reports.data.motion import AppliedForce
-from reports.data.results import GoverningLoad, PinResult, Results
+from reports.data.results import Results
+from reports.data.row import GoverningLoad, PinResult
 from reports.data.skeleton import Skeleton
 from reports.text.load_path import load_path
 from tests.support.results.rows import row_with

@@ -14,7 +14,8 @@ from fea.core.places import ContactPlace, Places, SurfacePlace
 from reports.data.overview import factor_at, pin_lines, quiet_cases
 from reports.data.requirement_matrix import matrix_rows
 from reports.data.requirements import RequirementRow, keys_in
-from reports.data.results import PinResult, Results
+from reports.data.results import Results
+from reports.data.row import PinResult
 from reports.format.place_words import along_words
 from reports.page.overview import overview_part
 from reports.tables.strength.overview import FactorAxis, bar, diameter_words, factor_axis

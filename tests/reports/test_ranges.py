@@ -11,7 +11,9 @@ import pytest
 from rich.console import Console
 
 from fea.core.mesh_result import SingularIntensity
-from reports.data.results import PinResult, Results, SingularZone
+from fea.core.peak import SingularZone
+from reports.data.results import Results
+from reports.data.row import PinResult
 from reports.format.ranges import error_range, error_words, factor_range
 from reports.format.words import headline
 from reports.tables.json_results import to_json

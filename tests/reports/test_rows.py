@@ -9,7 +9,8 @@ import pytest
 from assess.judgement import Judgement
 from fea.core.peak import Maximum
 from pinstress.study.schema.units import UNIT_SYSTEMS
-from reports.data.results import LandingRange, PinResult, Results
+from reports.data.results import Results
+from reports.data.row import LandingRange, PinResult
 from tests.support.results.made_up_run import ranged
 from tests.support.results.rows import with_landing
 

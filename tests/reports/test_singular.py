@@ -12,11 +12,16 @@ import numpy as np
 import pytest
 
 from assess.margin import Margin
-from reports.data.results import Field, PinResult, Results, SingularZone, Units
+from fea.core.peak import SingularZone
+from reports.data.fields import Field
+from reports.data.results import Results
+from reports.data.row import PinResult, Units
 from reports.files import write_reports
 from reports.tables.json_results import to_json
 from reports.text.summary import summary
-from reports.vtk.fields import render_pin, renderer_problem, write_vtu
+from reports.vtk.fields import write_vtu
+from reports.vtk.render import render_pin
+from reports.vtk.renderer import renderer_problem
 from tests.support.results.rows import with_values
 
 UNITS = Units("in", "lbf", "psi", "s")

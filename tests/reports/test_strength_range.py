@@ -15,7 +15,7 @@ from assess.judgement import DEPENDS, FAILS, SAFE
 from assess.strength.model_stress import YIELD_METHOD
 from pinstress.study.reading.errors import InputError
 from reports.data.dependence import TOGETHER, YIELD_STRENGTH, depends_on
-from reports.data.results import PinResult, Units
+from reports.data.row import PinResult, Units
 from reports.data.unknowns import factor_spread, unknowns
 from reports.text.overview import flips, flips_words, measure_first, range_words
 from tests.reports.test_unknowns import pin

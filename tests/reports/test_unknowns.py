@@ -14,7 +14,7 @@ import pytest
 from assess.judgement import DEPENDS, FAILS, SAFE
 from fea.support.records import JointRange, Variation
 from reports.data.dependence import JOINT_AND_LANDING, TOGETHER, depends_on
-from reports.data.results import PinResult, Units
+from reports.data.row import PinResult, Units
 from reports.data.unknowns import factor_spread, open_values, unknowns
 from reports.format.words import over_words
 from reports.text.overview import flips, flips_words, measure_first, range_words

@@ -12,9 +12,12 @@ import numpy as np
 import pytest
 import pyvista
 
-from reports.data.results import BandLoad, Field, Still, Units
+from reports.data.fields import BandLoad, Field, Still
+from reports.data.row import Units
 from reports.vtk import renderer
-from reports.vtk.fields import render_pin, renderer_problem, surface, write_pin, write_vtu
+from reports.vtk.fields import surface, write_pin, write_vtu
+from reports.vtk.render import render_pin
+from reports.vtk.renderer import renderer_problem
 from tests.conftest import ROOT
 from tests.support.results.judged_results import tube
 

@@ -15,7 +15,8 @@ import vtk
 
 from assess.plastic.records import FlowField
 from pinstress.cli.commands import run_command_line
-from reports.data.results import BandLoad, PinResult, Units
+from reports.data.fields import BandLoad
+from reports.data.row import PinResult, Units
 from reports.vtk.fields import write_flow, write_pin
 from reports.vtk.index import identify_files
 from reports.vtk.vtu import read_vtu

@@ -16,7 +16,8 @@ from pinstress.analysis.gather.gather import results_of
 from pinstress.analysis.plan import prepare
 from pinstress.analysis.solve import solve_tasks
 from pinstress.study.reading.file import load_study
-from reports.data.results import Field, Results
+from reports.data.fields import Field
+from reports.data.results import Results
 from reports.vtk.fields import write_pin
 
 STUDY = """

@@ -125,7 +125,7 @@ def test_commands_and_results_say_it(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("s.toml").write_text(STUDY.format("required_safety_factor = 1.5\nultimate_factor = 1.5"))
-    more = ["--no-pictures", "--quiet"] if command == "run" else []
+    more = ["--quiet"] if command == "run" else []
     assert run_command_line([command, "s.toml", *more]) in (0, 1)
     out, said = capsys.readouterr()
     assert said.startswith("Warning: s.toml:12: analysis.required_safety_factor: 1.5 is ultimate_")

@@ -11,7 +11,7 @@ import pytest
 from fea.support.contact.variations import NOWHERE, ResolutionComparison
 from fea.support.records import FRICTION, JointRange, Variation
 from reports.data.dependence import depends_on
-from reports.data.results import PinResult
+from reports.data.row import PinResult
 from reports.data.unknowns import unknowns
 from reports.format.words import result_words
 from tests.fea.support.contact.test_solve_in_lugs import STEADY

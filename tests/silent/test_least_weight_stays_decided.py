@@ -17,7 +17,8 @@ from assess.judgement import SAFE
 from pinstress.cli.commands import run_command_line
 from pinstress.explore.size import least_weight
 from pinstress.explore.size.least_weight import LightStudy, lighten
-from pinstress.explore.size.lightest_pin import Lightest, WeightGoal
+from pinstress.explore.size.lightest_pin import Lightest
+from pinstress.explore.size.weight_search import WeightGoal
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import Study
 

@@ -20,7 +20,8 @@ from pinstress import changed_study, load_study, run
 from pinstress.cli.commands import run_command_line
 from reports.data.dependence import depends_on
 from reports.data.headline import headline_json, worst_checks
-from reports.data.results import LandingRange, PinResult, Results
+from reports.data.results import Results
+from reports.data.row import LandingRange, PinResult
 from reports.format.words import headline, result_words
 from reports.tables.json_results import to_json
 from reports.tables.strength.safety_factors import safety_factors_table
@@ -82,7 +83,7 @@ def test_the_exit_status_counts_it_as_a_miss(
         "[analysis]", '[analysis]\njoints = "prescribed"'
     )
     (tmp_path / "c.toml").write_text(text, encoding="utf-8")
-    command = ["run", str(tmp_path / "c.toml"), "--no-pictures", "--out", str(tmp_path / "out")]
+    command = ["run", str(tmp_path / "c.toml"), "--out", str(tmp_path / "out")]
     assert run_command_line(command) == 0
     said = capsys.readouterr()
     assert "fails within the range of the joint" in " ".join(said.out.split())
@@ -195,7 +196,7 @@ def test_a_converged_maximum_counts_with_its_error(
     (tmp_path / "p.toml").write_text(
         re.sub(r"required_safety_factor = .*", f"required_safety_factor = {required}", study.text)
     )
-    command = ["run", str(tmp_path / "p.toml"), "--no-pictures", "--out", str(tmp_path / "out")]
+    command = ["run", str(tmp_path / "p.toml"), "--out", str(tmp_path / "out")]
     assert run_command_line(command) == status
     (found,) = json.loads((tmp_path / "out" / "results.json").read_text())["pins"]
     assert (found["verdict"], found["outcome"]) == ("converged", expected)

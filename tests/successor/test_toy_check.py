@@ -75,7 +75,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (work / "s.toml").write_text(STUDY, encoding="utf-8")
     path = os.pathsep.join([str(house), str(ROOT)])
     done = subprocess.run(
-        [sys.executable, "-m", "pinstress", "run", "s.toml", "--out", "out", "--no-pictures"],
+        [sys.executable, "-m", "pinstress", "run", "s.toml", "--out", "out"],
         cwd=work, capture_output=True, text=True, check=False,
         env=os.environ | {"PYTHONPATH": path, "PINSTRESS_CACHE": "off"},
     )  # fmt: skip

@@ -25,6 +25,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from assess.opinion.records import BeamCheck
 from loads import CosineDrive, Dynamics, Linkage, Sharing, energy, ledger, move
 from loads.forces.inverse_dynamics import motion_reactions
 from pinstress.analysis.plan import prepare
@@ -34,7 +35,6 @@ from pinstress.study.model.pins import material
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.pins import weight as weight_of
 from pinstress.study.reading.file import Study
-from reports.data.results import BeamCheck
 from tests.conftest import INCH, LBF
 from tests.support.each import each
 

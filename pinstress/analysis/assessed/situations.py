@@ -33,7 +33,7 @@ from pinstress.study.model.lost_fits import lost_fits
 from pinstress.study.model.requirements import required_factor
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
-from reports.data.results import PinResult
+from reports.data.row import PinResult
 
 L = TypeVar("L", LimitLoad | None, LugCollapse)
 FORMULA_KINDS = "hand", "clause"

@@ -34,10 +34,19 @@ from pinstress.study.reading.inputs import inputs
 from pinstress.study.reading.published_tables import Published, read_published
 from pinstress.study.schema.shown import listed
 from pinstress.study.schema.tables import ReportTable
-from reports.data import results as plain
 from reports.data.changes import Remedy
 from reports.data.dependence import depends_on
-from reports.data.results import CutShape, LugSketch, ShankSketch
+from reports.data.results import (
+    CutShape,
+    Fatigue,
+    LugSketch,
+    PinShape,
+    Provenance,
+    Results,
+    ShankSketch,
+    TitleBlock,
+)
+from reports.data.row import SI, GoverningLoad, PinResult, Units
 from reports.data.sensitivities import PinSensitivities
 
 WITHOUT_FRICTION_NOTE = (
@@ -61,7 +70,7 @@ def materials_assumption(study: Study) -> tuple[str, ...]:
     )
 
 
-def shanks_assumption(rows: Iterable[plain.PinResult]) -> tuple[str, ...]:
+def shanks_assumption(rows: Iterable[PinResult]) -> tuple[str, ...]:
     """Return a sentence for each way in which directions of shanks are assumed."""
     lugs: dict[str, dict[str, None]] = {}
     for row in rows:
@@ -74,7 +83,7 @@ def shanks_assumption(rows: Iterable[plain.PinResult]) -> tuple[str, ...]:
     )
 
 
-def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
+def results_of(plan: Plan, outcomes: list[PinOutcome]) -> Results:
     """Return a plan's results from the outcomes of its tasks."""
     study = plan.study
     outcomes = [
@@ -89,7 +98,7 @@ def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
     ]
     rows.sort(key=lambda row: (pins.index(row[1].pin), cases.index(row[1].case)))
     results = _results(study, plan.loads, rows, plan.published, plan.requirement.tolerance)
-    fatigue: plain.Fatigue | None = None
+    fatigue: Fatigue | None = None
     fatigue_margins: list[PinMargin] = []
     if study.table.fatigue is not None:
         from pinstress.analysis.gather.gather_fatigue import fatigue_of  # imports SciPy
@@ -111,7 +120,7 @@ def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
     return _in_study_units(results, study)
 
 
-def rows_of(plan: Plan, outcomes: list[PinOutcome]) -> dict[tuple[str, str], plain.PinResult]:
+def rows_of(plan: Plan, outcomes: list[PinOutcome]) -> dict[tuple[str, str], PinResult]:
     """Return the rows of a plan, as `results_of` has them, by pin and case."""
     study, factor, units = plan.study, plan.study.system.factor, _units(plan.study)
     rows = (
@@ -143,16 +152,16 @@ def _in_order(
     return tuple(sorted(rows, key=lambda row: (pins.index(row.pin), cases.index(row.case))))
 
 
-def _in_study_units(results: plain.Results, study: Study) -> plain.Results:
+def _in_study_units(results: Results, study: Study) -> Results:
     return results.in_units(_units(study), study.system.factor)
 
 
-def _units(study: Study) -> plain.Units:
+def _units(study: Study) -> Units:
     s = study.system
-    return plain.Units(s.length, s.force, s.stress, s.time)
+    return Units(s.length, s.force, s.stress, s.time)
 
 
-def loads_only(study: Study, cases: Iterable[str] | None = None) -> plain.Results:
+def loads_only(study: Study, cases: Iterable[str] | None = None) -> Results:
     """Return the mechanics of a study without stresses.
 
     Raises: InputError for bad input.
@@ -166,21 +175,21 @@ def loads_only(study: Study, cases: Iterable[str] | None = None) -> plain.Result
 def _results(
     study: Study,
     loads: dict[str, CaseLoads],
-    rows: list[tuple[Task, plain.PinResult]],
+    rows: list[tuple[Task, PinResult]],
     published: Published,
     tolerance: float,
-) -> plain.Results:
+) -> Results:
     """Return the results of a run that follow from its loads and rows, in SI.
 
     rows: each with its task, in the order of the table.
     """
     table = study.table
     tasks = {task.pin.name: task for task, _ in reversed(rows)}
-    return plain.Results(
+    return Results(
         title=table.title,
         study=study.path.name,
         study_sha256=study.sha256,
-        units=plain.SI,
+        units=SI,
         required_safety_factor=table.analysis.required_safety_factor,
         tolerance=tolerance,
         pins=tuple(_completed(study, loads[row.case], task, row, published) for task, row in rows),
@@ -190,7 +199,7 @@ def _results(
             if name in tasks
         ),
         **mechanics(study, loads, published),
-        provenance=tuple(plain.Provenance(**asdict(source)) for source in study.provenance),
+        provenance=tuple(Provenance(**asdict(source)) for source in study.provenance),
         published_source=table.published.source if table.published else "",
         assumptions=(
             *table.assumptions,
@@ -210,14 +219,14 @@ def _results(
     )
 
 
-def _title_block(given: ReportTable) -> plain.TitleBlock:
+def _title_block(given: ReportTable) -> TitleBlock:
     date = "" if given.date is None else given.date.isoformat()
-    return plain.TitleBlock(given.revision, date, given.prepared, given.checked, given.approved)
+    return TitleBlock(given.revision, date, given.prepared, given.checked, given.approved)
 
 
 def _completed(
-    study: Study, case: CaseLoads, task: Task, row: plain.PinResult, published: Published
-) -> plain.PinResult:
+    study: Study, case: CaseLoads, task: Task, row: PinResult, published: Published
+) -> PinResult:
     """Return a row with what the study says of its case."""
     time = row.maximum.time
     here = case if time is None else at_time(case, time)
@@ -256,16 +265,16 @@ def _held(task: Task, joint: JointResult | None) -> str:
     return ", ".join(task.clamps) or "nothing (loads in balance)"
 
 
-def _governing_loads(task: Task, here: CaseLoads) -> tuple[plain.GoverningLoad, ...]:
+def _governing_loads(task: Task, here: CaseLoads) -> tuple[GoverningLoad, ...]:
     r = here.reactions
     return tuple(
-        plain.GoverningLoad(name, r.bodies[c], r.forces[0, c], r.moments[0, c])
+        GoverningLoad(name, r.bodies[c], r.forces[0, c], r.moments[0, c])
         for c, name in enumerate(r.connections)
         if name in task.pin.connections
     )
 
 
-def shape_of_task(task: Task, peaks: Sequence[Maximum]) -> plain.PinShape:
+def shape_of_task(task: Task, peaks: Sequence[Maximum]) -> PinShape:
     """Return the pin of a task as it is drawn, SI.
 
     peaks: its maxima, of which local solids are drawn.
@@ -280,7 +289,7 @@ def shape_of_task(task: Task, peaks: Sequence[Maximum]) -> plain.PinShape:
     cuts = tuple(cut_shapes(pin))
     solids = tuple(dict.fromkeys(ends for peak in peaks for ends in peak.solids))
     made_of = task.material.name
-    return plain.PinShape(
+    return PinShape(
         pin.name, segments, made_of, heavy, far_ends(pin), cuts, solids, tuple(_lug_sketches(task))
     )
 

@@ -102,8 +102,7 @@ def _margins(plan: Plan, result: Fatigue, needs: dict[str, str]) -> list[PinMarg
 
 
 def _material(plan: Plan, pin: str) -> FatigueMaterial:
-    table = plan.study.table
-    return _fatigue_material(table.material[table.pin[pin].material])
+    return _fatigue_material(plan.study.material_of(pin))
 
 
 def _pressed(lugs: Iterable[Lug]) -> bool:

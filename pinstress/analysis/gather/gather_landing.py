@@ -14,11 +14,11 @@ from fea.harmonic.part_field import PartField
 from fea.section.section_stress import SectionField
 from fea.support.support import Solution
 from geometry import body_of_revolution
+from pinbase.dimensions import Floats
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.impulses import ImpulseLoads
 from pinstress.study.model.tasks import Task
-from reports.data.results import Floats, LandingRange
-from reports.data.row import SharingRange
+from reports.data.row import LandingRange, SharingRange
 
 
 def landing_range(

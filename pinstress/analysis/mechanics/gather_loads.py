@@ -32,12 +32,11 @@ from pinstress.study.model.mechanism.drives import drive_tables, mechanism_of
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.published_tables import Published
 from pinstress.study.schema.landing import GroundCase
-from reports.data import results as plain
-from reports.data.mechanics import WheelLoad
+from reports.data.mechanics import DriveTable, PeakReaction, ReactionTable, WheelLoad
 
 
 def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -> dict[str, Any]:
-    """Return the parts of plain.Results that need no stresses."""
+    """Return the parts of Results that need no stresses."""
     dynamics = {n: c.dynamics for n, c in loads.items() if c.dynamics is not None}
     parts = {
         "reactions": tuple(_reactions(study, n, c, published) for n, c in loads.items()),
@@ -91,12 +90,10 @@ def position_unit(study: Study, case: CaseLoads) -> str:
     return "" if isinstance(drive, Slider) else "deg"
 
 
-def _reactions(
-    study: Study, name: str, case: CaseLoads, published: Published
-) -> plain.ReactionTable:
+def _reactions(study: Study, name: str, case: CaseLoads, published: Published) -> ReactionTable:
     r, dynamics = case.reactions, case.dynamics or (case.space and case.space.dynamics)
     on = {c: p for p in study.table.pin for c in study.connections(p)}
-    return plain.ReactionTable(
+    return ReactionTable(
         case=name,
         times=r.times,
         position=drive_position(study, case),
@@ -139,7 +136,7 @@ def _wheel_loads(study: Study, name: str, case: CaseLoads) -> tuple[WheelLoad, .
     )
 
 
-def _peaks(study: Study, case: CaseLoads) -> tuple[plain.PeakReaction, ...]:
+def _peaks(study: Study, case: CaseLoads) -> tuple[PeakReaction, ...]:
     if case.peaks is None:
         return ()
     peaks = case.peaks
@@ -148,7 +145,7 @@ def _peaks(study: Study, case: CaseLoads) -> tuple[plain.PeakReaction, ...]:
         dynamics = case.solve(np.array([peak.time for peak in peaks.force.values()]))
         position = list(_drive_positions(study, dynamics)[:, 0].tolist())
     return tuple(
-        plain.PeakReaction(
+        PeakReaction(
             name,
             peak.value,
             peak.time,
@@ -165,7 +162,7 @@ def _pairs(values: Floats) -> tuple[tuple[float, float], ...]:
     return tuple((float(low), float(high)) for low, high in values)
 
 
-def _drives(study: Study, name: str, dynamics: Dynamics, case: CaseLoads) -> list[plain.DriveTable]:
+def _drives(study: Study, name: str, dynamics: Dynamics, case: CaseLoads) -> list[DriveTable]:
     stored, (_, speeds, rates) = energy(dynamics.motion), dynamics.course
     over, smooth = case.over, case.frictionless
     return drives(

@@ -8,7 +8,7 @@ import numpy as np
 
 from loads import GROUND, Applied, Dynamics, Gear, Linkage, Motion, OverTime, Rack, Teeth, ledger
 from loads.linkage.parts import Point, Slider
-from loads.motion.loop_equations import pairs
+from loads.motion.complex_points import pairs
 from loads.motion.planar_equations import is_particle
 from loads.motion.transmission_angles import transmission_angles
 from pinbase.arrays import Floats
@@ -16,12 +16,19 @@ from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.mechanism.linkage import ground_joint
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.mechanism import MechanismTable
-from reports.data import results as plain
-from reports.data.motion import AppliedForce, PitchCurve
+from reports.data.motion import (
+    AppliedForce,
+    Extremes,
+    GuideForces,
+    LinkageMotion,
+    PitchCurve,
+    PointPath,
+    PowerLedger,
+)
 
 
-def _extremes(over: OverTime) -> plain.Extremes:
-    return plain.Extremes(
+def _extremes(over: OverTime) -> Extremes:
+    return Extremes(
         {
             f"{link} at {joint}": (float(np.degrees(low.value)), low.time)
             for (link, joint), low in over.transmission.items()
@@ -30,7 +37,7 @@ def _extremes(over: OverTime) -> plain.Extremes:
     )
 
 
-def linkage_motion(study: Study, name: str, case: CaseLoads) -> plain.LinkageMotion:
+def linkage_motion(study: Study, name: str, case: CaseLoads) -> LinkageMotion:
     """Return the motion of the linkage in a case, SI."""
     dynamics, over = case.dynamics, case.over
     assert dynamics is not None
@@ -43,7 +50,7 @@ def linkage_motion(study: Study, name: str, case: CaseLoads) -> plain.LinkageMot
     at, v, a = (np.stack([j[k] for j in joints], axis=1) for k in range(3))
     about = ground_joint(linkage)
     force, moment = dynamics.shaking(linkage.joint(about).at)
-    return plain.LinkageMotion(
+    return LinkageMotion(
         case=name,
         time=motion.times if timed else None,
         bodies=tuple(bodies),
@@ -115,7 +122,7 @@ def _aside(motion: Motion, case: CaseLoads) -> tuple[AppliedForce, ...]:
     )
 
 
-def _paths(study: Study, dynamics: Dynamics) -> dict[str, plain.PointPath]:
+def _paths(study: Study, dynamics: Dynamics) -> dict[str, PointPath]:
     mechanism, motion = study.table.mechanism, dynamics.motion
     assert isinstance(mechanism, MechanismTable)
     paths = {}
@@ -124,23 +131,21 @@ def _paths(study: Study, dynamics: Dynamics) -> dict[str, plain.PointPath]:
         position, velocity, _ = motion.point(point.body, at)
         speed = np.linalg.norm(velocity, axis=1)
         curvature = motion.curvature(point.body, at)
-        paths[name] = plain.PointPath(position, velocity, speed, curvature)
+        paths[name] = PointPath(position, velocity, speed, curvature)
     return paths
 
 
-def _ledger(dynamics: Dynamics, over: OverTime | None) -> plain.PowerLedger:
+def _ledger(dynamics: Dynamics, over: OverTime | None) -> PowerLedger:
     powers = ledger(dynamics)
     violation = powers.violation if over is None else over.violation
     terms = powers.drives, powers.gravity, powers.applied, powers.friction, powers.kinetic_rate
-    return plain.PowerLedger(*terms, violation=violation)
+    return PowerLedger(*terms, violation=violation)
 
 
-def _slider_forces(dynamics: Dynamics) -> dict[str, plain.GuideForces]:
+def _slider_forces(dynamics: Dynamics) -> dict[str, GuideForces]:
     sliders = dynamics.sliders
     return {
-        s.name: plain.GuideForces(
-            sliders.normal[:, k], sliders.couple[:, k], sliders.friction[:, k]
-        )
+        s.name: GuideForces(sliders.normal[:, k], sliders.couple[:, k], sliders.friction[:, k])
         for k, s in enumerate(dynamics.motion.linkage.sliders)
     }
 

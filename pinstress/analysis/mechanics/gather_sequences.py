@@ -16,7 +16,8 @@ from pinbase.arrays import Floats
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.sequence import Occurrence, complete, steps
 from pinstress.study.reading.file import Study
-from reports.data import results as plain
+from reports.data.mechanics import DriveEffort, DriveTable, PeakReaction, ReactionTable
+from reports.data.motion import Extremes, LinkageMotion
 from reports.format.numbers import engineering
 
 T = TypeVar("T")
@@ -94,8 +95,8 @@ def sequence_tables(study: Study, parts: dict[str, Any]) -> dict[str, Any]:
 
 
 def _reactions(
-    name: str, tables: Mapping[str, plain.ReactionTable], order: list[Occurrence]
-) -> plain.ReactionTable:
+    name: str, tables: Mapping[str, ReactionTable], order: list[Occurrence]
+) -> ReactionTable:
     used = {step.case: tables[step.case] for step in order}
     names = dict.fromkeys(c for table in used.values() for c in table.connections)
     whole = {case: _with_all(table, list(names), used) for case, table in used.items()}
@@ -121,8 +122,8 @@ def _first(times: Floats | None) -> float:
 
 
 def _with_all(
-    table: plain.ReactionTable, names: list[str], of: Mapping[str, plain.ReactionTable]
-) -> plain.ReactionTable:
+    table: ReactionTable, names: list[str], of: Mapping[str, ReactionTable]
+) -> ReactionTable:
     """Return a table with all connections in one order, without force where the case has none."""
     have = {c: k for k, c in enumerate(table.connections)}
     owner = {c: t for t in of.values() for c in t.connections}
@@ -138,7 +139,7 @@ def _with_all(
         forces=np.where(present[:, None], table.forces[:, at], 0.0),
         moments=np.where(present[:, None], table.moments[:, at], 0.0),
         turn=turn,
-        peaks=tuple(of_name.get(c, plain.PeakReaction(c, 0.0, None)) for c in names),
+        peaks=tuple(of_name.get(c, PeakReaction(c, 0.0, None)) for c in names),
     )
 
 
@@ -149,9 +150,7 @@ def _where(present: Floats, turn: Floats) -> Floats:
     return np.where(present[:, None, None], turn, np.eye(3))
 
 
-def _peak(
-    c: int, tables: Mapping[str, plain.ReactionTable], order: list[Occurrence]
-) -> plain.PeakReaction:
+def _peak(c: int, tables: Mapping[str, ReactionTable], order: list[Occurrence]) -> PeakReaction:
     """Return the peak of connection number c, at its first occurrence."""
     peaks = [(s, tables[s.case].peaks[c]) for s in order]
     step, peak = max(peaks, key=lambda pair: pair[1].force)
@@ -178,8 +177,8 @@ def _steps_in_words(order: list[Occurrence]) -> str:
 
 
 def _motion(
-    name: str, motions: Mapping[str, plain.LinkageMotion], order: list[Occurrence]
-) -> plain.LinkageMotion:
+    name: str, motions: Mapping[str, LinkageMotion], order: list[Occurrence]
+) -> LinkageMotion:
     used = {step.case: motions[step.case] for step in order}
     times = {case: m.time for case, m in used.items()}
     whole = _course(used, times, order)
@@ -198,11 +197,11 @@ def _motion(
         case=name,
         time=_axis(times, order),
         ledger=replace(whole.ledger, violation=violation),
-        extremes=plain.Extremes(angles, worst),
+        extremes=Extremes(angles, worst),
     )
 
 
-def _jumps(motions: Mapping[str, plain.LinkageMotion], order: list[Occurrence]) -> str:
+def _jumps(motions: Mapping[str, LinkageMotion], order: list[Occurrence]) -> str:
     """Return a sentence on the cases that do not begin where those before them end; empty without
     any.
     """
@@ -217,10 +216,10 @@ def _jumps(motions: Mapping[str, plain.LinkageMotion], order: list[Occurrence]) 
 
 def _drive(
     name: str,
-    tables: Mapping[str, plain.DriveTable | None],
+    tables: Mapping[str, DriveTable | None],
     times: Mapping[str, Floats | None],
     order: list[Occurrence],
-) -> plain.DriveTable:
+) -> DriveTable:
     """Return a drive's table over a sequence.
 
     tables: of the drive by case; None where something else holds, so that its force is zero.
@@ -241,35 +240,35 @@ def _drive(
     return replace(joined, case=name, time=axis, work=np.concatenate(work), effort=effort)
 
 
-def _work(study: Study, drives: list[plain.DriveTable]) -> str:
+def _work(study: Study, drives: list[DriveTable]) -> str:
     unit, factor = study.system.unit("energy"), study.system.factor("energy")
     drive_texts = (f"{d.name} {engineering(d.work[-1] / factor)} {unit}" for d in drives)
     return f"Work per cycle: {', '.join(drive_texts)}."
 
 
-def _idle(like: plain.DriveTable, count: int) -> plain.DriveTable:
+def _idle(like: DriveTable, count: int) -> DriveTable:
     unknown, zero = np.full(count, np.nan), np.zeros(count)
-    return plain.DriveTable(
+    return DriveTable(
         *("", None, unknown, unknown, unknown, zero, zero, zero, zero, zero), like.name, like.kind
     )
 
 
-def _effort(table: plain.DriveTable) -> plain.DriveEffort:
+def _effort(table: DriveTable) -> DriveEffort:
     """Return a drive's effort over the case's own time, which begins at zero."""
     if table.effort is not None:
         begin, e = _first(table.time), table.effort
         return replace(e, time=e.time - begin, power_time=e.power_time - begin)
     size, force = table.largest, float(table.force[0])
-    return plain.DriveEffort(size, 0.0, force, size, table.largest_power, 0.0, 0.0)
+    return DriveEffort(size, 0.0, force, size, table.largest_power, 0.0, 0.0)
 
 
-def _over(efforts: list[tuple[Occurrence, plain.DriveEffort]], stroke: float) -> plain.DriveEffort:
+def _over(efforts: list[tuple[Occurrence, DriveEffort]], stroke: float) -> DriveEffort:
     lasts = np.array([step.duration for step, _ in efforts])
     mean, rms = (np.array([getattr(e, key) for _, e in efforts]) for key in ("mean", "rms"))
     step, most = max(efforts, key=lambda pair: pair[1].largest)
     busy, strongest = max(efforts, key=lambda pair: pair[1].power)
     rubs = [e.frictionless for _, e in efforts if e.frictionless is not None]
-    return plain.DriveEffort(
+    return DriveEffort(
         most.largest,
         step.begin + most.time,
         float(lasts @ mean / lasts.sum()),

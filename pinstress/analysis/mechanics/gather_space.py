@@ -15,7 +15,8 @@ from pinstress.study.model.mechanism.space import pin_axes, space_mechanism
 from pinstress.study.model.space_cases import InSpace
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.drives import drive_name
-from reports.data import results as plain
+from reports.data.mechanics import DriveEffort, DriveTable
+from reports.data.motion import BodyMotion
 from reports.data.skeleton import Skeleton
 
 NEGLIGIBLE_RANGE = 1e-3  # of the largest force of the case: a smaller range is not reported
@@ -45,7 +46,7 @@ def drives(
     energies: tuple[Floats, Floats],
     efforts: Sequence[Effort] | None,
     frictionless: Sequence[Effort] | None = None,
-) -> list[plain.DriveTable]:
+) -> list[DriveTable]:
     """Return the table of every drive of a case.
 
     moved: the name of every drive, and whether it slides.
@@ -61,7 +62,7 @@ def drives(
         free = frictionless[k].largest.value if frictionless else None
         position, velocity, acceleration = (values[:, k] for values in course)
         tables.append(
-            plain.DriveTable(
+            DriveTable(
                 case=case,
                 name=name,
                 kind="slider" if slides else "rotary",
@@ -90,7 +91,7 @@ def positions_in_space(study: Study, solved: InSpace) -> Floats:
     return shown_positions(study, solved.dynamics.motion.drives, _names(study))
 
 
-def drives_in_space(study: Study, case: str, solved: InSpace) -> list[plain.DriveTable]:
+def drives_in_space(study: Study, case: str, solved: InSpace) -> list[DriveTable]:
     """Return the table of every drive of a case in space."""
     dynamics = solved.dynamics
     motion, exerted = dynamics.motion, (dynamics.drive, dynamics.power)
@@ -99,7 +100,7 @@ def drives_in_space(study: Study, case: str, solved: InSpace) -> list[plain.Driv
     return drives(case, moved, times, course, exerted, solved.energies, solved.efforts)
 
 
-def bodies_in_space(study: Study, case: str, solved: InSpace) -> list[plain.BodyMotion]:
+def bodies_in_space(study: Study, case: str, solved: InSpace) -> list[BodyMotion]:
     """Return the motion and momenta of every body of the study; none of very long motions."""
     if _body_lines(study, solved) > MAX_BODY_LINES:
         return []
@@ -107,7 +108,7 @@ def bodies_in_space(study: Study, case: str, solved: InSpace) -> list[plain.Body
     bodies = solved.bodies
     each = [*(f.name for f in fields(bodies)), "kinetic_energy"]
     return [
-        plain.BodyMotion(
+        BodyMotion(
             case,
             name,
             solved.dynamics.reactions.times,
@@ -173,9 +174,9 @@ def _range(study: Study, solved: InSpace) -> str:
     )
 
 
-def _drive_effort(effort: Effort, slides: bool, frictionless: float | None) -> plain.DriveEffort:
+def _drive_effort(effort: Effort, slides: bool, frictionless: float | None) -> DriveEffort:
     """Return the effort of a drive over its motion, angles in degrees."""
-    return plain.DriveEffort(
+    return DriveEffort(
         effort.largest.value,
         effort.largest.time,
         effort.mean,

@@ -46,7 +46,8 @@ from reports.data.reliability import (
     Reliability,
     Spread,
 )
-from reports.data.results import PinResult, Results
+from reports.data.results import Results
+from reports.data.row import PinResult
 from reports.format.words import lugs_not_judged
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from pinstress.explore.reliability.designs import Answers
 from pinstress.explore.reliability.sampling import Draws, Estimate, probability, quantile
 from pinstress.study.schema.vary import ReliabilityTable
 from reports.data.reliability import ByErrors, Driver, FirstOrder, Risk, Spread
-from reports.data.results import PinResult
+from reports.data.row import PinResult
 
 Array = NDArray[np.float64]
 

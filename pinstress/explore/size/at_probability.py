@@ -25,8 +25,8 @@ from pinstress.explore.reliability.form import (
     form_quantile,
 )
 from pinstress.explore.size.least_weight import LightStudy, lighten
-from pinstress.explore.size.lightest_pin import WeightGoal
 from pinstress.explore.size.pin_shape import kind_of
+from pinstress.explore.size.weight_search import WeightGoal
 from pinstress.explore.sweep.batches import shapes
 from pinstress.explore.sweep.evaluate import Evaluator
 from pinstress.study.reading.file import Study

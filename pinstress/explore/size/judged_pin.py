@@ -8,7 +8,8 @@ from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, SAFE
 from reports.data.decision import beneath_factor, low_factor
 from reports.data.dependence import BENEATH_CONTACT
 from reports.data.headline import JudgedCheck, worst_checks
-from reports.data.results import PinResult, Results
+from reports.data.results import Results
+from reports.data.row import PinResult
 from reports.format.numbers import DASH, engineering
 from reports.format.ranges import factor_range
 from reports.format.words import over_words

@@ -13,18 +13,12 @@ from pinbase.processes.pool import Job, ProcessDied, Progress, in_parallel, prel
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE
 from pinstress.analysis.results import solve
-from pinstress.explore.size.lightest_pin import (
-    STRESS_MARGIN,
-    Lightest,
-    Start,
-    WeightGoal,
-    as_it_is,
-    lightest_pin,
-)
+from pinstress.explore.size.lightest_pin import Lightest, Start, as_it_is, lightest_pin
 from pinstress.explore.size.other_dimensions import written_study
 from pinstress.explore.size.pin_shape import VariedShape
 from pinstress.explore.size.scaled_study import resized_study
 from pinstress.explore.size.size_pins import changes_of_load
+from pinstress.explore.size.weight_search import STRESS_MARGIN, WeightGoal
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import Study

@@ -127,10 +127,18 @@ def _write(
     last: Any = path[-1]
     old: Any = value_of(here[last])
     unit, one = unit_of(old, "length", system)
-    metre, kind = system.factor("length"), kind_of(key)
-    steps = None
-    if step is not None and kind == "diameters":
-        steps = (step / 2.0 if key.startswith("meridian") else step) / metre
-    number = rounded(value / metre, steps, ROUNDING_DIRECTIONS[kind]) * metre / one
+    metre = system.factor("length")
+    steps, up = rounding_step(key, step, metre), ROUNDING_DIRECTIONS[kind_of(key)]
+    number = rounded(value / metre, steps, up) * metre / one
     if not math.isclose(number * one, to_si(old, "length", system), rel_tol=1e-12):
         replace_number(here, last, float(f"{number:.12g}"), unit)
+
+
+def rounding_step(key: str, step: float | None, metre: float) -> float | None:
+    """Return the step, in the study's unit, to which a dimension is rounded; None for no step.
+
+    step: to which diameters are rounded, m. metre: a metre in the study's unit.
+    """
+    if step is None or kind_of(key) != "diameters":
+        return None
+    return (step / 2.0 if key.startswith("meridian") else step) / metre

@@ -174,16 +174,12 @@ def value_of(node: Any) -> Any:
 
 def _reweigh(document: Any, old: Study, new: Study, name: str) -> None:
     """Change the stated weight of a floating pin by the change of its shape's weight."""
-    mechanism, density = new.table.mechanism, _density(new, name)
+    mechanism, density = new.table.mechanism, new.material_of(name).density
     joint = None if mechanism is None else mechanism.joint.get(name)
     if not density or joint is None or joint.fixed_in or joint.weight is None:
         return
     more = weight(pin(new, name), density) - weight(pin(old, name), density)
     _write(document["mechanism"]["joint"][name], "weight", joint.weight + more, "force", new.system)
-
-
-def _density(study: Study, name: str) -> float | None:
-    return study.table.material[study.table.pin[name].material].density
 
 
 def _widen_eyes(document: Any, old: Study, new: Study, name: str) -> None:

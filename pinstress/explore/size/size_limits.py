@@ -106,7 +106,7 @@ def _instead(sized: SizedStudy, limit: SizeLimit, trial: PinTrial, worst: Maximu
     """
     study, required = sized.plan.study, sized.required
     more = required / trial.factor
-    strength = study.table.material[study.table.pin[sized.pin].material].yield_strength or 0.0
+    strength = study.material_of(sized.pin).yield_strength or 0.0
     stress = study.system.factor("stress")
     yield (
         f"a yield strength of {engineering(strength * more / stress)} {study.system.stress}, "

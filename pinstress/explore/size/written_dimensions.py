@@ -8,6 +8,7 @@ import numpy as np
 
 from pinbase.arrays import Floats
 from pinstress.explore.size.optimise import Optimum
+from pinstress.explore.size.other_dimensions import ROUNDING_DIRECTIONS, rounding_step
 from pinstress.explore.size.pin_shape import MAX_DIMENSION_RATIO, VariedShape, kind_of
 from pinstress.explore.size.scaled_study import rounded
 
@@ -22,15 +23,12 @@ def rounded_values(shape: VariedShape, values: Floats, step: float | None, metre
     violated by that.
     metre: a metre in the study's unit.
     """
-    up = {"diameters": 1, "bores": -1, "fillets": -1}
     out, steps = [], np.zeros(len(values))
     for k, (dimension, value) in enumerate(zip(shape.dimensions, values, strict=True)):
-        kind = kind_of(dimension.key)
-        increment = None
-        if step is not None and kind == "diameters":
-            increment = (step / 2.0 if dimension.key.startswith("meridian") else step) / metre
-            steps[k] = increment * metre
-        out.append(rounded(float(value) / metre, increment, up[kind]) * metre)
+        increment = rounding_step(dimension.key, step, metre)
+        steps[k] = (increment or 0.0) * metre
+        up = ROUNDING_DIRECTIONS[kind_of(dimension.key)]
+        out.append(rounded(float(value) / metre, increment, up) * metre)
     result = np.array(out)
     for _ in range(MAX_ROUNDING_STEPS if step is not None else 0):
         limits, slopes = shape.at_limits(result)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pinbase.dimensions import Floats
 from pinstress.explore.sweep.table import METADATA_KEY, RESULT_COLUMNS
-from reports.data.results import Floats
 from reports.tables.column import in_order
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 ROW_COLUMNS = ("pin", "case", *(c.key for c in RESULT_COLUMNS if not c.numeric))  # texts
 # In the order of the page
-COLUMN_TITLES = {c.key: c.heading for c in in_order(RESULT_COLUMNS, ("mass",)) if c.numeric}
+COLUMN_TITLES = {c.key: c.heading for c in in_order(RESULT_COLUMNS, "mass") if c.numeric}
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ from pinstress.study.model.requirements import required_factor
 from pinstress.study.model.tasks import Task, tasks
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, raw_study, with_raw, with_value
-from reports.data.results import PinResult
+from reports.data.row import PinResult
 
 MAX_MESHES_SIZE = 2 * 10**8  # bytes of meshes and fields in each of perhaps many processes
 MAX_SUPERPOSED = 256  # designs at once: with 5,000 points 10 MB for each array of bounds

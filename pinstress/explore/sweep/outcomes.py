@@ -18,7 +18,7 @@ from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.tasks import Task
 from pinstress.study.schema.units import UnitSystem
 from reports.data.dependence import depends_on
-from reports.data.results import PinResult, Units
+from reports.data.row import PinResult, Units
 from reports.format.words import depends_words
 
 AS_DESCRIBED = "as described"

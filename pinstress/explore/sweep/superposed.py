@@ -17,7 +17,7 @@ from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.requirements import required_factors
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
-from reports.data.results import PinResult
+from reports.data.row import PinResult
 
 Rows = tuple[PinResult, ...]
 

@@ -56,7 +56,7 @@ def sizing_factor(study: Study, pin: str, case: str) -> float | None:
     """Return the factor against yield with which a pin meets its requirements on stress in a case,
     on yield and rupture; None without any.
     """
-    material = study.table.material[study.table.pin[pin].material]
+    material = study.material_of(pin)
     factors = [required_factor(study, pin, case)]
     rupture = stated_factor(study, pin, case, "rupture", "ultimate")
     if rupture and material.yield_strength and material.ultimate_strength:

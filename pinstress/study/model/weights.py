@@ -42,7 +42,7 @@ def _idle(name: str, fixed_in: str | None) -> str:
 def _differs(study: Study, name: str, stated: float, gravity: float) -> str:
     if name not in study.table.pin:
         return ""
-    density = study.table.material[study.table.pin[name].material].density
+    density = study.material_of(name).density
     if not density:
         return ""
     try:

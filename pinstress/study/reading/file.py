@@ -22,6 +22,7 @@ from pinstress.study.reading.limits import control_characters, texts
 from pinstress.study.reading.materials import StoredMaterial, looked_up, with_materials
 from pinstress.study.reading.plausible import questions
 from pinstress.study.reading.toml_text import read_toml
+from pinstress.study.schema.materials import MaterialTable
 from pinstress.study.schema.shown import MAX_LISTED_NAMES, as_text, cut, in_toml
 from pinstress.study.schema.tables import StudyTable
 from pinstress.study.schema.types import PROVENANCE_KINDS
@@ -148,6 +149,10 @@ class Study:
     def clamps(self, pin: str, case: str) -> tuple[str, ...]:
         """Return the clamped surfaces of a pin in a case, as named in the study."""
         return tuple(self.table.case[case].clamp.get(pin, self.table.pin[pin].clamp))
+
+    def material_of(self, pin: str) -> MaterialTable:
+        """Return the table of the material of a pin."""
+        return self.table.material[self.table.pin[pin].material]
 
     def connections(self, pin: str) -> tuple[str, ...]:
         """Return the connections that bear on a pin."""

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from functools import partial
 
 from pinstress.study.reading.errors import Wrong
-from pinstress.study.reading.names import known_name, two_bodies
+from pinstress.study.reading.names import known_name, known_names, two_bodies
 from pinstress.study.reading.space_references import cases_in_space
 from pinstress.study.schema.cases import ApplyTable, GivenCase, MotionCase
-from pinstress.study.schema.drives import RotaryDrive, SliderDrive, drive_name
+from pinstress.study.schema.drives import SliderDrive, drive_name
 from pinstress.study.schema.landing import AtWheel, DropCase, GroundCase
 from pinstress.study.schema.mechanism import MechanismTable
 from pinstress.study.schema.shown import as_text, near
@@ -28,78 +28,37 @@ def of_pins(table: StudyTable, mechanism: AnyMechanism, bears: dict[str, str]) -
             yield Wrong(text, hint, code="unknown-connection", name=connection)
 
 
-def _named_joints(mechanism: MechanismTable) -> Iterator[tuple[str, str]]:
-    """Yield every key below [mechanism] that names a joint, with the name."""
-    for name, slider in mechanism.slider.items():
-        for joint in slider.joints:
-            if isinstance(joint, str):
-                yield f"slider.{name}.joints", joint
-    for name, body in mechanism.body.items():
-        for joint in body.bar.joints if body.bar is not None else ():
-            yield f"body.{name}.bar.joints", joint
-    for i, drive in enumerate(mechanism.drive, 1):
-        for joint in () if isinstance(drive, SliderDrive) else _lines(drive):
-            yield f"drive[{i}].line" if len(mechanism.drive) > 1 else "drive.line", joint
-    for name, point in mechanism.point.items():
-        if isinstance(point.at, str):
-            yield f"point.{name}.at", point.at
-    for name, spring in mechanism.spring.items():
-        for end in spring.joints or ():
-            if isinstance(end, str):
-                yield f"spring.{name}.joints", end
-    for name, gear in mechanism.gear.items():
-        for joint in gear.joints:
-            yield f"gear.{name}.joints", joint
-    for name, rack in mechanism.rack.items():
-        yield f"rack.{name}.joint", rack.joint
-
-
-def _lines(drive: RotaryDrive) -> tuple[str, ...]:
-    return (drive.line or ()) + (drive.against_line or ())
+# Keys below [mechanism] in a plane that name its parts
+BODY_PATHS = "joint.fixed_in joint.connections body.welded_to drive.body drive.against rack.pinion"
+JOINT_PATHS = (
+    "slider.joints body.bar.joints drive.line drive.against_line point.at spring.joints "
+    "gear.joints rack.joint"
+)
+SLIDER_PATHS = "drive.slider spring.slider rack.slider"
+# Keys elsewhere that name its joints, and its drives or sliders
+LOADED_JOINT_PATHS = (
+    "case.apply.at case.apply.force_law.length_between case.apply.couple_law.length_between "
+    "motion_check.joint motion_check.pivot"
+)
+POSITION_PATHS = "case.apply.force_law.position_of case.apply.couple_law.position_of"
 
 
 def of_plane(mechanism: MechanismTable) -> Iterator[Wrong]:
     """Yield the references of a mechanism in a plane to things that do not exist."""
     bodies = dict.fromkeys(["ground", *mechanism.body])
     for name, joint in mechanism.joint.items():
-        where = f"mechanism.joint.{name}"
         for origin in joint.origins:
-            yield from known_name(f"{where}.at", "joint", origin, mechanism.joint)
-        if joint.fixed_in is not None:
-            yield from known_name(f"{where}.fixed_in", "body", joint.fixed_in, bodies)
-        for connection, body in joint.connections.items():
-            yield from known_name(f"{where}.connections.{connection}", "body", body, bodies)
-    for name, part in mechanism.body.items():
-        where = f"mechanism.body.{name}.welded_to"
-        yield from known_name(where, "body", part.welded_to or "ground", bodies)
+            yield from known_name(f"mechanism.joint.{name}.at", "joint", origin, mechanism.joint)
     for name in mechanism.link_stiffness:
         yield from known_name(f"mechanism.link_stiffness.{name}", "body", name, mechanism.body)
-    for place, named in _named_joints(mechanism):
-        yield from known_name(f"mechanism.{place}", "joint", named, mechanism.joint)
-    for i, drive in enumerate(mechanism.drive, 1):
-        where = "mechanism.drive" + (f"[{i}]" if len(mechanism.drive) > 1 else "")
-        if isinstance(drive, SliderDrive):
-            yield from known_name(f"{where}.slider", "slider", drive.slider, mechanism.slider)
-            continue
-        yield from known_name(f"{where}.body", "body", drive.body, bodies)
-        yield from known_name(f"{where}.against", "body", drive.against, bodies)
-    for name, spring in mechanism.spring.items():
-        where = f"mechanism.spring.{name}"
-        if spring.slider is not None:
-            yield from known_name(f"{where}.slider", "slider", spring.slider, mechanism.slider)
-        yield from two_bodies(where, spring.bodies, bodies)
-    for name, point in mechanism.point.items():
-        yield from known_name(f"mechanism.point.{name}.body", "body", point.body, mechanism.body)
-    for name, stop in mechanism.stop.items():
-        yield from two_bodies(f"mechanism.stop.{name}", stop.bodies, bodies)
-    for name, gear in mechanism.gear.items():
-        yield from two_bodies(f"mechanism.gear.{name}", gear.bodies, bodies)
-    for name, rack in mechanism.rack.items():
-        where = f"mechanism.rack.{name}"
-        yield from known_name(f"{where}.pinion", "body", rack.pinion, bodies)
-        yield from known_name(f"{where}.slider", "slider", rack.slider, mechanism.slider)
-    for name, torsion in mechanism.torsion_spring.items():
-        yield from two_bodies(f"mechanism.torsion_spring.{name}", torsion.bodies, bodies)
+    known = partial(known_names, mechanism, "mechanism")
+    yield from known(BODY_PATHS, "body", bodies)
+    yield from known("point.body", "body", mechanism.body)
+    yield from known(JOINT_PATHS, "joint", mechanism.joint)
+    yield from known(SLIDER_PATHS, "slider", mechanism.slider)
+    for part in ("spring", "stop", "gear", "torsion_spring"):
+        for name, table in getattr(mechanism, part).items():
+            yield from two_bodies(f"mechanism.{part}.{name}", table.bodies, bodies)
 
 
 def of_its_cases(table: StudyTable, mechanism: AnyMechanism) -> Iterator[Wrong]:
@@ -113,10 +72,13 @@ def of_its_cases(table: StudyTable, mechanism: AnyMechanism) -> Iterator[Wrong]:
         positions = dict.fromkeys([*mechanism.slider, *drives])
     else:
         yield from cases_in_space(table)
+    known = partial(known_names, table, "")
+    yield from known("case.hold", "drive, slider or stop", holders)
+    yield from known("case.apply.body", "body", mechanism.body)
+    yield from known(LOADED_JOINT_PATHS, "joint", mechanism.joint)
+    what = "drive or slider" if mechanism.dimension == 2 else "drive"
+    yield from known(POSITION_PATHS, what, positions)
     for name, case in table.case.items():
-        for hold_name in getattr(case, "hold", None) or ():
-            what = "drive, slider or stop"
-            yield from known_name(f"case.{name}.hold", what, hold_name, holders)
         if isinstance(case, MotionCase) and not moves:
             yield Wrong(
                 f"case.{name}: a motion needs start, end and duration in [mechanism.drive]",
@@ -124,12 +86,8 @@ def of_its_cases(table: StudyTable, mechanism: AnyMechanism) -> Iterator[Wrong]:
             )
         for i, load in enumerate(getattr(case, "apply", ()), 1):
             where = f"case.{name}.apply[{i}]"
-            yield from known_name(f"{where}.body", "body", load.body, mechanism.body)
-            if isinstance(load.at, str):
-                yield from known_name(f"{where}.at", "joint", load.at, mechanism.joint)
             yield from _of_height(where, load, mechanism)
             yield from _of_dimension(where, load, mechanism.dimension)
-            yield from _of_laws(where, load, mechanism, positions)
             yield from _of_time(where, load, isinstance(case, MotionCase))
         if mechanism.dimension == 2 and getattr(case, "ground_motion", None) is not None:
             text = (
@@ -138,10 +96,6 @@ def of_its_cases(table: StudyTable, mechanism: AnyMechanism) -> Iterator[Wrong]:
             yield Wrong(text, code="wrong-dimension")
         if isinstance(case, AtWheel) and isinstance(mechanism, MechanismTable):
             yield from _of_wheel(f"case.{name}", case, table, mechanism)
-    if (check := table.motion_check) is not None:
-        for field in ("joint", "pivot"):
-            where = f"motion_check.{field}"
-            yield from known_name(where, "joint", getattr(check, field), mechanism.joint)
 
 
 def _of_dimension(where: str, load: ApplyTable, dimension: int) -> Iterator[Wrong]:
@@ -169,22 +123,6 @@ def _of_dimension(where: str, load: ApplyTable, dimension: int) -> Iterator[Wron
     if load.couple_law is not None and load.couple_axis is None:
         text = f"{where}.couple_law: in space give couple_axis = [x, y, z], its axis"
         yield Wrong(text, code="missing-key")
-
-
-def _of_laws(
-    where: str, load: ApplyTable, mechanism: AnyMechanism, positions: Collection[str]
-) -> Iterator[Wrong]:
-    """Yield errors for arguments of the tables of a load."""
-    for key in ("force_law", "couple_law"):
-        law = getattr(load, key)
-        if law is None:
-            continue
-        here = f"{where}.{key}"
-        if law.position_of is not None:
-            what = "drive or slider" if mechanism.dimension == 2 else "drive"
-            yield from known_name(f"{here}.position_of", what, law.position_of, positions)
-        for joint in law.length_between or ():
-            yield from known_name(f"{here}.length_between", "joint", joint, mechanism.joint)
 
 
 def _of_time(where: str, load: ApplyTable, moves: bool) -> Iterator[Wrong]:

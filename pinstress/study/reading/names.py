@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from functools import partial
 
+from pydantic import BaseModel
+
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.materials import library
 from pinstress.study.schema.shown import as_text, near
@@ -18,6 +20,36 @@ def known_name(where: str, what: str, name: str, names: Collection[str]) -> Iter
         code = f"unknown-{what.split()[-1]}"
         hint = partial(near, name, names)
         yield Wrong(f"{where}: no {what} {as_text(name)}; ", hint, code=code, name=name)
+
+
+def known_names(
+    table: BaseModel, key: str, paths: str, what: str, names: Collection[str]
+) -> Iterator[Wrong]:
+    """Yield an error for each name below a table that does not exist.
+
+    key: of the table. paths: of keys below it, joined by dots; the names of a table of tables and
+    the numbers of a list are passed over. what, names: as of `known_name`.
+    """
+    for path in paths.split():
+        for where, name in _named(table, path, key):
+            yield from known_name(where, what, name, names)
+
+
+def _named(node: object, path: str, key: str) -> Iterator[tuple[str, str]]:
+    """Yield the names at a path below a node, each with its key; points [x, y] are none."""
+    if isinstance(node, str):
+        yield key, node
+    elif isinstance(node, BaseModel):
+        first, _, rest = path.partition(".")
+        yield from _named(getattr(node, first, None), rest, f"{key}.{first}".lstrip("."))
+    elif isinstance(node, dict):
+        for name, inner in node.items():
+            yield from _named(inner, path, f"{key}.{name}")
+    elif isinstance(node, list | tuple):
+        for i, inner in enumerate(node, 1):
+            # An only drive may be written without a list, and only tables have numbers.
+            plain = not isinstance(inner, BaseModel) or (key.endswith(".drive") and not node[1:])
+            yield from _named(inner, path, key if plain else f"{key}[{i}]")
 
 
 def two_bodies(

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from functools import partial
 
 from assess.fatigue.flight import flight
 from assess.requirement import LEVELS_OF_CHECK
 from pinbase.errors import ArgumentError
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.mechanism_references import of_its_cases, of_pins, of_plane
-from pinstress.study.reading.names import known_name
+from pinstress.study.reading.names import known_name, known_names
 from pinstress.study.reading.space_references import of_space
 from pinstress.study.schema.cases import (
     GivenCase,
@@ -29,15 +30,19 @@ from pinstress.study.schema.require import level_of
 from pinstress.study.schema.shown import as_text, in_toml
 from pinstress.study.schema.tables import StudyTable
 
+MATERIAL_PATHS = "lug_defaults.material lug_defaults.bushing.material pin.material"
+CASE_PATHS = "beam_check.case motion_check.case require.cases sequence.steps.case"
+
 
 def cross_references(table: StudyTable) -> Iterator[Wrong]:
     """Yield the references to things that do not exist."""
     bears: dict[str, str] = {}
     common = _materials(table.lug_defaults or LugTable())
-    for at, made_of in common.items():
-        yield from known_name(f"lug_defaults.{at}", "material", made_of, table.material)
+    known = partial(known_names, table, "")
+    yield from known(MATERIAL_PATHS, "material", table.material)
+    yield from known("beam_check.pin require.pins", "pin", table.pin)
+    yield from known(CASE_PATHS, "case", table.case)
     for name, pin in table.pin.items():
-        yield from known_name(f"pin.{name}.material", "material", pin.material, table.material)
         surfaces = dict.fromkeys(connection for _, connection in pin.connections)
         surfaces |= dict.fromkeys(s.name for s in pin.profile or () if s.name)
         surfaces |= dict.fromkeys(pin.band)
@@ -60,9 +65,8 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
             own = [connection for _, connection in pin.connections]
             yield from known_name(f"pin.{name}.balance", "connection of the pin", pin.balance, own)
     yield from _of_bearing(table)
-    limited = table.analysis.limit_load
-    for pin_name in limited if isinstance(limited, list) else ():
-        yield from known_name("analysis.limit_load", "pin", pin_name, table.pin)
+    if isinstance(table.analysis.limit_load, list):
+        yield from known("analysis.limit_load", "pin", table.pin)
     yield from _of_cases(table, bears)
     yield from _of_requirements(table)
     yield from _of_sequences(table)
@@ -75,13 +79,6 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
         yield from of_its_cases(table, table.mechanism)
     if table.fatigue is not None:
         yield from _of_fatigue(table, table.fatigue)
-    for key, check, pools in (
-        ("beam_check", table.beam_check, (("pin", table.pin), ("case", table.case))),
-        ("motion_check", table.motion_check, (("case", table.case),)),
-    ):
-        for field, pool in pools:
-            if check is not None:
-                yield from known_name(f"{key}.{field}", field, getattr(check, field), pool)
 
 
 def _materials(lug: LugTable) -> dict[str, str]:
@@ -161,7 +158,6 @@ def _of_sequences(table: StudyTable) -> Iterator[Wrong]:
             yield Wrong(text, code="duplicate-case")
         for i, step in enumerate(sequence.steps, 1):
             where = f"sequence.{name}.steps[{i}]"
-            yield from known_name(f"{where}.case", "case", step.case, table.case)
             case = table.case.get(step.case)
             if isinstance(case, InstantCase):
                 text = f"{where}.case: an instant of a motion does not last; name the motion"
@@ -175,18 +171,12 @@ def _of_sequences(table: StudyTable) -> Iterator[Wrong]:
 
 
 def _of_requirements(table: StudyTable) -> Iterator[Wrong]:
-    """Yield errors unless pins and cases exist, the level fits the check, and there is one factor
-    for each pin, case, check and level.
+    """Yield errors unless the level fits the check, and there is one factor for each pin, case,
+    check and level.
     """
     known: dict[tuple[str, str, str, str], int] = {}
     for i, require in enumerate(table.require, 1):
         where, level = f"require[{i}]", level_of(require)
-        for what, names, pool in (
-            ("pin", require.pins, table.pin),
-            ("case", require.cases, table.case),
-        ):
-            for name in names or ():
-                yield from known_name(f"{where}.{what}s", what, name, pool)
         if level not in LEVELS_OF_CHECK[require.check]:
             fitting = " or ".join(map(in_toml, LEVELS_OF_CHECK[require.check]))
             text = f"{where}.level: {require.check} is not required at {level} load; use {fitting}"

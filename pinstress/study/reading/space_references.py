@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 
 from pinstress.study.reading.errors import Wrong
-from pinstress.study.reading.names import known_name, two_bodies
+from pinstress.study.reading.names import known_name, known_names, two_bodies
 from pinstress.study.schema.cases import StaticCase
 from pinstress.study.schema.landing import AtWheel
 from pinstress.study.schema.shown import as_text, listed
@@ -26,11 +27,8 @@ def of_space(mechanism: SpaceMechanismTable) -> Iterator[Wrong]:
     names: dict[str, str] = {}
     for name, joint in mechanism.joint.items():
         where = f"mechanism.joint.{name}"
-        if joint.fixed_in is not None:
-            yield from known_name(f"{where}.fixed_in", "body", joint.fixed_in, bodies)
         for connection, body in joint.connections.items():
             key = f"{where}.connections.{connection}"
-            yield from known_name(key, "body", body, bodies)
             if body == joint.fixed_in:
                 text = f"{key}: {as_text(body)} carries the pin; name the body that moves on it"
                 yield Wrong(text, code="fixed-and-turning")
@@ -38,11 +36,10 @@ def of_space(mechanism: SpaceMechanismTable) -> Iterator[Wrong]:
                 text = f"{key}: joint {names[connection]} has this connection too; rename one"
                 yield Wrong(text, code="duplicate-name")
             names[connection] = name
-    for name, part in mechanism.body.items():
-        where = f"mechanism.body.{name}"
-        yield from known_name(f"{where}.welded_to", "body", part.welded_to or "ground", bodies)
-        for end in part.bar.joints if part.bar is not None else ():
-            yield from known_name(f"{where}.bar.joints", "joint", end, mechanism.joint)
+    known = partial(known_names, mechanism, "mechanism")
+    yield from known("joint.fixed_in joint.connections body.welded_to", "body", bodies)
+    yield from known("body.bar.joints drive.between spring.joints", "joint", mechanism.joint)
+    yield from known("sharing.connections", "connection", names)
     for i, drive in enumerate(mechanism.drive, 1):
         where = "mechanism.drive" + (f"[{i}]" if len(mechanism.drive) > 1 else "")
         match drive:
@@ -52,28 +49,14 @@ def of_space(mechanism: SpaceMechanismTable) -> Iterator[Wrong]:
                 yield from _moved(f"{where}.slide", mechanism, drive.slide, drive.connection, True)
             case LengthDrive():
                 yield from two_bodies(where, drive.bodies, bodies)
-                yield from _points(f"{where}.between", drive.between, mechanism)
     for name, spring in mechanism.spring.items():
         where = f"mechanism.spring.{name}"
         yield from two_bodies(where, spring.bodies, bodies)
-        yield from _points(f"{where}.joints", spring.joints or (), mechanism)
         if spring.slide is not None:
             yield from _moved(f"{where}.slide", mechanism, spring.slide, None, True)
     for name, torsion in mechanism.torsion_spring.items():
         where = f"mechanism.torsion_spring.{name}.joint"
         yield from _moved(where, mechanism, torsion.joint, torsion.connection, False)
-    for i, rule in enumerate(mechanism.sharing, 1):
-        for connection in rule.connections:
-            where = f"mechanism.sharing[{i}].connections"
-            yield from known_name(where, "connection", connection, names)
-
-
-def _points(
-    where: str, ends: tuple[object, ...], mechanism: SpaceMechanismTable
-) -> Iterator[Wrong]:
-    for end in ends:
-        if isinstance(end, str):
-            yield from known_name(where, "joint", end, mechanism.joint)
 
 
 def _moved(

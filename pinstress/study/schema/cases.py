@@ -27,6 +27,8 @@ from pinstress.study.schema.types import (
     Velocity,
     Weight,
     Whole,
+    exactly_one,
+    not_zero,
 )
 
 KEYS_OF_ANY_TABLE = "table_case", "table_units"
@@ -153,13 +155,8 @@ class ImpulseTable(StrictTable):
     range: ImpulseRange | None = None
     """Range of values; for one impulse per case."""
 
-    @model_validator(mode="after")
-    def _one_mass(self) -> "ImpulseTable":
-        if (self.mass is None) == (self.weight is None):
-            raise ArgumentError("give either mass or weight (with gravity)", "give-one")
-        if not any(self.direction):
-            raise ArgumentError("direction must not be zero", "no-direction")
-        return self
+    _one_mass = exactly_one("either mass or weight (with gravity)", "mass", "weight")
+    _directed = not_zero("direction")
 
 
 Couple = Annotated[
@@ -260,11 +257,7 @@ class GroundMotionTable(StrictTable):
     """Whether the velocity turns with the ground, as that of wheels that do not slip, or is of
     constant direction at every instant, a skid."""
 
-    @model_validator(mode="after")
-    def _about_a_direction(self) -> "GroundMotionTable":
-        if not any(self.axis):
-            raise ArgumentError("axis must not be zero", "no-direction")
-        return self
+    _about_a_direction = not_zero("axis")
 
 
 class MechanismCase(CaseTable):

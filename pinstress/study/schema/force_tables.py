@@ -24,6 +24,7 @@ from pinstress.study.schema.types import (
     Time,
     Whole,
     complete_schema,
+    exactly_one,
     unknown_key,
 )
 from pinstress.study.schema.units import UNIT_SYSTEMS, to_si
@@ -175,11 +176,7 @@ class TimeColumn(StrictTable):
     offset: Time = 0.0
     """Added to all times."""
 
-    @model_validator(mode="after")
-    def _one_source(self) -> "TimeColumn":
-        if (self.column is None) == (self.step is None):
-            raise ArgumentError('give either column = "t" or step = "1 ms"', "give-one")
-        return self
+    _one_source = exactly_one('either column = "t" or step = "1 ms"', "column", "step")
 
 
 def _with_connections(schema: dict[str, Any], table: type[StrictTable]) -> None:

@@ -1,6 +1,6 @@
 """The study file's form: forces by a table, springs and dampers."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -17,19 +17,9 @@ from pinstress.study.schema.types import (
     StrictTable,
     TorsionalDamping,
     TorsionalStiffness,
+    both_or_none,
+    exactly_one,
 )
-
-
-def require_one(what: str, *given: Any) -> None:
-    """Raise ArgumentError unless exactly one is given."""
-    if sum(x is not None for x in given) != 1:
-        raise ArgumentError(f"give {what}", "give-one")
-
-
-def require_both(what: str, one: Any, other: Any) -> None:
-    """Raise ArgumentError unless both are given or neither."""
-    if (one is None) != (other is None):
-        raise ArgumentError(f"{what} must be given together", "give-both")
 
 
 class CurveTable(StrictTable):
@@ -48,10 +38,9 @@ class CurveTable(StrictTable):
     """Outside the rows: "error", "hold" (the value of the last row) or "repeat" (the table
     again)."""
 
-    @model_validator(mode="after")
-    def _one_source(self) -> "CurveTable":
-        require_one('either table = "file.csv" or points = [[x, y], ...]', self.table, self.points)
-        return self
+    _one_source = exactly_one(
+        'either table = "file.csv" or points = [[x, y], ...]', "table", "points"
+    )
 
 
 class ForceLawTable(CurveTable):
@@ -99,11 +88,8 @@ class LineSpringTable(LineLawTable):
     joints: tuple[JointOrPoint, JointOrPoint] | None = None
     """A point of each, a joint or [x, y]; pins are not loaded at these joints."""
 
-    @model_validator(mode="after")
-    def _between(self) -> "LineSpringTable":
-        require_one("either slider, or bodies and joints", self.slider, self.bodies)
-        require_both("bodies and joints", self.bodies, self.joints)
-        return self
+    _between = exactly_one("either slider, or bodies and joints", "slider", "bodies")
+    _ends = both_or_none("bodies", "joints")
 
 
 class TorsionLawTable(StrictTable):

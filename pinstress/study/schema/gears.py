@@ -6,8 +6,17 @@ from typing import Annotated
 from pydantic import AfterValidator, Field, model_validator
 
 from pinbase.errors import ArgumentError
-from pinstress.study.schema.forces import require_both, require_one
-from pinstress.study.schema.types import Angle, PositiveLength, Side, StrictTable, Switch, Whole
+from pinstress.study.schema.types import (
+    Angle,
+    PositiveLength,
+    Side,
+    StrictTable,
+    Switch,
+    Whole,
+    both_or_none,
+    exactly_one,
+    require_one,
+)
 
 Count = Annotated[Whole, Field(ge=1, le=100_000)]  # of teeth
 STANDARD_PRESSURE_ANGLE = math.radians(20.0)
@@ -76,8 +85,5 @@ class RackTable(StrictTable):
     pressure_angle: PressureAngle = STANDARD_PRESSURE_ANGLE
     """Pressure angle."""
 
-    @model_validator(mode="after")
-    def _one_size(self) -> "RackTable":
-        require_one("either radius, or teeth and module", self.radius, self.teeth)
-        require_both("teeth and module", self.teeth, self.module)
-        return self
+    _one_size = exactly_one("either radius, or teeth and module", "radius", "teeth")
+    _whole_size = both_or_none("teeth", "module")

@@ -24,6 +24,7 @@ from pinstress.study.schema.types import (
     Velocity,
     Weight,
     Whole,
+    exactly_one,
     one_or_several,
 )
 
@@ -90,11 +91,7 @@ class StrutTable(StrictTable):
     friction: Weight = 0.0
     """Friction of bearings and seals, a constant force."""
 
-    @model_validator(mode="after")
-    def _one_spring(self) -> "StrutTable":
-        if (self.gas is None) == (self.spring is None):
-            raise ArgumentError("give either gas or spring", "give-one")
-        return self
+    _one_spring = exactly_one("either gas or spring", "gas", "spring")
 
 
 class TyreTable(StrictTable):
@@ -196,10 +193,10 @@ class DropCase(AtWheel):
     impulse_time: Duration = 0.15
     """Time of the impulse estimate with which the drop is compared."""
 
+    _one_mass = exactly_one("either mass or weight", "mass", "weight")
+
     @model_validator(mode="after")
     def _complete_drop(self) -> "DropCase":
-        if (self.mass is None) == (self.weight is None):
-            raise ArgumentError("give either mass or weight", "give-one")
         if self.rule is None and self.velocity is None:
             raise ArgumentError("give velocity, or a rule that prescribes it", "no-velocity")
         return self

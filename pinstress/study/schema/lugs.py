@@ -3,9 +3,8 @@
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
-from pinbase.errors import ArgumentError
 from pinstress.study.schema.types import (
     Angle,
     Length,
@@ -15,6 +14,7 @@ from pinstress.study.schema.types import (
     PositiveLength,
     StrictTable,
     Tilt,
+    at_most_one,
 )
 
 
@@ -51,11 +51,7 @@ class ShankTable(StrictTable):
     toward: Name | None = None
     """Name of the joint towards which the shank points. Not with `angle`."""
 
-    @model_validator(mode="after")
-    def _one_direction(self) -> "ShankTable":
-        if self.angle is not None and self.toward is not None:
-            raise ArgumentError("give angle or toward, not both", "give-one")
-        return self
+    _one_direction = at_most_one("angle", "toward")
 
 
 Friction = Annotated[Number, Field(ge=0.0, le=1.0)]
@@ -130,11 +126,7 @@ class LugTable(StrictTable):
     range: LugRangeTable = LugRangeTable()
     """What is not known of the lug, for the range of the maximum over the joint (`joint.range`)."""
 
-    @model_validator(mode="after")
-    def _one_clearance(self) -> "LugTable":
-        if self.fit is not None and self.clearance is not None:
-            raise ArgumentError("give fit or clearance, not both", "give-one")
-        return self
+    _one_clearance = at_most_one("fit", "clearance")
 
 
 def with_lug_defaults(raw: dict[str, Any]) -> dict[str, Any]:

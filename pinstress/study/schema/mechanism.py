@@ -9,8 +9,6 @@ from pinstress.study.schema.drives import RotaryDrive, SliderDrive
 from pinstress.study.schema.forces import (
     LineSpringTable,
     TorsionSpringTable,
-    require_both,
-    require_one,
 )
 from pinstress.study.schema.gears import GearTable, RackTable
 from pinstress.study.schema.types import (
@@ -31,7 +29,10 @@ from pinstress.study.schema.types import (
     StrictTable,
     Switch,
     Weight,
+    exactly_one,
     one_or_several,
+    require_both,
+    require_one,
 )
 
 
@@ -139,11 +140,7 @@ class BarTable(StrictTable):
     density: Density
     """Density of the material."""
 
-    @model_validator(mode="after")
-    def _one_section(self) -> "BarTable":
-        if (self.diameter is None) == (self.section is None):
-            raise ArgumentError("give either diameter or section = [depth, width]", "give-one")
-        return self
+    _one_section = exactly_one("either diameter or section = [depth, width]", "diameter", "section")
 
 
 def require_one_mass(mass: object, weight: object, bar: object, centre: object) -> None:

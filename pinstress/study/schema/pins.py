@@ -18,6 +18,7 @@ from pinstress.study.schema.types import (
     StrictTable,
     Switch,
     Tapered,
+    exactly_one,
 )
 
 
@@ -161,11 +162,7 @@ class BandTable(StrictTable):
     """Whether a link bears on the band, at the connection of the same name; false for a band that
     is only clamped."""
 
-    @model_validator(mode="after")
-    def _one_place(self) -> "BandTable":
-        if (self.z is None) == (self.surface is None):
-            raise ArgumentError('give either z = [a, b] or surface = "..."', "give-one")
-        return self
+    _one_place = exactly_one('either z = [a, b] or surface = "..."', "z", "surface")
 
 
 SHAPE_KEYS = "profile", "meridian", "geometry"

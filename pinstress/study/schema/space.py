@@ -9,7 +9,7 @@ from loads.space.kinds import KINDS, Kind
 from loads.space.linkage import RIGHT_ANGLE_TOLERANCE
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.drives import LawTable, require_few_turns
-from pinstress.study.schema.forces import LineLawTable, TorsionLawTable, require_both, require_one
+from pinstress.study.schema.forces import LineLawTable, TorsionLawTable
 from pinstress.study.schema.mechanism import BarTable, Ratios, require_one_mass
 from pinstress.study.schema.types import (
     Acceleration,
@@ -21,7 +21,10 @@ from pinstress.study.schema.types import (
     SignedInertia,
     StrictTable,
     Weight,
+    both_or_none,
+    exactly_one,
     one_or_several,
+    require_both,
 )
 
 Point3 = tuple[Length, Length, Length]
@@ -295,11 +298,8 @@ class SpaceSpringTable(LineLawTable):
     joints: tuple[JointOrPoint3, JointOrPoint3] | None = None
     """A point of each, a joint or [x, y, z]; pins are not loaded at these joints."""
 
-    @model_validator(mode="after")
-    def _between(self) -> "SpaceSpringTable":
-        require_one("either slide, or bodies and joints", self.slide, self.bodies)
-        require_both("bodies and joints", self.bodies, self.joints)
-        return self
+    _between = exactly_one("either slide, or bodies and joints", "slide", "bodies")
+    _ends = both_or_none("bodies", "joints")
 
 
 class SpaceTorsionSpringTable(TorsionLawTable):

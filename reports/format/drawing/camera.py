@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reports.data.results import Floats
+from pinbase.dimensions import Floats
 
 Point = tuple[float, float, float]
 VIEW_ANGLE = 30.0  # degrees, vertical

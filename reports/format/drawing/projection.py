@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reports.data.results import Floats
+from pinbase.dimensions import Floats
 
 Vector = tuple[float, float, float]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from reports.data.results import Floats
+from pinbase.dimensions import Floats
 
 LABEL_DIRECTIONS = np.array(
     [(1, -1), (-1, -1), (1, 1), (-1, 1), (1, 0), (-1, 0), (0, -1), (0, 1)], dtype=float

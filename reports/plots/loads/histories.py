@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from reports.data.results import DriveTable, DropRecord, MotionCheck, Units
+from reports.data.drop import DropRecord
+from reports.data.mechanics import DriveTable
+from reports.data.motion import MotionCheck
+from reports.data.row import Units
 from reports.format.file_names import drive_names, plot_name
 from reports.format.numbers import engineering, short
 from reports.plots.spec import Abscissa, Panel, Plot, Spec, clipped, curves, points

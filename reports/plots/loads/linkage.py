@@ -7,7 +7,9 @@ from itertools import chain
 import numpy as np
 
 from geometry.shape.chords import needed
-from reports.data.results import Floats, LinkageMotion, PitchCurve, Units
+from pinbase.dimensions import Floats
+from reports.data.motion import LinkageMotion, PitchCurve
+from reports.data.row import Units
 from reports.format.drawing.svg_labels import label_offsets
 from reports.format.file_names import plot_name
 from reports.format.numbers import short

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from reports.data.results import LinkageMotion, Units
+from reports.data.motion import LinkageMotion
+from reports.data.row import Units
 from reports.format.file_names import plot_name
 from reports.format.numbers import ten_to
 from reports.plots.spec import Abscissa, Panel, Plot, Spec, clipped, curves, level, rows

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from reports.data.results import Floats, PeakReaction, ReactionTable, Units
+from pinbase.dimensions import Floats
+from reports.data.mechanics import PeakReaction, ReactionTable
+from reports.data.row import Units
 from reports.format.file_names import plot_name
 from reports.format.numbers import engineering, short
 from reports.plots.spec import (

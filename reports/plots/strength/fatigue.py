@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from assess.fatigue.records import CaseHistory, PointFatigue, PointHistory
-from reports.data.results import Floats, Units
+from pinbase.dimensions import Floats
+from reports.data.row import Units
 from reports.format.file_names import plot_name
 from reports.plots.spec import NUMBER_FORMAT, Abscissa, Panel, Plot, clipped, curves, headed, rows
 

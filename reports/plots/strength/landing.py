@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from reports.data.results import Floats, LandingRange, Units
+from pinbase.dimensions import Floats
+from reports.data.row import LandingRange, Units
 from reports.format.file_names import plot_name
 from reports.format.numbers import short
 from reports.plots.spec import Abscissa, Panel, Plot, clipped, curves, level

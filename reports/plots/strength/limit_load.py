@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from reports.data.results import PinResult, Units
+from reports.data.row import PinResult, Units
 from reports.format.file_names import plot_name
 from reports.plots.spec import Abscissa, Panel, Plot, curves, level
 

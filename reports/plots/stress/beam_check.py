@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from assess.opinion.records import COMPARISON_WINDOW
-from reports.data.results import BeamCheck, Units
+from assess.opinion.records import COMPARISON_WINDOW, BeamCheck
+from reports.data.row import Units
 from reports.format.file_names import plot_name
 from reports.format.numbers import engineering, short
 from reports.plots.spec import Abscissa, Panel, Plot, Spec, bands, curves

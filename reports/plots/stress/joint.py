@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fea.support.records import BandContact, JointResult
-from reports.data.results import Units
+from reports.data.row import Units
 from reports.format.file_names import plot_name
 from reports.format.numbers import engineering
 from reports.plots.spec import (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from fea.core.peak import Refinement
-from reports.data.results import PinResult, Units
+from reports.data.row import PinResult, Units
 from reports.format.file_names import plot_name
 from reports.plots.spec import NUMBER_FORMAT, Plot, Spec, clipped, headed, level, rows
 from reports.plots.theme import dashes

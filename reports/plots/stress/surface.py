@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from reports.data.results import Floats, PinResult, PinShape, Units
+from pinbase.dimensions import Floats
+from reports.data.results import PinShape
+from reports.data.row import PinResult, Units
 from reports.data.surface import Mask, Surface, SurfaceCase
 from reports.format.file_names import plot_name
 from reports.format.numbers import engineering

@@ -7,7 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from reports.data.results import Floats, LinkageMotion, Results
+from pinbase.dimensions import Floats
+from reports.data.motion import LinkageMotion
+from reports.data.results import Results
 from reports.tables.column import ArrayTable, Column, Table, fields
 
 Names = Callable[[LinkageMotion], Iterable[str]]

@@ -8,15 +8,11 @@ from operator import attrgetter
 
 import numpy as np
 
-from reports.data.results import (
-    BeamCheck,
-    BodyMotion,
-    DriveTable,
-    Floats,
-    MotionCheck,
-    ReactionTable,
-    Results,
-)
+from assess.opinion.records import BeamCheck
+from pinbase.dimensions import Floats
+from reports.data.mechanics import DriveTable, ReactionTable
+from reports.data.motion import BodyMotion, MotionCheck
+from reports.data.results import Results
 from reports.tables.column import ArrayTable, Column, Table, fields
 
 

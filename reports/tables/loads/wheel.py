@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from reports.data.mechanics import ReactionTable, WheelLoad
-from reports.data.results import Results, Units
+from reports.data.results import Results
+from reports.data.row import Units
 from reports.format.numbers import short
-from reports.tables.column import Column, Table, texts, unit_columns
+from reports.tables.column import Column, Table, fields, texts, unit_columns
 
 WHEEL_NOTE = (
     "Each force is factor times reference load. Direction and point are in world axes: x and y in "
@@ -29,30 +30,22 @@ class WheelRow:
         return self.of.clause.partition(":")[0]
 
 
-def _along(axis: int) -> Column[WheelRow]:
-    name = "xyz"[axis]
-    return Column(f"direction_{name}", lambda row: row.load.direction[axis])
-
-
-def _at(axis: int) -> Column[WheelRow]:
-    return Column(f"at_{'xyz'[axis]}", lambda row: row.load.point[axis], "length")
-
-
 def _factor(row: WheelRow) -> str:
     return short(float(f"{row.load.factor:.4g}"))
 
 
 COLUMNS: list[Column[WheelRow]] = [
     *texts("case=of.case"),
-    Column("clause", lambda row: row.of.clause),
+    *fields("of.clause"),
     Column("", lambda row: row.paragraph, "", "paragraph", numeric=False),
     *texts("component=load.component"),
     Column("factor", lambda row: row.load.factor, "", "factor", text=_factor),
     Column("reference", lambda row: row.load.reference, "force", "reference"),
     Column("force", lambda row: row.load.force, "force", "force"),
     *texts("towards=load.towards place=load.place"),
-    *map(_along, range(3)),
-    *map(_at, range(3)),
+    *fields("direction_x=load.direction.0 direction_y=load.direction.1"),
+    *fields("direction_z=load.direction.2"),
+    *fields("at_x=load.point.0 at_y=load.point.1 at_z=load.point.2", "length"),
     *unit_columns("force length"),
 ]
 

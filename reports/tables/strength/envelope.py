@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
 
 from reports.data.envelope import EnvelopeCell, case_names, envelope, omitted_note, paragraphs
-from reports.data.results import PeakReaction, Results, Units
+from reports.data.mechanics import PeakReaction
+from reports.data.results import Results
+from reports.data.row import Units
 from reports.format.numbers import DASH
 from reports.tables.column import Column, Table, fields, unit_columns
 
@@ -32,15 +34,11 @@ class EnvelopeRow:
     units: Units
 
 
-def _load(name: str) -> Callable[[EnvelopeRow], float | None]:
-    return lambda row: getattr(row.load, name, None)
-
-
 COLUMNS: tuple[Column[EnvelopeRow], ...] = (
     *fields("pin=cell.result.pin case=cell.result.case"),
     Column("connection", lambda row: row.load.connection if row.load else ""),
-    Column("force", _load("force"), "force"),
-    Column("moment", _load("moment"), "moment"),
+    *fields("load?.force", "force"),
+    *fields("load?.moment", "moment"),
     *fields("cell.result.max_von_mises", "stress"),
     *fields("cell.result.safety_factor utilisation_high=cell.used cell.outcome cell.governs"),
     *unit_columns("force length stress"),

@@ -9,7 +9,6 @@ from typing import Any
 
 from assess.fatigue.records import CaseHistory, PointFatigue, PointHistory
 from reports.data.results import Fatigue, Results
-from reports.format.files.csv import Cell
 from reports.format.numbers import DASH, engineering
 from reports.tables.column import ArrayTable, Column, Table, fields, json_of, read_only, texts
 
@@ -31,43 +30,28 @@ class FatigueRow:
 
 
 HISTORY_COLUMNS: list[Column[tuple[PointHistory, CaseHistory]]] = [
-    Column("pin", lambda row: row[0].pin),
-    Column("case", lambda row: row[1].case),
-    Column("time", lambda row: row[1].times, "time"),
-    Column("point", lambda row: row[0].point),
-    Column("von_mises", lambda row: row[1].von_mises, "stress"),
-    Column("signed", lambda row: row[1].signed, "stress"),
+    *fields("0.pin 1.case"),
+    *fields("time=1.times", "time"),
+    *fields("0.point"),
+    *fields("1.von_mises 1.signed", "stress"),
 ]
 POINT_COLUMNS: list[Column[PointHistory]] = [
     *fields("pin point"),
-    *(Column(x, lambda row, k=k: row.location[k], "length") for k, x in enumerate("xyz")),  # type: ignore[misc]
+    *fields("x=location.0 y=location.1 z=location.2", "length"),
     *fields("chosen"),
 ]
 
 
-def _of(key: str, cell: Callable[[PointFatigue], Cell], dimension: str = "") -> Column[FatigueRow]:
-    """Return a column that is empty where there is no point."""
-    return Column(key, lambda row: None if row.point is None else cell(row.point), dimension)
-
-
-def _part(name: str, k: int) -> Callable[[PointFatigue], Cell]:
-    """Return a function that gives one of several values of a point, which may have none."""
-    return lambda point: (getattr(point, name) or (None,) * 3)[k]
-
-
 COLUMNS: list[Column[FatigueRow]] = [
     *fields("pin"),
-    _of("point", lambda p: p.point),
-    *(_of(x, _part("location", k), "length") for k, x in enumerate("xyz")),
-    _of("method", lambda p: p.method),
-    _of("damage", lambda p: p.damage),
-    _of("life", lambda p: p.life),
-    *(_of(f"life_{p}", _part("lives", k)) for k, p in enumerate(("10", "50", "90"))),
-    _of("utilisation", lambda p: p.utilisation),
-    _of("amplitude", lambda p: p.amplitude, "stress"),
-    _of("mean_stress", lambda p: p.mean, "stress"),
-    _of("note", lambda p: p.note),
-    *(_of(f"normal_{x}", _part("normal", k)) for k, x in enumerate("xyz")),
+    *fields("point?.point"),
+    *fields("x=point?.location?.0 y=point?.location?.1 z=point?.location?.2", "length"),
+    *fields("point?.method point?.damage point?.life"),
+    *fields("life_10=point?.lives?.0 life_50=point?.lives?.1 life_90=point?.lives?.2"),
+    *fields("point?.utilisation"),
+    *fields("point?.amplitude mean_stress=point?.mean", "stress"),
+    *fields("point?.note"),
+    *fields("normal_x=point?.normal?.0 normal_y=point?.normal?.1 normal_z=point?.normal?.2"),
     Column("not_decided", lambda row: row.fatigue.not_decided.get(row.pin, "")),
 ]
 

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from assess.margin import Margin
-from reports.data.results import PinResult, Results, Units
+from reports.data.results import Results
+from reports.data.row import PinResult, Units
 from reports.format.files import markdown
 from reports.format.numbers import DASH, components, engineering, short
 from reports.format.ranges import factor_range
@@ -73,8 +74,8 @@ COLUMNS: list[Column[CheckRow]] = [
     *fields("pin.max_von_mises", "stress"),
     *fields("pin.safety_factor pin.verdict"),
     *unit_columns("stress time"),
-    Column("safety_factor_low", lambda row: (row.pin.safety_factor_interval or (None,))[0]),
-    Column("safety_factor_high", lambda row: (row.pin.safety_factor_interval or (None,))[-1]),
+    *fields("safety_factor_low=pin.safety_factor_interval?.0"),
+    *fields("safety_factor_high=pin.safety_factor_interval?.1"),
     *fields("check.basis check.governs"),
 ]  # fmt: skip
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from reports.data.results import LandingRange, Results
+from reports.data.results import Results
+from reports.data.row import LandingRange
 from reports.format.files import markdown
 from reports.format.numbers import engineering, short
 from reports.tables.column import Column, Grid, Table, fields, read_only, texts

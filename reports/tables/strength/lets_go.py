@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from math import isfinite
 
 from reports.data.lets_go import LettingGo, PinSteps, lets_go
-from reports.data.results import PinResult, Results
+from reports.data.results import Results
+from reports.data.row import PinResult
 from reports.format.numbers import DASH, engineering, short
 from reports.tables.column import Column, Table, fields, read_only
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from assess.plastic.records import LimitLoad, LoadCurve
-from reports.data.results import PinResult, Results
+from reports.data.results import Results
+from reports.data.row import PinResult
 from reports.format.numbers import DASH, engineering
 from reports.tables.column import ArrayTable, Column, Table, fields, json_of, read_only
 

@@ -10,16 +10,14 @@ from assess.margin import RATIO_DIMENSION, Margin, PinMargin
 from assess.strength.bending_arms import BendingArms
 from reports.data.governing import governing, skipped
 from reports.data.requirements import keys_in
-from reports.data.results import PinResult, Results, Units
+from reports.data.results import Results
+from reports.data.row import PinResult, Units
 from reports.format.numbers import DASH, engineering, short
 from reports.format.units import unit_name
 from reports.format.work_words import passing_text, work_text
 from reports.tables.column import Column, Table, fields, in_order, read_only, texts
 
-MARGIN_COLUMN_ORDER = (
-    "pin", "case", "method", "margin", "utilisation", "level", "at", "time", "demand", "allowable",
-    "clause",
-)  # fmt: skip
+MARGIN_COLUMN_ORDER = "pin case method margin utilisation level at time demand allowable clause"
 STRENGTH_SUFFIX = "_strength"  # of keys of materials
 MARGINS_NOTE = (
     "Margin of safety = allowable / (factor × demand) − 1, of the check that governs each pin in "

@@ -124,7 +124,8 @@ def _added(results: Results) -> list[Column[PinLine]]:
             max(column.rank, MAX_RANK), column.drop_if_empty,
         )  # fmt: skip
 
-    shown = (c for c in safety_factors.COLUMNS if c.heading and c.key not in FACTOR_COLUMN_ORDER)
+    known = FACTOR_COLUMN_ORDER.split()
+    shown = (c for c in safety_factors.COLUMNS if c.heading and c.key not in known)
     return [of_line(column) for column in shown]
 
 

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from assess.judgement import DEPENDS
 from fea.support.records import JointRange
 from reports.data.decision import common_factor, limit, worst_first
 from reports.data.dependence import BENEATH_CONTACT
 from reports.data.envelope import detailed_rows, omitted_note
-from reports.data.results import PinResult, Results, Units
-from reports.data.row import SharingRange
+from reports.data.results import Results
+from reports.data.row import PinResult, SharingRange, Units
 from reports.format.files import markdown
 from reports.format.numbers import finite, ratio, short
 from reports.format.ranges import (
@@ -34,23 +33,14 @@ from reports.format.words import (
     result_words,
     verdict_words,
 )
-from reports.tables.column import Column, Table, grid_of, in_order, unit_columns
+from reports.tables.column import Column, Table, fields, grid_of, in_order, unit_columns
 from reports.tables.published import published_maxima
 from reports.tables.stress.joint import lugs_word
 from reports.tables.stress.places import governing_words
 
 FACTOR_COLUMN_ORDER = (  # for people; columns that are not named here come last
-    *("pin", "case", "outcome", "safety_factor", "utilisation", "max_von_mises"),
-    *(
-        "error_estimate",
-        "governs",
-        "sharing_high",
-        "joint_high",
-        BENEATH_CONTACT,
-        "time",
-        "verdict",
-        "model",
-    ),
+    "pin case outcome safety_factor utilisation max_von_mises error_estimate governs sharing_high "
+    "joint_high beneath time verdict model"
 )
 
 
@@ -93,24 +83,9 @@ class FactorRow:
         return None if factor is None else factor / (self.required or 1.0) - 1.0
 
 
-def _end(name: str, end: int) -> Callable[[FactorRow], float | None]:
-    """Return a function that gives an end of an interval of the row."""
-    return lambda row: (getattr(row.pin, name) or (None, None))[end]
-
-
 def _error(part: str) -> Column[FactorRow]:
     """Return a column of a part of the error."""
     return Column(f"error_{part}", lambda row: row.pin.error_parts.get(part), "stress")
-
-
-def _contact(name: str, dimension: str, **more: Any) -> Column[FactorRow]:
-    """Return a column of a number of the stress beneath contact."""
-    return Column(name, lambda row: _place(row, "contact", name), dimension, **more)
-
-
-def _place(row: FactorRow, place: str, name: str) -> float | None:
-    """Return a number of one of the places; None where the row has no such place."""
-    return getattr(getattr(row.pin.places, place, None), name, None)
 
 
 # Columns of later versions are at the end, so that those of earlier ones keep their positions.
@@ -125,48 +100,48 @@ COLUMNS: tuple[Column[FactorRow], ...] = (
            lambda row: error_range(row.pin), rank=3, in_json=True),
     Column("safety_factor", lambda row: row.pin.safety_factor, "", "safety factor",
            lambda row: factor_range(row.pin), in_json=True),
-    Column("required", lambda row: row.required),
-    Column("meets_required", lambda row: row.pin.meets_required, in_json=True),
+    *fields("required"),
+    *fields("pin.meets_required", in_json=True),
     Column("verdict", lambda row: row.pin.verdict, "", "verdict",
            lambda row: verdict_words(row.pin.verdict, row.pin.yields),
            numeric=False, rank=7, in_json=True),
     Column("model", lambda row: row.pin.model, heading="model",
            numeric=False, rank=8, in_json=True),
-    Column("published_max_von_mises", lambda row: row.pin.published_max_von_mises, "stress"),
+    *fields("pin.published_max_von_mises", "stress"),
     Column("ratio", lambda row: ratio(row.pin.max_von_mises, row.pin.published_max_von_mises)),
-    Column("published_safety_factor", lambda row: row.pin.published_safety_factor),
-    Column("note", lambda row: row.pin.note, in_json=True),
+    *fields("pin.published_safety_factor"),
+    *fields("pin.note", in_json=True),
     *unit_columns("stress time"),
-    Column("yields", lambda row: row.pin.yields, in_json=True),
-    Column("max_von_mises_low", _end("max_von_mises_interval", 0), "stress"),
-    Column("max_von_mises_high", _end("max_von_mises_interval", 1), "stress"),
-    Column("safety_factor_low", _end("safety_factor_interval", 0)),
-    Column("safety_factor_high", _end("safety_factor_interval", 1)),
+    *fields("pin.yields", in_json=True),
+    *fields("max_von_mises_low=pin.max_von_mises_interval?.0", "stress"),
+    *fields("max_von_mises_high=pin.max_von_mises_interval?.1", "stress"),
+    *fields("safety_factor_low=pin.safety_factor_interval?.0"),
+    *fields("safety_factor_high=pin.safety_factor_interval?.1"),
     *(_error(part) for part in ("mesh", "time", "series", "model", "cells")),
-    Column("sharing_low", lambda row: row.sharing and row.sharing.max_von_mises[0], "stress"),
+    *fields("sharing_low=sharing?.max_von_mises.0", "stress"),
     Column("sharing_high", lambda row: row.sharing and row.sharing.max_von_mises[1], "stress",
            "links", lambda row: sharing_range(row.pin), rank=4, drop_if_empty=True),
-    Column("joint_low", lambda row: row.joint and row.joint.max_von_mises[0], "stress"),
+    *fields("joint_low=joint?.max_von_mises.0", "stress"),
     Column("joint_high", lambda row: row.joint and row.joint.max_von_mises[1], "stress", "joint",
            lambda row: joint_range(row.pin), rank=4, drop_if_empty=True),
-    Column("joint_model", lambda row: row.joint and row.joint.model),
+    *fields("joint_model=joint?.model"),
     Column("joint_lugs", lambda row: row.joint and lugs_word(row.joint)),
     Column("outcome", lambda row: row.pin.outcome, "", "result",
            lambda row: result_words(row.pin), numeric=False, in_json=True),
     Column("utilisation", lambda row: row.used, "", "utilisation",
            lambda row: utilisation_range(row.pin, limit(row.pin)), rank=2),
-    Column("margin_of_safety", lambda row: row.margin),
+    *fields("margin_of_safety=margin"),
     _error("truncation"),
     Column("depends_on", lambda row: depends_words(row.pin.depends_on, row.units)
            if row.pin.outcome == DEPENDS else None),
     Column("governs", lambda row: governing_words(row.pin.places), "", "at",
            numeric=False, rank=5, drop_if_empty=True),
-    Column("surface", lambda row: _place(row, "surface", "max_von_mises"), "stress"),
-    Column("section", lambda row: _place(row, "section", "max_von_mises"), "stress"),
-    _contact(BENEATH_CONTACT, "stress", heading="beneath", rank=5, drop_if_empty=True),
-    _contact("beneath_error", "stress"),
-    _contact("reach", "length"),
-    _contact("reach_required", "length"),
+    *fields("surface=pin.places?.surface?.max_von_mises", "stress"),
+    *fields("section=pin.places?.section?.max_von_mises", "stress"),
+    *fields("pin.places?.contact?.beneath", "stress", heading="beneath", rank=5,
+            drop_if_empty=True),
+    *fields("pin.places?.contact?.beneath_error", "stress"),
+    *fields("pin.places?.contact?.reach pin.places?.contact?.reach_required", "length"),
     *unit_columns("length"),
 )  # fmt: skip
 

@@ -5,14 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from reports.data.results import PinSensitivities, Results, Sensitivity, Units
+from reports.data.results import Results
+from reports.data.row import Units
+from reports.data.sensitivities import PinSensitivities, Sensitivity
 from reports.format.numbers import DASH, engineering, short
 from reports.format.units import unit_name
 from reports.tables.column import Column, Table, fields, in_order, json_of, read_only, texts
 from reports.tables.strength.changes import notes_of_pins
 
 PARAMETER_KEYS = (  # of results.json
-    *("key", "unit", "value", "stress_per_unit", "factor_per_unit", "step", "factor_with_step"),
+    "key unit value stress_per_unit factor_per_unit step factor_with_step"
 )
 PIN_SENSITIVITIES = fields(
     "pin case max_von_mises=maximum safety_factor=factor tied_places tied_times changing note"
@@ -74,7 +76,7 @@ def sensitivities_table(results: Results) -> Table[SensitivityRow]:
 
 def sensitivities_json(results: Results) -> list[dict[str, Any]]:
     """Return the sensitivities for results.json, by pin and case."""
-    parameters = in_order([c for c in COLUMNS if c.key in PARAMETER_KEYS], PARAMETER_KEYS)
+    parameters = in_order([c for c in COLUMNS if c.key in PARAMETER_KEYS.split()], PARAMETER_KEYS)
     return [
         {
             **json_of(PIN_SENSITIVITIES, effects),

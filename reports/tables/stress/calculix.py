@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-from assess.opinion.opinions import ContactOpinion, Opinion
-from reports.data.results import Results, Units
-from reports.format.files.csv import Cell
+from assess.opinion.opinions import Opinion
+from reports.data.results import Results
+from reports.data.row import Units
 from reports.tables.column import Column, Table, fields, json_of, unit_columns
 
 
@@ -26,11 +25,6 @@ class OpinionRow:
     units: Units
 
 
-def _contact(key: str, cell: Callable[[ContactOpinion], Cell], dimension: str = "") -> Column[Any]:
-    """Return a column that only rows in contact have."""
-    return Column(key, lambda row: row.of.contact and cell(row.of.contact), dimension)
-
-
 def _in_contact(unit: str) -> Column[OpinionRow]:
     """Return a column of a unit that only rows in contact need."""
     return Column(f"{unit}_unit", lambda row: getattr(row.units, unit) if row.of.contact else None)
@@ -45,10 +39,9 @@ COLUMNS: list[Column[OpinionRow]] = [
     Column("calculix_over_answer", lambda row: over_answer(row.of)),
     Column("agrees", lambda row: not row.of.complaint),
     *fields("unit=units.stress note=of.complaint"),
-    _contact("bending_moment", lambda c: c.our_moment, "moment"),
-    _contact("bending_moment_calculix", lambda c: c.moment, "moment"),
-    _contact("load_elsewhere", lambda c: c.elsewhere),
-    _contact("mesh_change", lambda c: c.stress_change),
+    *fields("bending_moment=of.contact?.our_moment", "moment"),
+    *fields("bending_moment_calculix=of.contact?.moment", "moment"),
+    *fields("load_elsewhere=of.contact?.elsewhere mesh_change=of.contact?.stress_change"),
     _in_contact("force"),
     _in_contact("length"),
 ]

@@ -14,7 +14,8 @@ from fea.core.places import (
     SurfacePlace,
 )
 from pinbase.records import plain
-from reports.data.results import PinResult, Results, Units
+from reports.data.results import Results
+from reports.data.row import PinResult, Units
 from reports.format.numbers import finite
 from reports.tables.column import PIN_AND_CASE, Column, PinRow, Table, fields, unit_columns
 
@@ -136,7 +137,7 @@ PLACE_COLUMNS: list[Column[PlaceRow]] = [
     *fields("max_von_mises=stress error_estimate=error", "stress"),
     *fields("safety_factor=factor"),
     _of("verdict"),
-    *(Column(x, lambda row, k=k: row.at[k], "length") for k, x in enumerate("xyz")),  # type: ignore[misc]
+    *fields("x=at.0 y=at.1 z=at.2", "length"),
     *fields("time", "time"),
     *(_of(name, "force") for name in ("axial_force", "shear_force")),
     *(_of(name, "moment") for name in ("bending_moment", "torque")),

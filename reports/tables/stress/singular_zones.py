@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from math import hypot
 
-from reports.data.results import PinResult, Results, SingularZone, Units
+from fea.core.peak import SingularZone
+from reports.data.results import Results
+from reports.data.row import PinResult, Units
 from reports.format.numbers import DASH, engineering
 from reports.tables.column import (
     PIN_AND_CASE,
@@ -14,7 +16,6 @@ from reports.tables.column import (
     Table,
     fields,
     in_order,
-    read_only,
     texts,
     unit_columns,
 )
@@ -86,22 +87,12 @@ class ZoneRow:
     units: Units
 
 
-def _intensity(name: str) -> Callable[[ZoneRow], float | None]:
-    """Return a function that gives a strength of the singular field, where it was measured."""
-    return lambda row: getattr(row.zone.place.strength, name, None)
-
-
-def _at(k: int) -> Callable[[ZoneRow], float]:
-    return lambda row: row.zone.place.location[k]
-
-
 COLUMNS: list[Column[ZoneRow]] = [
     *PIN_AND_CASE,
     Column("zone", lambda row: row.zone.number, "", "zone", lambda row: str(row.zone.number)),
-    Column("z", _at(2), "length", "z"),
+    *fields("z=zone.place.location.2", "length", heading="z"),
     Column("radius", lambda row: row.zone.r, "length", "radius"),
-    Column("x", _at(0), "length"),
-    Column("y", _at(1), "length"),
+    *fields("x=zone.place.location.0 y=zone.place.location.1", "length"),
     Column("between", lambda row: row.zone.between, "", "between",
            lambda row: row.zone.between or DASH, numeric=False),
     *texts("zone.place.kind"),
@@ -114,12 +105,13 @@ COLUMNS: list[Column[ZoneRow]] = [
     Column("advice", lambda row: row.zone.place.advice, heading="remedy", numeric=False),
     *fields("pin.verdict"),
     *unit_columns("length stress"),
-    Column("strength", _intensity("along"), "stress"),
-    Column("strength_exponent", _intensity("exponent")),
-    Column("notch_stress_intensity", _intensity("notch")),
+    *fields("strength=zone.place.strength?.along", "stress"),
+    *fields("strength_exponent=zone.place.strength?.exponent"),
+    *fields("notch_stress_intensity=zone.place.strength?.notch"),
 ]  # fmt: skip
-ZONE_COLUMN_ORDER = ("zone", "z", "radius", "between", "kind", "exponent", "excluded_radius",
-                 "max_von_mises", "strength", "governs", "advice")  # fmt: skip
+ZONE_COLUMN_ORDER = (
+    "zone z radius between kind exponent excluded_radius max_von_mises strength governs advice"
+)
 
 
 def zones_table(results: Results) -> Table[ZoneRow]:
@@ -136,7 +128,8 @@ def zones_table(results: Results) -> Table[ZoneRow]:
 def shown_zones(pin: PinResult, zones: list[ShownZone], units: Units) -> Table[ZoneRow]:
     """Return the zones of a pin in a case, for people."""
     heading = f"strength [{units.stress} {units.length}^exponent]"
-    strength = read_only(heading, _intensity("along"))
-    columns = [replace(strength, key="strength") if c.key == "strength" else c for c in COLUMNS]
+    columns = [
+        replace(c, heading=heading, dimension="") if c.key == "strength" else c for c in COLUMNS
+    ]
     rows = [ZoneRow(pin, zone, units) for zone in sorted(zones, key=lambda zone: zone.number)]
     return Table("singular_zones", in_order(columns, ZONE_COLUMN_ORDER), rows)

@@ -7,7 +7,7 @@ import pytest
 
 from fea.core.linear_solver import ConstrainedSystem
 from fea.core.material import Material
-from fea.cut import local_model
+from fea.cut import piece_system
 from fea.cut.local_model import LocalModel
 from fea.cut.region import pieces
 from fea.cut.two_level import TwoLevel
@@ -27,11 +27,13 @@ def test_a_held_body_as_by_a_factorisation() -> None:
     held = model.space.basis.get_dofs(model.space.mesh.boundaries["end"]).flatten()
     free[(3 * held[:, None] + np.arange(3)).ravel()] = 0.0
     forces = np.random.default_rng(1).normal(size=(model.unknowns, 3)) * [1.0, 1e-3, 0.0]
-    found = TwoLevel(model.space, model.stiffness).solve(free, np.zeros(0, dtype=int), forces)
+    found = TwoLevel(model.space, model.system.stiffness).solve(
+        free, np.zeros(0, dtype=int), forces
+    )
     assert found is not None
     assert not found[free == 0.0].any()
-    system = ConstrainedSystem(model.stiffness, np.arange(model.unknowns) // 3)
-    known = system.solve(model.stiffness.copy(), free, forces)
+    system = ConstrainedSystem(model.system.stiffness, np.arange(model.unknowns) // 3)
+    known = system.solve(model.system.stiffness.copy(), free, forces)
     assert np.abs(found - known).max(axis=0) == pytest.approx(0.0, abs=1e-5 * np.abs(known).max())
 
 
@@ -47,9 +49,9 @@ def test_stress_about_a_hole_as_by_a_factorisation(
         stress[..., 3, 0], stress[..., 4, 0] = x, -y
     else:
         stress[..., 2, 0] = 1.0 + y
-    monkeypatch.setattr(local_model, "MAX_FACTORED_UNKNOWNS", model.unknowns)
+    monkeypatch.setattr(piece_system, "MAX_FACTORED_UNKNOWNS", model.unknowns)
     known = model.solve(stress)
-    monkeypatch.setattr(local_model, "MAX_FACTORED_UNKNOWNS", 0)
+    monkeypatch.setattr(piece_system, "MAX_FACTORED_UNKNOWNS", 0)
     found = model.solve(stress)
     assert not np.array_equal(found.stress, known.stress)
     assert found.stress == pytest.approx(known.stress, abs=1e-5 * np.abs(known.stress).max())
@@ -64,9 +66,9 @@ def test_what_brings_little_is_solved_less_accurately(monkeypatch: pytest.Monkey
     model = LocalModel(PIECE, MESH, STEEL)
     stress = np.zeros((*model.images.shape[:2], 6, 2))
     stress[..., 2, 0], stress[..., 2, 1] = 1.0, model.images[..., 1] / D
-    monkeypatch.setattr(local_model, "MAX_FACTORED_UNKNOWNS", model.unknowns)
+    monkeypatch.setattr(piece_system, "MAX_FACTORED_UNKNOWNS", model.unknowns)
     known = model.solve(stress).stress
-    monkeypatch.setattr(local_model, "MAX_FACTORED_UNKNOWNS", 0)
+    monkeypatch.setattr(piece_system, "MAX_FACTORED_UNKNOWNS", 0)
     weight = np.array([1.0, 1e-3])
     found = model.solve(stress, weight=weight).stress
     off, most = (np.abs(x).max(axis=(0, 1)) for x in (found - known, known))

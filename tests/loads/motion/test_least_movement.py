@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from loads import GROUND, Body, Connection, Joint, Linkage, Slider, Turn
+from loads.motion.complex_points import number
 from loads.motion.least_movement import least_movement
-from loads.motion.loop_equations import number
 from loads.motion.mobility import mobility
 from loads.motion.planar_equations import PlanarEquations
 from loads.motion.positions import Path

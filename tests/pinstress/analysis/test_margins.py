@@ -213,7 +213,7 @@ def test_past_yield_from_the_study_to_the_files(
         "case": {"pull": {"kind": "given", "forces": {"L": [4500, 0]}}},
     }
     Path("study.toml").write_text(study_from(given).text)
-    assert run_command_line(["run", "study.toml", "--no-pictures", "--out", "out"]) == 0
+    assert run_command_line(["run", "study.toml", "--out", "out"]) == 0
     written = json.loads(Path("out/results.json").read_text())
     (limit,) = [p["limit_load"] for p in written["pins"]]
     assert (limit["method"], limit["carries"]) == ("solid", True)

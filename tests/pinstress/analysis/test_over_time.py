@@ -8,7 +8,7 @@ import pytest
 from pinstress import run
 from pinstress.analysis.plan import prepare
 from pinstress.study.reading.file import Study, load_study, parse_study
-from reports.data.results import PinResult
+from reports.data.row import PinResult
 from tests.conftest import ROOT
 
 STUDY = ROOT / "studies" / "slider_crank.toml"

@@ -16,7 +16,7 @@ from tests.support.programs.command_line import ONE_PIN, QUICK, pinstress, run_h
 def run_once(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str, str]:
     folder = tmp_path_factory.mktemp("run")
     (folder / "study.toml").write_text(QUICK)
-    done = pinstress("run", "study.toml", "--no-pictures", cwd=folder)
+    done = pinstress("run", "study.toml", cwd=folder)
     assert done.returncode == 0, done.stderr
     return folder, done.stdout, done.stderr
 
@@ -57,7 +57,7 @@ def test_moments_reach_the_pin_and_the_tables(tmp_path: Path) -> None:
     """500 lbf in bend a 2 in shaft to 32 M / (pi d^3) = 637 psi, its fillet to somewhat more."""
     text = QUICK.replace("forces = { B = [0.0, -988.86] }", 'moments = { B = ["0 N m", 500.0] }')
     (tmp_path / "study.toml").write_text(text)
-    done = run_here("run", "study.toml", "--no-pictures", cwd=tmp_path)
+    done = run_here("run", "study.toml", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     out = tmp_path / "out" / "study"
     (row,) = csv.DictReader((out / "reactions.csv").read_text().splitlines())
@@ -71,7 +71,7 @@ def test_moments_reach_the_pin_and_the_tables(tmp_path: Path) -> None:
 def test_a_tolerance_that_is_not_reached_is_status_1(tmp_path: Path) -> None:
     sharp = ONE_PIN.replace("fillet = 0.4 ", "fillet = 0.0 ")
     (tmp_path / "study.toml").write_text(sharp)
-    done = run_here("run", "study.toml", "--no-pictures", cwd=tmp_path)
+    done = run_here("run", "study.toml", cwd=tmp_path)
     assert done.returncode == 1
     last = done.stderr.strip().splitlines()[-1]
     where = "at a sharp corner (shoulder 1 / B)"
@@ -102,7 +102,7 @@ def test_all_models_answer(run_once: tuple[Path, str, str], tmp_path: Path) -> N
         ("harmonic", 0, "converged"),
         ("solid", 0, "converged"),
     ):
-        done = run_here("run", "study.toml", "--no-pictures", "--model", model, cwd=tmp_path)
+        done = run_here("run", "study.toml", "--model", model, cwd=tmp_path)
         assert done.returncode == status, done.stderr
         (pin,) = json.loads((tmp_path / "out/study/results.json").read_text())["pins"]
         assert (pin["model"], pin["verdict"]) == (model, verdict)
@@ -117,7 +117,7 @@ def test_what_is_asked_decides_how_far_it_goes(tmp_path: Path) -> None:
     """
     text = ONE_PIN.replace("tolerance = 0.05", 'goal = "decide"\ntolerance = 0.001')
     (tmp_path / "study.toml").write_text(text)
-    done = run_here("run", "study.toml", "--no-pictures", cwd=tmp_path)
+    done = run_here("run", "study.toml", cwd=tmp_path)
     (pin,) = json.loads((tmp_path / "out/study/results.json").read_text())["pins"]
     assert (pin["model"], len(pin["history"])) == ("harmonic", 3)
     assert pin["verdict"] == "unconverged"
@@ -143,7 +143,7 @@ def test_millimetres_and_inches_give_the_same_pin(
         text = text.replace(inch, f'{key} = "{value} in"')
     text = text.replace("-988.86", '"-988.86 lbf"')
     (tmp_path / "study.toml").write_text(text)
-    assert run_here("run", "study.toml", "--no-pictures", cwd=tmp_path).returncode == 0
+    assert run_here("run", "study.toml", cwd=tmp_path).returncode == 0
     (mm,) = json.loads((tmp_path / "out" / "study" / "results.json").read_text())["pins"]
     (inch,) = json.loads((run_once[0] / "out" / "study" / "results.json").read_text())["pins"]
     assert mm["max_von_mises"] == pytest.approx(inch["max_von_mises"] * 6.894757293e-3, rel=1e-9)

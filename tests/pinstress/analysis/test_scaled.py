@@ -11,7 +11,7 @@ from pinbase.records import plain
 from pinstress import Engine, changed_study, load_study, run, shipped_studies, study_from
 from pinstress.analysis import engine as engine_module
 from pinstress.analysis.solve import unjudged
-from reports.data.results import PinResult
+from reports.data.row import PinResult
 from tests.support.each import sampled
 
 STUDY = """

@@ -15,7 +15,7 @@ from pinstress.explore.sweep.parameters import parameters_of
 from pinstress.study.model.lost_fits import lost_fit_warnings
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.in_python import study_from
-from reports.data.results import PinResult
+from reports.data.row import PinResult
 from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.pins.studies import DOUBLE_SHEAR

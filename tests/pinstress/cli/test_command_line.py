@@ -80,7 +80,7 @@ def test_a_pin_that_nothing_holds_is_rigid(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("study.toml").write_text(ONE_PIN.replace('clamp = ["start"]', "clamp = []"))
-    assert run_command_line(["run", "study.toml", "--no-pictures"]) == 1
+    assert run_command_line(["run", "study.toml"]) == 1
     assert "the pin is not clamped" in capsys.readouterr().err
     (pin,) = json.loads(Path("out/study/results.json").read_text())["pins"]
     assert pin["verdict"] == "rigid"
@@ -189,7 +189,7 @@ def test_an_interrupt_leaves_nothing_behind(tmp_path: Path) -> None:
     earlier = tmp_path / "out" / "study"
     with replacing(earlier) as staging:
         (staging / "results.json").write_text("{}")
-    command = [sys.executable, "-m", "pinstress", "run", "study.toml", "--no-pictures"]
+    command = [sys.executable, "-m", "pinstress", "run", "study.toml"]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
     with started(command, cwd=tmp_path, **pipes) as process:
         deadline = time.monotonic() + 60.0
@@ -246,7 +246,7 @@ def test_a_pin_whose_numerics_fail_is_told_and_the_others_go_on(
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(fea.harmonic.section_solution, "meridian_mesh", no_mesh)
     Path("study.toml").write_text(two_pins(QUICK))
-    command = ["run", "study.toml", "--no-pictures", "--jobs", jobs]
+    command = ["run", "study.toml", "--jobs", jobs]
     assert run_command_line(command) == 1  # auto has the beam answer, and says why
     said = capsys.readouterr()
     assert "the harmonic model failed: pin B: no mesh" in said.err
@@ -275,7 +275,7 @@ def crash(pin, *rest):
     return good(pin, *rest)
 
 fea.harmonic.section_solution.meridian_mesh = crash
-sys.exit(run_command_line(["run", "study.toml", "--no-pictures", "--jobs", "2"]))
+sys.exit(run_command_line(["run", "study.toml", "--jobs", "2"]))
 """
 
 
@@ -298,7 +298,7 @@ def test_a_solid_that_needs_more_memory_than_allowed_is_refused(
     """Its first mesh, before it is solved; with room for that one alone, no finer one is made."""
     monkeypatch.chdir(tmp_path)
     Path("study.toml").write_text(ONE_PIN.replace("tolerance = 0.05", "tolerance = 0.001"))
-    command = ["run", "study.toml", "--no-pictures", "--model", "solid", "--memory-limit"]
+    command = ["run", "study.toml", "--model", "solid", "--memory-limit"]
     assert run_command_line([*command, "50"]) == 3
     told = capsys.readouterr().err
     assert "and 0.049 GB are allowed (--memory-limit): close other programs, allow more" in told

@@ -91,7 +91,7 @@ def test_an_empty_entry_of_pythonpath_is_not_the_current_folder(folder: Path) ->
 
 
 def test_an_empty_entry_of_path_is_not_the_current_folder(folder: Path) -> None:
-    command = "run", "study.toml", "--no-pictures", "--second-opinion", "ccx"
+    command = "run", "study.toml", "--second-opinion", "ccx"
     done = run(folder, ("-m", "pinstress"), *command, PATH=":.:/nowhere")
     assert done.returncode == 2
     assert "CalculiX is not installed" in done.stderr

@@ -106,7 +106,7 @@ def test_a_signal_ends_a_run_with_nothing_written(
     earlier: Path, ending: signal.Signals, jobs: str
 ) -> None:
     (earlier.parent / "study.toml").write_text(SLOW)
-    command = "run", "study.toml", "--out", "out", "--no-pictures", "--jobs", jobs, *ROOM
+    command = "run", "study.toml", "--out", "out", "--jobs", jobs, *ROOM
     with started(
         [sys.executable, "-m", "pinstress", *command],
         cwd=earlier.parent,
@@ -134,7 +134,7 @@ def test_a_run_in_the_background_of_a_script_is_not_interrupted(earlier: Path) -
     (earlier.parent / "study.toml").write_text(
         SLOW.replace("0.001", "0.5").replace("solid", "harmonic")
     )
-    command = "run", "study.toml", "--out", "out", "--no-pictures", "--jobs", "2"
+    command = "run", "study.toml", "--out", "out", "--jobs", "2"
     ignoring = ["sh", "-c", 'trap "" INT; exec "$@"', "sh", sys.executable, "-m", "pinstress"]
     with started(
         [*ignoring, *command],
@@ -156,7 +156,7 @@ def test_a_run_in_the_background_of_a_script_is_not_interrupted(earlier: Path) -
 
 def test_workers_end_when_their_run_is_killed(earlier: Path) -> None:
     (earlier.parent / "study.toml").write_text(SLOW)
-    command = "run", "study.toml", "--out", "out", "--no-pictures", "--jobs", "2", *ROOM
+    command = "run", "study.toml", "--out", "out", "--jobs", "2", *ROOM
     with started(
         [sys.executable, "-m", "pinstress", *command],
         cwd=earlier.parent,
@@ -190,7 +190,7 @@ def test_a_full_disk_is_told_and_nothing_is_written(earlier: Path, jobs: str) ->
     (earlier.parent / "study.toml").write_text(
         SLOW.replace("0.001", "0.5").replace("solid", "auto")
     )
-    command = "run", "study.toml", "--out", "out", "--no-pictures", "--jobs", jobs
+    command = "run", "study.toml", "--out", "out", "--jobs", jobs
     done = subprocess.run(
         [sys.executable, "-B", "-m", "pinstress", *command],
         cwd=earlier.parent,

@@ -20,7 +20,7 @@ ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
 
 def run(folder: Path, **environment: str) -> subprocess.CompletedProcess[str]:
     (folder / "study.toml").write_text(ONE_PIN.replace("tolerance = 0.05", "tolerance = 0.3"))
-    command = "run study.toml --second-opinion ccx --no-pictures --out out"
+    command = "run study.toml --second-opinion ccx --out out"
     with patch.dict(os.environ, environment):
         return run_here(*command.split(), cwd=folder)
 
@@ -70,7 +70,7 @@ def test_a_joint_that_calculix_has_no_model_of_is_told(
     clevis = (ROOT / "studies" / "clevis.toml").read_text()
     tight = clevis.replace("edge_radius = 0.5", "").replace("clearance = 0.05", "clearance = -0.01")
     Path("study.toml").write_text(tight.replace("[analysis]", "[analysis]\ntolerance = 0.1"))
-    command = "run study.toml --second-opinion ccx --no-pictures --no-cache --jobs 1 --out out"
+    command = "run study.toml --second-opinion ccx --no-cache --jobs 1 --out out"
     assert run_command_line(command.split()) == 1
     said = capsys.readouterr()
     assert "takes one to ten minutes a row: P (pull)." in said.err

@@ -26,8 +26,8 @@ from tests.support.programs.command_line import QUICK, run_here
 
 GUARD = 300.0  # s
 SHARP = QUICK.replace("fillet = 0.4 ", "fillet = 0.0 ")  # whose maximum does not exist: status 1
-RUN = ["run", "study.toml", "--no-pictures"]
-LOADS = ["loads", "study.toml", "--no-pictures"]
+RUN = ["run", "study.toml"]
+LOADS = ["loads", "study.toml"]
 TABLES = {  # with what they leave behind, which says the same
     "run": (RUN, SHARP, 1, "out/study/results.json"),
     "loads": (LOADS, QUICK, 0, "out/study-loads/results.json"),

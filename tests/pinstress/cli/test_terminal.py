@@ -65,7 +65,7 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("swept")
     (folder / "study.toml").write_text(SWEEP)
     (folder / "sweep.csv").write_text(TABLE)
-    command = ["run", str(folder / "study.toml"), "--no-pictures", "--vtk", "motion", "--quiet"]
+    command = ["run", str(folder / "study.toml"), "--vtk", "motion", "--quiet"]
     assert run_command_line([*command, "--out", str(folder / "out")]) == 0
     return folder / "out"
 
@@ -78,7 +78,7 @@ def row(directory: Path) -> dict[str, Any]:
 @pytest.mark.slow
 def test_colour_and_progress_on_a_terminal_unless_they_are_not_wanted(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(QUICK)
-    command = ("run", "study.toml", "--no-pictures")
+    command = ("run", "study.toml")
     bright = on_terminal(*command, cwd=tmp_path)
     assert COLOUR.search(bright)
     assert re.search(r"pin B, harmonic model, mesh \d", bright)
@@ -96,7 +96,7 @@ def test_json_is_all_there_is_on_stdout(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("study.toml").write_text(QUICK)
-    command = ["run", "study.toml", "--no-pictures", "--json", "--vtk", "none"]
+    command = ["run", "study.toml", "--json", "--vtk", "none"]
     assert run_command_line(command) == 0
     said = capsys.readouterr()
     assert json.loads(said.out) == json.loads(Path("out/study/results.json").read_text())
@@ -109,7 +109,7 @@ def test_quiet_still_says_what_was_not_reached(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("study.toml").write_text(QUICK.replace('clamp = ["start"]', "clamp = []"))
-    assert run_command_line(["run", "study.toml", "--no-pictures", "--quiet"]) == 1
+    assert run_command_line(["run", "study.toml", "--quiet"]) == 1
     assert capsys.readouterr().err.startswith("Not decided, rigid: B (landing)")
 
 
@@ -149,7 +149,7 @@ def test_all_of_a_revolved_pin(tmp_path: Path) -> None:
     of its free part goes the moment of the load beyond.
     """
     (tmp_path / "study.toml").write_text(QUICK)
-    command = ["run", str(tmp_path / "study.toml"), "--no-pictures", "--quiet", "--vtk", "solid"]
+    command = ["run", str(tmp_path / "study.toml"), "--quiet", "--vtk", "solid"]
     assert run_command_line([*command, "--out", str(tmp_path / "out")]) == 0
     blocks: Any = pyvista.read(tmp_path / "out" / "vtk" / "B_landing.vtm")
     solid = blocks["solid"]
@@ -271,8 +271,8 @@ def test_the_report_is_opened_only_when_asked(
     monkeypatch.setattr(webbrowser, "open", open_)
     monkeypatch.chdir(tmp_path)
     Path("study.toml").write_text(QUICK)
-    assert run_command_line(["run", "study.toml", "--no-pictures"]) == 0
+    assert run_command_line(["run", "study.toml"]) == 0
     assert opened == []
-    assert run_command_line(["run", "study.toml", "--no-pictures", "--open"]) == 0
+    assert run_command_line(["run", "study.toml", "--open"]) == 0
     assert opened == [(tmp_path / "out/study/report.html").resolve().as_uri()]
     assert "No browser found" in capsys.readouterr().err

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from assess.margin import Margin
 from assess.work import WorkQuantity
-from reports.data.results import PinResult, Units
+from reports.data.row import PinResult, Units
 from reports.page.lug_clauses import lug_clauses
 from reports.page.pins import pin_parts
 from tests.support.results.made_up_run import make_results

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from reports.data.results import PinShape, Results, Units
+from reports.data.results import PinShape, Results
+from reports.data.row import Units
 from reports.files import write_reports
 from reports.format.file_names import animation_name, plot_name
 from reports.format.numbers import engineering

@@ -12,8 +12,9 @@ import pytest
 
 from fea.core.places import Places, SectionPlace, SurfacePlace
 from fea.support.records import JointForces
-from reports.data.results import LugSketch, PinShape, Results, Surface, Units
-from reports.data.surface import LoadCourse
+from reports.data.results import LugSketch, PinShape, Results
+from reports.data.row import Units
+from reports.data.surface import LoadCourse, Surface
 from reports.format.drawing.camera import View
 from reports.page.lug_across import draw_across, most_loaded
 from reports.page.pin_drawing import draw_pin

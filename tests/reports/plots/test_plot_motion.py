@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from reports.data.results import LinkageMotion, Results
+from reports.data.motion import LinkageMotion
+from reports.data.results import Results
 from reports.plots.draw import draw
 from reports.plots.loads.histories import drive_plot
 from reports.plots.loads.linkage import linkage_plot

@@ -13,7 +13,8 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from reports.data.results import Floats, Results
+from pinbase.dimensions import Floats
+from reports.data.results import Results
 from reports.plots import spec as parts
 from reports.plots.all import all_plots
 from reports.plots.draw import draw

@@ -20,7 +20,8 @@ from reports.data.envelope import (
     paragraphs,
 )
 from reports.data.overview import pin_lines
-from reports.data.results import Dependence, Results
+from reports.data.results import Results
+from reports.data.row import Dependence
 from reports.format.numbers import DASH
 from reports.page.page import render
 from reports.page.paper import document

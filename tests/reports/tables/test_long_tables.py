@@ -11,7 +11,7 @@ from pyarrow import parquet
 
 from pinstress.analysis.mechanics import gather_space
 from pinstress.cli.commands import run_command_line
-from reports.data.results import ReactionTable
+from reports.data.mechanics import ReactionTable
 from reports.format.files import parquet as ours
 from reports.format.files.csv import Cell, write_csv
 from reports.format.files.parquet import write_parquet
@@ -69,7 +69,7 @@ def test_a_case_that_is_too_long_for_the_table_of_bodies_is_named(
     """Four bodies at 121 instants of the retraction, and at one of the landing."""
     monkeypatch.setattr(gather_space, "MAX_BODY_LINES", 4 * 121 - 1)
     study, out = ROOT / "studies" / "side_stay.toml", tmp_path / "out"
-    command = ["loads", str(study), "--out", str(out), "--no-pictures"]
+    command = ["loads", str(study), "--out", str(out)]
     assert run_command_line(command) == 0
     written = [*csv.DictReader((out / "bodies.csv").read_text().splitlines())]
     assert {row["case"] for row in written} == {"landing"}

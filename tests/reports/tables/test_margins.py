@@ -9,7 +9,8 @@ import pytest
 from rich.console import Console
 
 from assess.margin import RATIO_DIMENSION, Margin, PinMargin, skipped
-from reports.data.results import Results, Units
+from reports.data.results import Results
+from reports.data.row import Units
 from reports.page.paper import document
 from reports.tables.json_results import to_json
 from reports.tables.strength.margins import (

@@ -7,7 +7,7 @@ from base64 import b64decode
 
 import numpy as np
 
-from reports.data.results import Floats
+from pinbase.dimensions import Floats
 from reports.format.template import TEMPLATE_FOLDER
 
 # As the script of the page knows them; another one leaves a view empty.

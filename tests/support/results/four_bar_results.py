@@ -7,15 +7,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from reports.data.results import (
-    DriveTable,
-    Floats,
-    LinkageMotion,
-    PowerLedger,
-    ReactionTable,
-    Results,
-    Units,
-)
+from pinbase.dimensions import Floats
+from reports.data.mechanics import DriveTable, ReactionTable
+from reports.data.motion import LinkageMotion, PowerLedger
+from reports.data.results import Results
+from reports.data.row import Units
 
 CRANK, COUPLER, ROCKER, BASE = 1.0, 3.5, 3.0, 4.0
 

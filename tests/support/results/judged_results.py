@@ -7,7 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from assess.margin import Margin
-from reports.data.results import Field, PinResult, Results, SingularZone
+from fea.core.peak import SingularZone
+from reports.data.fields import Field
+from reports.data.results import Results
+from reports.data.row import PinResult
 from tests.support.results.made_up_run import make_results, shape
 from tests.support.results.rows import with_values
 

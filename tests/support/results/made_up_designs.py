@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from reports.data.results import Floats
+from pinbase.dimensions import Floats
 
 REQUIRED = 1.5
 YIELD = 700.0  # MPa

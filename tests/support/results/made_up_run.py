@@ -4,24 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from reports.data.results import (
-    BeamCheck,
-    DriveTable,
-    Field,
-    GoverningLoad,
-    LandingRange,
-    LinkageMotion,
-    MotionCheck,
-    PinResult,
-    PinShape,
-    PowerLedger,
-    Provenance,
-    PublishedValue,
-    ReactionTable,
-    Refinement,
-    Results,
-    Units,
-)
+from assess.opinion.records import BeamCheck
+from fea.core.peak import Refinement
+from reports.data.fields import Field
+from reports.data.mechanics import DriveTable, PublishedValue, ReactionTable
+from reports.data.motion import LinkageMotion, MotionCheck, PowerLedger
+from reports.data.results import PinShape, Provenance, Results
+from reports.data.row import GoverningLoad, LandingRange, PinResult, Units
 from tests.support.results.rows import row_with
 
 UNITS = Units("in", "lbf", "psi", "s")

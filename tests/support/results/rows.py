@@ -10,7 +10,8 @@ import numpy as np
 from assess.judgement import Judgement
 from fea.core.peak import ErrorParts, Maximum
 from fea.core.pin_loads import PinLoads
-from reports.data.results import LandingRange, PinResult, Results
+from reports.data.results import Results
+from reports.data.row import LandingRange, PinResult
 
 MAXIMUM_NAMES = {f.name: f.name for f in fields(Maximum)} | {"max_von_mises_interval": "interval"}
 JUDGEMENT_NAMES = {f.name: f.name for f in fields(Judgement)} | {

@@ -6,8 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from pinbase.dimensions import Floats
+from reports.data.mechanics import DriveTable, ReactionTable
 from reports.data.motion import AppliedForce
-from reports.data.results import DriveTable, Floats, ReactionTable, Results, Units
+from reports.data.results import Results
+from reports.data.row import Units
 from reports.data.skeleton import Skeleton
 
 FOLD_AXIS = np.array([0.9, 0.4, 0.1]) / np.linalg.norm([0.9, 0.4, 0.1])

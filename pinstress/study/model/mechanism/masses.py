@@ -25,5 +25,5 @@ def pin_mass(study: Study, joint: str, weight: float | None, gravity: float) -> 
         return weight / gravity
     if joint not in study.table.pin:
         return 0.0
-    density = study.table.material[study.table.pin[joint].material].density
+    density = study.material_of(joint).density
     return density * pin(study, joint).volume if density else 0.0

@@ -16,7 +16,7 @@ from pinbase.records import pack
 from pinstress.analysis import cache as cache_module
 from pinstress.analysis.cache import Cache, user_cache
 from pinstress.analysis.stored import PinOutcome
-from reports.data.results import PinResult
+from reports.data.row import PinResult
 from tests.support.each import each
 from tests.support.programs.folder_contents import contents, flipped
 

@@ -33,7 +33,7 @@ from tests.support.pins.pin_files import write_mesh
 from tests.support.pins.studies import TWO_PINS
 from tests.support.programs.folder_contents import contents, flipped
 
-RUN = ["run", "study.toml", "--no-pictures", "--jobs", "1"]
+RUN = ["run", "study.toml", "--jobs", "1"]
 
 Solve = Callable[..., list[str]]
 
@@ -204,7 +204,7 @@ def test_what_failed_is_not_kept(solve: Solve, monkeypatch: pytest.MonkeyPatch) 
 def test_two_runs_at_once_and_fields_of_a_whole_motion(tmp_path: Path) -> None:
     """The pin of the beam check, held in two ways, with a landing's range."""
     command = [sys.executable, "-m", "pinstress", "run", "studies/grenier2008.toml", "--vtk",
-               "motion", "--pins", "B,C", "--no-pictures"]  # fmt: skip
+               "motion", "--pins", "B,C"]  # fmt: skip
     environment = os.environ | {"PINSTRESS_CACHE": str(tmp_path / "cache")}
 
     def start(out: str) -> subprocess.Popen[str]:

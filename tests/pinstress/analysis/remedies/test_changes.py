@@ -115,7 +115,7 @@ def test_the_command_names_all_pins_but_those_that_it_says_it_leaves_out(
     study = tmp_path / "many.toml"
     required = "[analysis]\ntolerance = 0.1\nrequired_safety_factor = 1200\n"
     study.write_text("\n".join((head, *tables, case, required)))
-    command = ["run", str(study), "--out", str(tmp_path / "out"), "--no-pictures", "--quiet"]
+    command = ["run", str(study), "--out", str(tmp_path / "out"), "--quiet"]
     run_command_line([*command, "--vtk", "none", "--jobs", "1"])
     lines = capsys.readouterr().out.splitlines()
     (sizing,) = (line.split() for line in lines if "pinstress size" in line)
@@ -178,7 +178,7 @@ def test_the_command_and_the_files_say_it(
     Path(name).write_text(
         QUICK.replace("required_safety_factor = 10", "required_safety_factor = 300")
     )
-    command = ["run", name, "--no-pictures", "--vtk", "none", "--sensitivities"]
+    command = ["run", name, "--vtk", "none", "--sensitivities"]
     assert run_command_line(command) == 0
     said = capsys.readouterr().out
     line = "pinstress size 'my study.toml' --pins B"

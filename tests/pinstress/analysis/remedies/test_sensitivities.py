@@ -18,7 +18,7 @@ from pinstress.analysis.remedies.joint_parameters import joint_parameters
 from pinstress.analysis.remedies.sensitivities import differentiated_in_lugs
 from pinstress.analysis.solve import solutions, solve_tasks
 from pinstress.cli.commands import run_command_line
-from reports.data.results import PinSensitivities
+from reports.data.sensitivities import PinSensitivities
 from tests.support.pins.clevis import CLEVIS
 from tests.support.pins.studies import BY_SEGMENTS_AND_CORNERS
 from tests.support.programs.command_line import QUICK
@@ -37,7 +37,7 @@ def test_they_are_in_table_page_and_file(
     """
     monkeypatch.chdir(tmp_path)
     Path("a.toml").write_text(QUICK)
-    assert run_command_line(["run", "a.toml", "--no-pictures", "--vtk", "none"]) == 0
+    assert run_command_line(["run", "a.toml", "--vtk", "none"]) == 0
     capsys.readouterr()
     (found,) = json.loads(Path("out/a/results.json").read_text("utf-8"))["sensitivities"]
     rows = list(csv.DictReader(Path("out/a/sensitivities.csv").read_text("utf-8").splitlines()))

@@ -138,7 +138,7 @@ def test_the_command(tmp_path: Path) -> None:
     )
     assert curved < straight < linear
     assert all(float(r["relative_error"]) < 0.02 for r in rows if r["model"] == "harmonic")
-    assert run_here("run", str(STUDY), "--no-pictures", cwd=tmp_path).returncode == 0
+    assert run_here("run", str(STUDY), cwd=tmp_path).returncode == 0
     (run,) = json.loads((tmp_path / "out" / "one_pin" / "results.json").read_text())["pins"]
     (auto,) = [r for r in rows if r["chosen_by_auto"] == "yes"]
     assert (auto["model"], int(auto["dofs"])) == (run["model"], run["dofs"])

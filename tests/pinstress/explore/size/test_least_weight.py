@@ -13,10 +13,11 @@ import pinstress
 from geometry import Pin
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.explore.size.least_weight import LightStudy, lighten
-from pinstress.explore.size.lightest_pin import Lightest, WeightGoal, problem_of
+from pinstress.explore.size.lightest_pin import Lightest, problem_of
 from pinstress.explore.size.other_dimensions import paths_of, written_study
 from pinstress.explore.size.pin_shape import DIMENSION_KINDS, Proportions, VariedShape
 from pinstress.explore.size.pin_stress import PinStress
+from pinstress.explore.size.weight_search import WeightGoal
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import Study, load_study
 from reports.data.decision import low_factor

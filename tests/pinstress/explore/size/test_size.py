@@ -196,7 +196,7 @@ def test_a_floating_pin_of_a_linkage_is_sized_and_a_run_confirms_it(
 
 def factor(study: str, name: str) -> tuple[float, str]:
     Path(f"{name}.toml").write_text(study)
-    run_command_line(["run", f"{name}.toml", "--no-pictures", "--vtk", "none", "--quiet"])
+    run_command_line(["run", f"{name}.toml", "--vtk", "none", "--quiet"])
     (pin,) = json.loads(Path(f"out/{name}/results.json").read_text())["pins"]
     return pin["safety_factor"], pin["verdict"]
 

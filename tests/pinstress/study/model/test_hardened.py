@@ -74,7 +74,7 @@ def test_hole_is_refused(tmp_path: Path) -> None:
 def test_row_says_what_governs(tmp_path: Path) -> None:
     out = tmp_path / "out"
     path = str(study(tmp_path, CASE))
-    assert run_here("run", path, "--out", str(out), "--no-pictures", cwd=tmp_path).returncode == 0
+    assert run_here("run", path, "--out", str(out), cwd=tmp_path).returncode == 0
     (row,) = json.loads((out / "results.json").read_text())["pins"]
     first, second = row["hardened"]
     assert (row["governs"], first["part"], second["part"]) == ("core", "core", "case")

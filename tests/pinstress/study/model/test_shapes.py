@@ -100,7 +100,7 @@ def test_runs(kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
         CUT if kind == "cut" else FILE.replace("step", "msh" if kind == "mesh" else "step"),
     )
     limit = ["--memory-limit", "1000"]
-    assert run_command_line(["run", "study.toml", "--no-pictures", *limit]) in (0, 1)
+    assert run_command_line(["run", "study.toml", *limit]) in (0, 1)
     (found,) = json.loads((tmp_path / "out/study/results.json").read_text())["pins"]
     assert found["model"] == ("harmonic" if kind == "step" else "solid")
     assert 10.0 < found["max_von_mises"] < 100.0

@@ -39,7 +39,7 @@ def test_two_hundredths_apart_is_told(tmp_path: Path, stated: str, warned: int) 
 @each("command", ["check", "loads"])
 def test_both_weights_are_named_on_stderr(tmp_path: Path, command: str) -> None:
     path = gear(tmp_path, "28.32")
-    more = ["--out", str(tmp_path / "out"), "--no-pictures"] if command == "loads" else []
+    more = ["--out", str(tmp_path / "out")] if command == "loads" else []
     found = CliRunner().invoke(commands, [command, str(path), *more], catch_exceptions=False)
     assert "Warning" not in found.stdout
     line = next(i for i, x in enumerate(path.read_text().splitlines(), 1) if "= 28.32" in x)
@@ -49,7 +49,7 @@ def test_both_weights_are_named_on_stderr(tmp_path: Path, command: str) -> None:
 
 def test_a_run_says_so_too(tmp_path: Path) -> None:
     arguments = ["run", str(gear(tmp_path, "28.32")), "--out", str(tmp_path / "out")]
-    arguments += ["--pins", "A", "--cases", "landing", "--no-pictures", "--model", "beam"]
+    arguments += ["--pins", "A", "--cases", "landing", "--model", "beam"]
     found = CliRunner().invoke(commands, arguments, catch_exceptions=False)
     assert "mechanism.joint.E.weight: 28.32 lbf is stated" in found.stderr
 

@@ -51,7 +51,7 @@ def test_the_command_line_selects_among_them(tmp_path: Path) -> None:
     study(tmp_path, "*")
     checked = run_here("check", "s.toml", cwd=tmp_path)
     assert checked.stdout.count("\ncase ") == 2
-    done = run_here("run", "s.toml", "--cases", "taxi", "--no-pictures", cwd=tmp_path)
+    done = run_here("run", "s.toml", "--cases", "taxi", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     rows = (tmp_path / "out" / "s" / "safety_factors.csv").read_text().splitlines()
     assert [row.split(",")[1] for row in rows[1:]] == ["taxi"]

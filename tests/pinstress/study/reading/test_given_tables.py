@@ -29,7 +29,7 @@ def given(text: str, table: str) -> str:
 
 def safety_factor(folder: Path, name: str, text: str) -> list[str]:
     (folder / f"{name}.toml").write_text(text)
-    done = run_here("run", f"{name}.toml", "--no-pictures", cwd=folder)
+    done = run_here("run", f"{name}.toml", cwd=folder)
     assert done.returncode == 0, done.stderr
     return (folder / "out" / name / "safety_factors.csv").read_text().splitlines()
 

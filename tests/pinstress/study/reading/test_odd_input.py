@@ -118,7 +118,7 @@ def test_no_force_makes_no_stress(
         study = tmp_path / f"{i}.toml"
         study.write_text(ONE_PIN.replace("-988.86", force))
         out = str(tmp_path / "out")
-        asked = ["--model", model, "--jobs", "1", "--out", out, "--no-pictures", "--json"]
+        asked = ["--model", model, "--jobs", "1", "--out", out, "--json"]
         assert run_command_line(["run", str(study), *asked]) == 0
         (pin,) = json.loads(capsys.readouterr().out)["pins"]
         assert (pin["max_von_mises"], pin["safety_factor"]) == (0.0, None)

@@ -132,7 +132,7 @@ def test_every_command_that_reads_a_study_says_it(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("s.toml").write_text(METRIC.replace("= 7.85e-9", "= 7850"))
-    more = {"run": ["--no-pictures", "--quiet"], "loads": ["--no-pictures"], "size": ["--fos", "2"]}
+    more = {"run": ["--quiet"], "loads": [], "size": ["--fos", "2"]}
     assert run_command_line([command, "s.toml", *more.get(command, [])]) in (0, 1)
     out, said = capsys.readouterr()
     assert said.startswith("Warning: s.toml:6: material.steel.density: 7850 is 7.85e+15 kg/m^3, ")

@@ -134,7 +134,7 @@ def test_a_jump_in_a_run(tmp_path: Path) -> None:
     row = first_row(tmp_path / "out" / "s")
     assert float(row[2]) == np.nextafter(2.0, 3.0)
     (tmp_path / "a.csv").write_text("t Fx Fy\n2 4 4\n")
-    done = run_here("run", "s.toml", "--no-pictures", "--out", "alone", cwd=tmp_path)
+    done = run_here("run", "s.toml", "--out", "alone", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert float(row[3]) == pytest.approx(float(first_row(tmp_path / "alone")[3]), rel=1e-9)
 

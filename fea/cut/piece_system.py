@@ -1,0 +1,132 @@
+"""The elastic response of the piece about the cuts of a pin to nodal forces of one class."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse as sp
+
+from fea.core.linear_solver import ConstrainedSystem, SolveError
+from fea.core.material import Material
+from fea.cut.parity import Parities
+from fea.cut.two_level import MAX_FACTORED_UNKNOWNS, TwoLevel
+from fea.solid.assembly import Discretisation
+from fea.solid.model import rigid_modes
+from pinbase.arrays import Floats, Ints
+
+# Chosen by judgement, as parts of the tractions on the cuts:
+TRACTION_RANK_TOLERANCE = 1e-5  # smaller singular values of a class's forces are not solved
+MAX_UNBALANCED_TRACTION = 0.1  # a larger imbalance is not due to the section's mesh
+
+
+@dataclass(frozen=True)
+class PieceSystem:
+    """The equations of a piece on one mesh; names as of fea.cut.local_model.LocalModel.
+
+    pin: its name, for messages.
+    """
+
+    pin: str
+    space: Discretisation
+    material: Material
+    clamps: tuple[str, ...]
+    parities: Parities
+
+    @property
+    def unknowns(self) -> int:
+        """Number of displacement components, constrained ones included."""
+        return self.space.unknowns
+
+    def displace(self, forces: Floats, parity: tuple[int, ...], whole: Floats) -> Floats:
+        """Displacements (3 N, L) of a class, after balancing its forces.
+
+        forces: (3 N, L) N.
+        parity: of the class.
+        whole: (3 N,) size of all classes' forces.
+        """
+        free = np.ones(self.unknowns)
+        free[self._fixed(parity)] = 0.0
+        held = np.zeros(0, dtype=np.int64)
+        # Without clamps rigid motions are left: forces are balanced, and one corner's unknown is
+        # held for each motion, chosen by pivoted QR so that they are independent.
+        if not self.clamps:
+            modes = rigid_modes(self.space.nodes)[:, self.parities.rigid(parity)]
+            forces = self.balanced(forces, modes, whole)
+            if count := modes.shape[1]:
+                at = np.flatnonzero(free * self._at_corners)
+                _, _, pivot = scipy.linalg.qr(modes[at].T, mode="economic", pivoting=True)
+                held = at[pivot[:count]]
+        # Many loads stress the cuts in few ways: solve for the singular vectors of the forces
+        # alone.
+        left, size, right = scipy.linalg.svd(free[:, None] * forces, full_matrices=False)
+        rank = int(np.sum(size > TRACTION_RANK_TOLERANCE * size[0]))
+        some = left[:, :rank] * size[:rank]
+        u = (
+            self._two_level.solve(free, held, some)
+            if self.unknowns > MAX_FACTORED_UNKNOWNS
+            else None
+        )
+        # Small systems are factored, and those on which the iteration fails.
+        if u is None:
+            free[held] = 0.0
+            u = self._system.solve(self.stiffness.copy(), free, some)
+        return np.asarray(u @ right[:rank])
+
+    @cached_property
+    def _at_corners(self) -> Floats:
+        """1 for unknowns at corners of elements, 0 amid their edges, (3 N,)."""
+        out = np.zeros((len(self.space.nodes), 3))
+        out[self.space.elements[:, :4]] = 1.0
+        return out.ravel()
+
+    @cached_property
+    def _two_level(self) -> TwoLevel:
+        return TwoLevel(self.space, self.stiffness)
+
+    @cached_property
+    def _system(self) -> ConstrainedSystem:
+        return ConstrainedSystem(self.stiffness, np.arange(self.unknowns) // 3)
+
+    @cached_property
+    def stiffness(self) -> sp.csr_matrix:
+        """The stiffness matrix, N/m."""
+        return self.space.stiffness(self.material)
+
+    def _fixed(self, parity: tuple[int, ...]) -> Ints:
+        """Numbers of the unknowns that are zero on mirror planes and clamps."""
+        unknowns = [np.zeros(0, dtype=np.int64)]
+        boundaries = self.space.mesh.boundaries
+
+        def add(name: str, components: tuple[int, ...]) -> None:
+            nodes = self.space.basis.get_dofs(boundaries[name]).flatten()
+            unknowns.extend(3 * nodes + a for a in components)
+
+        for mirror, components in self.parities.fixed(parity).items():
+            add("start" if mirror == "z" else f"mirror {mirror}", components)
+        for name in self.clamps:
+            add(name, (0, 1, 2))
+        return np.unique(np.concatenate(unknowns))
+
+    def balanced(self, forces: Floats, modes: Floats, whole: Floats) -> Floats:
+        """Forces without the small resultant that the mesh of the section leaves.
+
+        It is taken up by the cuts' nodes, in proportion to the forces there.
+        modes: (3 N, m) rigid motions.
+
+        Raises: SolveError when the resultant is more than that.
+        """
+        if not modes.shape[1]:
+            return forces
+        lost = np.abs(modes.T @ forces) / (np.abs(modes).T @ whole + 1e-300)
+        if not lost.max() < MAX_UNBALANCED_TRACTION:
+            raise SolveError(
+                f"pin {self.pin}: the stress of the uncut pin on the cuts is not in "
+                f"equilibrium (by {lost.max():.1e}), so a load acts on the removed area",
+                "cut-unbalanced",
+            )
+        force_size = np.linalg.norm(forces.reshape(len(self.space.nodes), -1), axis=1)
+        weight = force_size.repeat(3)[:, None] * modes
+        return np.asarray(forces - weight @ np.linalg.solve(modes.T @ weight, modes.T @ forces))

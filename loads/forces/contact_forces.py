@@ -1,0 +1,171 @@
+"""Forces of a driven linkage in proportion to contact forces: friction, and those of teeth."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from loads.forces.force_balance import ForceBalance
+from loads.linkage.friction import MAX_ENUMERATED_CONTACTS, JammingError, contact_sizes
+from loads.linkage.linkage import LinkageError
+from pinbase.arrays import Complex, Floats
+
+MIN_SLIDING_SPEED = 1e-13  # of the fastest coordinate of the course: a slider this slow is at rest
+
+
+@dataclass(frozen=True)
+class ContactSource:
+    """A force (couple) in proportion to the magnitude of a contact force.
+
+    It is the friction of a slider or pin, or the radial force of teeth.
+    which: number of the slider, connection or pair of teeth.
+    share: (T,) per newton of the contact force; m for a pin.
+    f: (T, rows) multipliers that one newton (newton metre) of it brings about.
+    couples: (T, items) couples that items require in addition, per newton metre.
+    spread: (T, teeth) radial forces of teeth, per newton.
+    """
+
+    name: str
+    kind: Literal["slider", "pin", "teeth"]
+    which: int
+    share: Floats
+    f: Floats
+    couples: Floats
+    spread: Floats
+
+
+def sources_of(balance: ForceBalance) -> list[ContactSource]:
+    """Everything in proportion to a contact force: friction, and radial forces of teeth."""
+    rubbing = [*_rubbing_sliders(balance), *_rubbing_pins(balance)] if balance.rubs else []
+    return [*rubbing, *_teeth(balance)]
+
+
+def _opposing(balance: ForceBalance, speed: Floats) -> Floats:
+    """Sign of friction at a sliding speed (T,) m/s: against it, 0 at rest."""
+    return np.where(np.abs(speed) > MIN_SLIDING_SPEED * balance.motion.pace, -np.sign(speed), 0.0)
+
+
+def _rubbing_sliders(balance: ForceBalance) -> Iterator[ContactSource]:
+    """The friction of each slider that has some."""
+    motion, first = balance.motion, balance.loops.frames - 1
+    for k, s in enumerate(motion.linkage.sliders):
+        if s.friction:
+            push = np.zeros_like(motion.q)
+            push[:, first + k] = -1.0
+            share = s.friction * _opposing(balance, motion.v[:, first + k])
+            f = balance.multipliers(push, balance.no_forces)
+            yield ContactSource(
+                f"slider {s.name}", "slider", k, share, f, balance.no_couples, balance.no_spread
+            )
+
+
+def _rubbing_pins(balance: ForceBalance) -> Iterator[ContactSource]:
+    """The friction couple of each pin that has some."""
+    linkage, motion = balance.motion.linkage, balance.motion
+    for c, (joint, connection) in enumerate(linkage.connections):
+        if connection.friction:
+            couples = balance.no_couples.copy()
+            for name, sign in ((connection.body, -1.0), (linkage.carrier(joint), 1.0)):
+                if (i := linkage.index[name]) < couples.shape[1]:  # not the ground
+                    couples[:, i] = sign
+            f = balance.multipliers(
+                balance.generalised(balance.no_forces, couples), balance.no_forces
+            )
+            speed = motion.turning(joint, connection) * linkage.length_scale
+            share = connection.friction * _opposing(balance, speed)
+            name = f"pin {joint.name} at {connection.name}"
+            yield ContactSource(name, "pin", c, share, f, couples, balance.no_spread)
+
+
+def _teeth(balance: ForceBalance) -> Iterator[ContactSource]:
+    """The radial force of each pair of teeth."""
+    for g, teeth in enumerate(balance.motion.linkage.teeth):
+        spread = balance.no_spread.copy()
+        spread[:, g] = 1.0
+        f = balance.multipliers(np.zeros_like(balance.motion.q), balance.no_forces, spread)
+        share = np.full(len(f), np.tan(teeth.pressure_angle))
+        yield ContactSource(f"teeth {teeth.name}", "teeth", g, share, f, balance.no_couples, spread)
+
+
+def _contact_forces(
+    balance: ForceBalance,
+    sources: list[ContactSource],
+    f: Floats,
+    needed: Complex,
+    by: ContactSource | None = None,
+) -> list[Complex]:
+    """Contact forces of each source, (T, contacts) N.
+
+    They are those of pads along their normal, of pins in the plane, and of teeth along the
+    pitch circle.
+    f, needed: multipliers and required forces, from which they follow.
+    by: the source that brings them about; None: the forces that the bodies require.
+    """
+    couples, spread = (by.couples, by.spread) if by else (balance.couples, None)
+    closing = balance.closing(f, spread)
+    slides = any(s.kind == "slider" for s in sources)
+    normal, couple = balance.slider_forces(closing, f, needed, couples) if slides else (f, f)
+    pins = balance.connections.forces(needed, closing)
+    tangential = f[:, 2 * len(balance.loops.closing) : balance.loops.guides]
+    out = []
+    for s in sources:
+        if s.kind == "pin":
+            out.append(pins[:, [s.which]])
+        elif s.kind == "teeth":
+            out.append(tangential[:, [s.which]].astype(complex))
+        else:
+            # Two pads at a distance carry the couple by a pair of forces.
+            n, bearing = normal[:, s.which], balance.loops.linkage.sliders[s.which].bearing
+            pads = [n]
+            if bearing is not None:
+                pads = [n / 2 + sign * couple[:, s.which] / bearing for sign in (1.0, -1.0)]
+            out.append(np.stack(pads, axis=1).astype(complex))
+    return out
+
+
+def with_contacts(
+    balance: ForceBalance, f: Floats, sources: list[ContactSource]
+) -> tuple[Floats, Floats]:
+    """Forces (couples) of the sources, (T, sources), and the multipliers with them.
+
+    f: (T, rows) multipliers without the sources.
+
+    Raises: LinkageError for too many contacts with friction; JammingError.
+    """
+    free = _contact_forces(balance, sources, f, balance.needed)
+    owner = [i for i, contacts in enumerate(free) for _ in range(contacts.shape[1])]
+    rubbing = sum(sources[i].kind != "teeth" for i in owner)
+    if rubbing > MAX_ENUMERATED_CONTACTS:
+        raise LinkageError(
+            f"{rubbing} contacts have friction; at most {MAX_ENUMERATED_CONTACTS} can be solved",
+            "too-many-contacts",
+        )
+    # Contact forces that one unit of each source brings about; then sources in proportion.
+    unit = [
+        np.concatenate(_contact_forces(balance, sources, s.f, balance.no_forces, s), 1)
+        for s in sources
+    ]
+    response = np.stack([unit[i] * sources[i].share[:, None] for i in owner], axis=2)
+    try:
+        sizes = contact_sizes(np.concatenate(free, axis=1), response)
+    except JammingError as error:
+        raise _named(balance, error, response, [sources[i].name for i in owner]) from None
+    amounts = np.zeros((len(f), len(sources)))
+    for k, i in enumerate(owner):
+        amounts[:, i] += sources[i].share * sizes[:, k]
+    for i, s in enumerate(sources):
+        f = f + amounts[:, i, None] * s.f
+    return amounts, f
+
+
+def _named(
+    balance: ForceBalance, error: JammingError, response: Complex, names: list[str]
+) -> JammingError:
+    """The same error, which also names the time and what rubs."""
+    t = int(error.instants[0])
+    grips = np.abs(np.diagonal(response[t]))
+    when = f"t = {balance.motion.times[t]:.6g} s" if len(balance.motion) > 1 else ""
+    return JammingError(error.instants, error.none, error.grip, when, names[int(grips.argmax())])

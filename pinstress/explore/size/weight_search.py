@@ -1,0 +1,247 @@
+"""The search for the least weight of a pin: from a scale of the whole to dimensions as written."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from pinbase.arrays import Floats
+from pinstress.analysis.remedies.secant import (
+    FACTOR_TOLERANCE,
+    MAX_SCALE_STEP,
+)
+from pinstress.explore.size.optimise import (
+    ACTIVE_TOLERANCE,
+    ImpossibleError,
+    Optimum,
+    StressPlace,
+    least_weight,
+    optimality,
+)
+from pinstress.explore.size.pin_shape import (
+    DIMENSION_KINDS,
+    MAX_DIMENSION_RATIO,
+    Proportions,
+)
+from pinstress.explore.size.pin_stress import (
+    PinStress,
+    SizingProblem,
+    SolvedPin,
+)
+from pinstress.explore.size.standard_diameters import StandardDiameters
+from pinstress.explore.size.written_dimensions import (
+    LIMIT_ROUNDING_TOLERANCE,
+    MAX_ROUNDING_STEPS,
+    rounded_values,
+)
+
+STRESS_MARGIN = 0.004  # of the stress, below what is allowed: noise of meshes, and rounding
+WEIGHT_CONVERGENCE = 2e-3  # of the weight: what meshes are worth
+SCALE_BRACKET_TOLERANCE = 5e-3  # a bracket of scales that is not looked into
+SLOPE_RANGE = 0.06  # from the factor (its logarithm): nearer, its slope says which scale reaches it
+# Of the stress of a pin in contact, below what is allowed: near enough
+CONTACT_STRESS_TOLERANCE = 0.05
+# STRESS_MARGIN and WEIGHT_CONVERGENCE in contact, where meshes and cells scatter
+CONTACT_STRESS_MARGIN, CONTACT_WEIGHT_CONVERGENCE = 0.015, 1e-2
+MAX_CORRECTIONS = 3  # of what rough cells say
+MAX_SCALINGS = 10
+MAX_REPAIRS = 4
+
+
+@dataclass(frozen=True)
+class WeightGoal:
+    """The goal of a search for the least weight.
+
+    required: the factor.
+    vary: kinds of dimensions (DIMENSION_KINDS) that may change.
+    limits: geometric limits.
+    step: step to which diameters are rounded up, m.
+    more: as SizingGoal has it.
+    likely: by pin and case, times that factor, which the nominal design needs so that a less likely
+    one reaches it.
+    """
+
+    required: float
+    vary: tuple[str, ...] = DIMENSION_KINDS
+    limits: Proportions = field(default_factory=Proportions)
+    step: float | None = None
+    more: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    likely: Mapping[tuple[str, str], float] = field(default_factory=dict)
+
+    @property
+    def written(self) -> float | None:
+        """The required factor of the new study; None where that keeps its own requirements."""
+        return None if self.more else self.required
+
+    @property
+    def standard(self) -> StandardDiameters | None:
+        """The diameters that are multiples of the step, if there is one."""
+        return None if self.step is None else StandardDiameters(self.step)
+
+    def of_pin(self, pin: str) -> dict[str, float]:
+        """Return the multiples of the factor that a pin needs, by case, 0 for none."""
+        return {
+            place[1]: self.more.get(place, 1.0) * self.likely.get(place, 1.0)
+            for place in self.more.keys() | self.likely.keys()
+            if place[0] == pin
+        }
+
+
+class WeightSearch:
+    """The pin as a problem for pinstress.explore.size.optimise."""
+
+    def __init__(self, problem: SizingProblem, stress: PinStress, aim: WeightGoal) -> None:
+        self.problem, self.stress, self.aim = problem, stress, aim
+        self.shape = problem.shape
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats]:
+        now, far = np.log(self.shape.values), np.log(MAX_DIMENSION_RATIO)
+        return now - far, now + far
+
+    def weight(self, x: Floats) -> tuple[float, Floats]:
+        values = np.exp(x)
+        volume, slope = self.shape.volume(values)
+        return float(np.log(volume)), slope * values / volume
+
+    def limits(self, x: Floats) -> tuple[Floats, Floats]:
+        values = np.exp(x)
+        limits, slopes = self.shape.at_limits(values)
+        return limits, slopes * values
+
+    def stresses(self, x: Floats) -> tuple[StressPlace, ...]:
+        return self.raised(self.stress.at(np.exp(x)))
+
+    def raised(self, solved: SolvedPin) -> tuple[StressPlace, ...]:
+        """Return the stresses of places with a margin added, so that the search aims a little
+        low.
+        """
+        aim = CONTACT_STRESS_MARGIN if self.stress.in_contact else STRESS_MARGIN
+        return tuple(replace(p, value=p.value + aim) for p in solved.every)
+
+    def least_weight(self, start: Floats) -> Optimum:
+        """Find the least weight from logarithms of dimensions."""
+        return least_weight(
+            self,
+            start,
+            CONTACT_WEIGHT_CONVERGENCE if self.stress.in_contact else WEIGHT_CONVERGENCE,
+        )
+
+    def volume(self, solved: SolvedPin) -> float:
+        """Return the volume, m^3."""
+        return float(self.shape.volume(solved.values)[0])
+
+    def written(self, values: Floats) -> Floats:
+        """Return dimensions as they are written."""
+        metre = self.problem.study.system.factor("length")
+        return rounded_values(self.shape, values, self.aim.step, metre)
+
+    def keeps(self, values: Floats) -> bool:
+        """Return whether geometric limits hold but for the digits that are written."""
+        return float(self.shape.at_limits(values)[0].min(initial=0.0)) >= -LIMIT_ROUNDING_TOLERANCE
+
+
+def optimum_of(search: WeightSearch, near: SolvedPin) -> Optimum:
+    """Find the optimum from a design near the factor.
+
+    For a pin in contact the stresses on rough cells are corrected at the optimum, and the search is
+    repeated from there, until the finer ones agree.
+    """
+    if len(search.shape.dimensions) > 1 or not -ACTIVE_TOLERANCE <= near.worst <= 0.0:
+        optimum = search.least_weight(np.log(near.values))
+    else:
+        x, places = np.log(near.values), near.every
+        optimum = Optimum(x, search.weight(x)[0], places, optimality(search, x, places), 0)
+    if search.stress.in_contact:
+        for _ in range(MAX_CORRECTIONS):
+            sure = search.stress.sure(search.written(np.exp(optimum.x)))
+            if -CONTACT_STRESS_TOLERANCE <= sure.worst <= 0.0:
+                break
+            optimum = search.least_weight(optimum.x)
+    return optimum
+
+
+def scaled(search: WeightSearch, first: SolvedPin, roughly: bool) -> tuple[SolvedPin, Floats]:
+    """Multiply all dimensions by one number until the factor is reached.
+
+    Returns the solved design nearest to the factor, and the dimensions that reach it, `roughly` by
+    the slope of stress there. The pin stays as it is where only bores change.
+
+    Raises: ImpossibleError.
+    """
+    now, values = first, search.shape.values
+    best: SolvedPin | None = None
+    small, why = None, ""  # small: with which stress is too large
+    for _ in range(MAX_SCALINGS):
+        here = float(np.log(now.values[0] / values[0]))
+        if now.worst <= 0.0:
+            best = now
+        else:
+            small = here if small is None else max(small, here)
+        if -FACTOR_TOLERANCE <= now.worst <= 0.0:
+            break
+        top = max((p for p in now.places if p.slope is not None), key=lambda p: p.value)
+        assert top.slope is not None  # it was found with derivatives
+        if top.slope.sum() > 0.0:  # of bores alone, which weaken it
+            return first, first.values
+        leap, rate = np.log(MAX_SCALE_STEP), min(float(top.slope.sum()), -0.5)
+        target = here + float(np.clip((now.worst + STRESS_MARGIN) / -rate, -leap, leap))
+        if roughly and abs(now.worst) <= SLOPE_RANGE:
+            return now, values * np.exp(target)
+        if best is not None:
+            large = float(np.log(best.values[0] / values[0]))
+            if large - (target if small is None else small) < SCALE_BRACKET_TOLERANCE:
+                break
+            if small is not None and not small < target < large:
+                target = 0.5 * (small + large)
+        if abs(target) > np.log(MAX_DIMENSION_RATIO):
+            break
+        try:
+            tried = values * np.exp(target)
+            now = search.stress.at(tried if roughly else search.written(tried), SLOPE_RANGE)
+        except ImpossibleError as error:
+            why = f"; with {np.exp(target):.3g} times: {error}"
+            break
+    if best is None:
+        factor = search.aim.required * float(np.exp(-now.worst))
+        times = float(now.values[0] / values[0])
+        raise ImpossibleError(
+            f"with {times:.3g} times these dimensions its factor is only {factor:.4g}{why}; its "
+            "bands must be longer, its material stronger or its loads smaller"
+        )
+    return best, best.values
+
+
+def written(search: WeightSearch, optimum: Optimum) -> SolvedPin:
+    """Return the lightest design that was found and reaches the factor, as it is written.
+
+    Raises: ImpossibleError.
+    """
+    stress, step = search.stress, search.aim.step
+    candidates = [x for x in [repaired(search, np.exp(optimum.x))] if x is not None]
+    lighter = [x for x in stress.solved if x.worst <= 0.0 and search.keeps(x.values)]
+    if lighter and step is None:
+        best = min(lighter, key=search.volume)
+        if not candidates or search.volume(best) < search.volume(candidates[0]):
+            candidates += [x for x in [repaired(search, best.values)] if x is not None]
+    if not candidates:
+        raise ImpossibleError("the dimensions found, and slightly larger ones, miss the factor")
+    return min(candidates, key=search.volume)
+
+
+def repaired(search: WeightSearch, values: Floats) -> SolvedPin | None:
+    """Return a design whose written dimensions reach the factor, larger where need be; None where
+    there is none.
+    """
+    step, more = search.aim.step, 0.0
+    for k in range(MAX_REPAIRS if step is None else MAX_ROUNDING_STEPS):
+        solution = search.stress.sure(search.written(values * (1.0 + more)))
+        if solution.worst <= 0.0:
+            return solution
+        if step is None:  # by what stress exceeds, were it tension, which is enough
+            more += 0.6 * solution.worst + 5e-4 * (k + 1)
+        else:
+            more += 0.5 * step / float(values.min())
+    return None
