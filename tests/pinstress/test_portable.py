@@ -18,6 +18,7 @@ from pinbase.platform import portable as portable_numerics
 from tests.conftest import ROOT
 from tests.pinstress.cli.test_output import ROOM, SLOW, names
 from tests.support.each import sampled
+from tests.support.programs.command_line import run_here
 from tests.support.programs.process_group import alive, started
 
 # Of sums that are added in another order, times the condition of the equations (5e3 to 1e5 here).
@@ -180,12 +181,12 @@ def test_an_interrupt_ends_a_run_with_nothing_written(tmp_path: Path) -> None:
     assert names(tmp_path) == ["study.toml"]
 
 
-@pytest.mark.slow
-def test_a_chart_is_refused_where_memory_is_not_known(tmp_path: Path) -> None:
+def test_a_chart_is_refused_where_memory_is_not_known(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PINSTRESS_PORTABLE", "1")
     one = str(STUDIES / "one_pin.toml")
-    done = python(
-        tmp_path, "-m", "pinstress", "chart", one, "--pin", "B", "--case", "landing", **TWIN
-    )
+    done = run_here("chart", one, "--pin", "B", "--case", "landing", cwd=tmp_path)
     assert done.returncode == 2
     assert done.stderr == (
         "Error: chart measures the memory of processes, which works on Linux only\n"

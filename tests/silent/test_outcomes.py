@@ -31,6 +31,7 @@ from tests.support.results.judged_results import judged, row
 from tests.support.results.made_up_joint import make_joint
 
 CLEVIS = ROOT / "studies" / "clevis.toml"
+ONE_PIN = load_study(ROOT / "studies" / "one_pin.toml")
 
 
 def only(pin: PinResult) -> Results:
@@ -48,6 +49,11 @@ def clevis() -> Results:
             {"analysis.joints": "prescribed", "case.pull.distribution": "uniform"},
         )
     )
+
+
+@pytest.fixture(scope="module")
+def one_pin() -> Results:
+    return run(ONE_PIN)
 
 
 def test_safe_as_described_but_not_within_the_range_of_the_joint(clevis: Results) -> None:
@@ -77,8 +83,10 @@ def test_safe_as_described_but_not_within_the_range_of_the_joint(clevis: Results
 
 
 def test_the_exit_status_counts_it_as_a_miss(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    """The second run has its rows from the cache."""
+    monkeypatch.setenv("PINSTRESS_CACHE", str(tmp_path / "cache"))
     text = CLEVIS.read_text(encoding="utf-8").replace(
         "[analysis]", '[analysis]\njoints = "prescribed"'
     )
@@ -183,18 +191,22 @@ def test_the_shape_of_the_pulse() -> None:
     (-2.0, "safe", 0), (-0.5, "not decided", 1), (0.5, "not decided", 1), (2.0, "fails", 0),
 ])  # fmt: skip
 def test_a_converged_maximum_counts_with_its_error(
-    part: float, expected: str, status: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    part: float,
+    expected: str,
+    status: int,
+    one_pin: Results,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     """The required factor is the pin's own, moved by a part of its error: within it nothing is
     decided, though the maximum has converged.
     """
-    study = load_study(ROOT / "studies" / "one_pin.toml")
-    (first,) = run(study).pins
+    (first,) = one_pin.pins
     assert first.max_von_mises is not None
     error = (first.error_estimate or 0.0) / first.max_von_mises
     required = (first.safety_factor or 0.0) * (1.0 + part * error)
     (tmp_path / "p.toml").write_text(
-        re.sub(r"required_safety_factor = .*", f"required_safety_factor = {required}", study.text)
+        re.sub(r"required_safety_factor = .*", f"required_safety_factor = {required}", ONE_PIN.text)
     )
     command = ["run", str(tmp_path / "p.toml"), "--out", str(tmp_path / "out")]
     assert run_command_line(command) == status
@@ -245,13 +257,11 @@ def test_rupture_within_the_error_is_not_decided() -> None:
     assert worst_checks(results)["A"].outcome == "fails"
 
 
-def test_one_margin_of_a_row_has_one_meaning() -> None:
+def test_one_margin_of_a_row_has_one_meaning(one_pin: Results) -> None:
     """Against the required factor: 1.13 of 10 was -0.887 in one table and +0.13 in another."""
-    study = load_study(ROOT / "studies" / "one_pin.toml")
-    results = run(study)
-    (found,) = results.pins
-    (m,) = (m.margin for m in results.margins if m.margin.method == "von Mises stress, yield")
-    (cells,) = safety_factors_table(results).records()
+    (found,) = one_pin.pins
+    (m,) = (m.margin for m in one_pin.margins if m.margin.method == "von Mises stress, yield")
+    (cells,) = safety_factors_table(one_pin).records()
     assert found.max_von_mises is not None
     assert m.factor == 10.0
     low = (found.safety_factor or 0.0) / (1.0 + (found.error_estimate or 0.0) / found.max_von_mises)

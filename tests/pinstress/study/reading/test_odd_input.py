@@ -11,6 +11,7 @@ from pinstress.cli.commands import run_command_line
 from tests.conftest import ROOT
 from tests.support.each import each
 
+LONG = [pytest.mark.slow, pytest.mark.long]
 ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
 
 
@@ -89,7 +90,7 @@ def test_a_study_of_nothing_lists_all_that_is_missing(
 
 
 @pytest.mark.parametrize(
-    "length", [0, 40, 3000, *(pytest.param(n, marks=pytest.mark.slow) for n in (1, 200, 1000))]
+    "length", [0, 40, 3000, *(pytest.param(n, marks=LONG) for n in (1, 200, 1000))]
 )
 @pytest.mark.parametrize("ending", [".msh", ".step"])
 def test_a_file_that_was_cut_off_is_one_message(
