@@ -203,7 +203,7 @@ def _quickly(search: _Search) -> float:
     for _ in range(MAX_QUICK):
         last = search.trials[-1]
         scale = _next(search.trials, aim)
-        if last.scale >= limit.scale and scale > limit.scale:
+        if last.scale == limit.scale < scale:
             break
         near = abs(scale / last.scale - 1.0) <= QUICK_STEP
         if near and last.accuracy == "quick":

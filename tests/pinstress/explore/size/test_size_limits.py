@@ -74,6 +74,20 @@ def test_a_pin_within_limits_is_not_a_number_nobody_can_build(tmp_path: Path) ->
     assert strength / given == pytest.approx(200.0 / factor, rel=0.02)
 
 
+def test_a_pin_that_is_too_large_is_judged_at_the_limit(tmp_path: Path) -> None:
+    """The pin has 4 and 2 in, the limit halves both: by bending its factor is about 1/8 of the
+    present 120. A diameter of 4 in times the cube root of 200 / 120 would do.
+    """
+    (tmp_path / "study.toml").write_text(f"{QUICK}\n[size]\nlargest_diameter = 2\n")
+    told = run_here("size", "study.toml", "--fos", "200", "--jobs", "1", cwd=tmp_path)
+    said = " ".join(told.stderr.split())
+    match = re.search(r"is (?:about )?([\d.]+) instead of 200;.* allow about ([\d.]+) in", said)
+    assert match is not None, said
+    factor, across = map(float, match.groups())
+    assert factor == pytest.approx(120.0 / 8.0, rel=0.1)
+    assert across == pytest.approx(4.0 * (200.0 / 120.0) ** (1.0 / 3.0), rel=0.05)
+
+
 def test_diameters_of_a_series(tmp_path: Path) -> None:
     """Every diameter is one of the list, the factor is reached, and the next smaller is not."""
     text = f"{QUICK}\n[size]\nseries = [0.5, 0.75, 1, 1.25, 1.5, 1.75, 2, 2.5, 3]\n"
