@@ -39,7 +39,9 @@ def many() -> PinResult:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("samples", "turns"), [(2, 1), (41, 1), (11, 10)])
+@pytest.mark.parametrize(
+    ("samples", "turns"), [(2, 1), pytest.param(41, 1, marks=pytest.mark.long), (11, 10)]
+)
 def test_the_maximum_is_of_time_not_of_samples(samples: int, turns: int, many: PinResult) -> None:
     """Beside 4,001 samples of one turn, where a sample is at most 3e-5 s from the crest: maximum to
     1e-6, time (of whichever turn) to 1e-5 s; eleven samples of ten turns are all at one angle.
