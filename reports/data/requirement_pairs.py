@@ -13,7 +13,7 @@ LOST, GONE = "lost", "gone"
 NEWLY_MET, NEW, LOWERED, OTHER = "newly met", "new", "asks for less", "changed"
 UNCHANGED = "unchanged"
 REQUIREMENT_CHANGES = (LOST, GONE, LOWERED, OTHER, NEWLY_MET, NEW, UNCHANGED)  # order of the table
-ROW_KEYS = "pin", "case", "level", "check", "required", "reached", "outcome", "stated"
+ROW_KEYS = "pin", "case", "level", "check", "required", "reached", "outcome", "stated", "needs"
 COLLAPSE = "limit load"  # checked by itself only where a pin yields
 
 
@@ -69,10 +69,11 @@ def requirement_pairs(
 def _counts(row: RequirementRow) -> bool:
     """Return whether a requirement is missed when it is gone.
 
-    Those by the factors on loads come and go with the formulas that apply to a pin.
+    Those by the factors on loads come and go with the formulas that apply to a pin; of pins and
+    cases that the first run left out nothing was met.
     """
     by_factors = row.outcome == MET and row.check in REQUIRED_CHECKS and row.check != COLLAPSE
-    return row.stated or by_factors
+    return (row.stated and not row.left_out) or by_factors
 
 
 def _by_key(rows: list[dict[str, Any]]) -> dict[tuple[str, ...], RequirementRow]:

@@ -60,6 +60,7 @@ def compare(
         (replace(E, check="limit load", stated=False), None, ""),
         (replace(E, check="bending", stated=False), None, ""),
         (replace(E, check="rupture", stated=False, outcome="not checked"), None, ""),
+        (replace(E, case="", outcome="not checked", needs="pin E to be run"), None, ""),
     ],
 )  # fmt: skip
 def test_changes(
