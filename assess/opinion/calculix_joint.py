@@ -19,6 +19,7 @@ import re
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +31,7 @@ from assess.opinion.calculix_joint_mesh import (
     Fineness,
     Hexahedra,
     annulus_mesh,
+    layers_at_fillets,
     natural_coordinates,
     pin_mesh,
     trilinear,
@@ -41,6 +43,7 @@ from fea.cut.free_points import relieved
 from fea.support.lugs.lug import Lug
 from fea.support.lugs.rings import graded
 from geometry import ArgumentError, Pin
+from geometry.mesh.hexahedra import fillets_of
 
 Ints = NDArray[np.int64]
 
@@ -188,7 +191,7 @@ def joint_deck(
     turn = np.array([[c, -s], [s, c]]) * (0.5 if half else 1.0) * fineness.scale
     tilting = loads.tilting_links(pin.length)
     radii = {lug.connection: lug.edge_radius for lug in lugs}
-    stations = _stations(pin, radii, fineness)
+    stations = stations_of(pin, radii, fineness)
     mesh = pin_mesh(pin, stations, fineness, half)
     eyes = [
         _eye(
@@ -231,21 +234,26 @@ def plane_of(force: Floats) -> tuple[float, bool]:
     return float(np.arctan2(fy, fx)), True
 
 
-def _stations(pin: Pin, radii: Mapping[str, float], fineness: Fineness) -> list[Floats]:
+def stations_of(pin: Pin, radii: Mapping[str, float], fineness: Fineness) -> list[Floats]:
     """The ends of the layers of elements in every segment, m.
 
     radii: of the bores' edges, m.
     """
     out = []
-    for segment, start in zip(pin.segments, pin.stations, strict=False):
-        if segment.connection:
-            ends = _ring_ends(segment.length, radii[segment.connection], fineness.rings)
+    for i, (start, end) in enumerate(pairwise(pin.stations)):
+        band, name = pin.bands[i], pin.segments[i].connection
+        if name:
+            ends = _ring_ends(band.length, radii[name], fineness.rings)
             count, parts = len(ends) - 1, fineness.parts
             cut = np.interp(np.arange(count * parts + 1) / parts, range(count + 1), ends)
         else:
-            count = max(2, round(fineness.along * segment.length / pin.smallest_diameter))
-            cut = np.linspace(0.0, segment.length, count + 1)
-        out.append(start + cut)
+            count = max(2, round(fineness.along * band.length / pin.smallest_diameter))
+            cut = np.linspace(0.0, band.length, count + 1)
+        fillets = [x for x in fillets_of(pin) if x.z in (start, end)]
+        z = np.concatenate(
+            [[start] * bool(band.z0 > start), band.z0 + cut, [end] * bool(band.z1 < end)]
+        )
+        out.append(layers_at_fillets(z, fillets, fineness))
     return out
 
 
@@ -276,18 +284,20 @@ def _eye(
     fineness: Fineness,
     half: bool,
 ) -> Eye:
-    i = pin.labels.index(lug.connection)
-    radius, z = pin.segments[i].diameter / 2.0, stations[i]
+    i, band = pin.labels.index(lug.connection), pin.band(lug.connection)
+    radius, tiny = pin.segments[i].diameter / 2.0, 1e-9 * pin.length
+    on_band = (stations[i] > band.z0 - tiny) & (stations[i] < band.z1 + tiny)
+    z = stations[i][on_band]
     inside = lug.bushing
     lining = None if inside is None else (radius + inside.thickness, inside.material)
     radii = (radius, *(lining[:1] if lining else ()), lug.outer_diameter / 2.0)
     plain = annulus_mesh(radii, z, fineness, half)
     force, (x, y) = acting[0], acting[1].tolist()
     body = _opened(plain, lug, force, fineness.scale)
-    before = sum(len(x) - 1 for x in stations[:i])
+    before = sum(len(x) - 1 for x in stations[:i]) + int(on_band.argmax())
     surface = np.abs(mesh.outer - radius) < 1e-9 * radius
     ring = (mesh.layer - before) // fineness.parts
-    count = (len(z) - 1) // fineness.parts
+    count = -(-(len(z) - 1) // fineness.parts)
     rings = tuple(np.flatnonzero(surface & (ring == k)) for k in range(count))
     part = Part(f"LUG{i}", body, lug.material, lining)
     return Eye(part, force, lug.tilt * (0.5 if half else 1.0), rings, (x, y))
@@ -371,7 +381,7 @@ def edges(pin: Pin) -> Floats:
         out += [(band.radius, band.z0), (band.radius, band.z1)]
     for i, z in enumerate(pin.stations[1:-1]):
         one, other = pin.segments[i : i + 2]
-        if one.diameter != other.diameter:
+        if one.diameter != other.diameter and not pin.fillet_at(i):
             out.append((min(one.diameter, other.diameter) / 2.0, z))
         if one.bore != other.bore:
             out.append((max(one.bore, other.bore) / 2.0, z))

@@ -6,6 +6,7 @@ sectors, round a core of squares where the pin is solid. Cells outside of the ou
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry import ArgumentError, Pin
+from geometry.mesh.hexahedra import Fillet, filleted, fillets_of
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -33,6 +35,8 @@ SMALL_LOAD_SCALE = 0.01
 CORE_SIZE = 0.55  # of the least radius of a solid pin: half the side of the core, about
 CORE_ROUNDNESS = 0.4  # how round the core is: 0 a square, 1 a circle
 MAX_LOCATING_STEPS, LOCATING_TOLERANCE = 12, 1e-9  # of Newton's method for a point in an element
+# Of the layers behind a fillet, whose depths grow as this power of their number.
+FILLET_GRADING = 1.5
 CORNER_SIGNS = np.array(
     [[x, y, z] for z in (-1.0, 1.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
 )
@@ -47,6 +51,7 @@ class Fineness:
     sectors: over the whole circumference, a multiple of 8.
     layers: elements through the pin's wall, or from the core of a solid one to its surface.
     eye: elements through the wall of a lug, in addition to one in a bushing.
+    arc: elements of half of a fillet's arc, and behind it to the depth of its radius.
     along: elements of a segment without a lug, for every length of a diameter; at least two.
     stiffness: of the contact, times Young's modulus of the pin over its smallest diameter.
     scale: of forces and gaps; results are the same multiple where displacements are small.
@@ -57,9 +62,22 @@ class Fineness:
     sectors: int = 32
     layers: int = 2
     eye: int = 3
+    arc: int = 4
     along: float = 4.0
     stiffness: float = CONTACT_STIFFNESS
     scale: float = SMALL_LOAD_SCALE
+
+    @property
+    def arc_places(self) -> Floats:
+        """Distances (arc + 1,) from the corner below a fillet, over its radius, of nodes that are
+        moved onto its arc at equal angles.
+        """
+        return np.asarray(math.sqrt(2.0) * np.sin(np.linspace(0.0, math.pi / 4.0, self.arc + 1)))
+
+    @property
+    def arc_depths(self) -> Floats:
+        """Depths (arc + 1,) of the layers behind a fillet, over that to which nodes are moved."""
+        return np.asarray(np.linspace(0.0, 1.0, self.arc + 1) ** FILLET_GRADING)
 
     def __post_init__(self) -> None:
         if self.sectors % 8:
@@ -110,21 +128,28 @@ def pin_mesh(pin: Pin, z: Sequence[Floats], fineness: Fineness, half: bool) -> H
     z: ends of the layers of each segment, m.
     half: only y > 0.
 
-    Raises: ArgumentError for a pin with fillets, cones or rounded edges.
+    Raises: ArgumentError for a pin with cones, rounded edges, or a fillet before a thin wall.
     """
     if not pin.stepped:
         raise ArgumentError(f"CalculiX's model has only cylinders (pin {pin.name})", "cone")
-    if any(pin.fillet_at(i) for i in range(len(pin.segments) - 1)):
-        raise ArgumentError(f"CalculiX's model has no fillets (pin {pin.name})", "fillet")
+    fillets = fillets_of(pin)
+    if len(fillets) < sum(pin.fillet_at(i) > 0.0 for i in range(len(pin.segments) - 1)):
+        raise ArgumentError(
+            f"CalculiX's model has no fillet larger than the wall behind it (pin {pin.name})",
+            "fillet",
+        )
     bores = [s.bore / 2.0 for s in pin.segments]
-    steps = sorted({s.diameter / 2.0 for s in pin.segments} | {b for b in bores if b})
+    every = {s.diameter / 2.0 for s in pin.segments} | {b for b in bores if b}
+    every |= {fillet.r + fillet.radius for fillet in fillets}
+    steps = [r for below, r in pairwise([0.0, *sorted(every)]) if r - below > pin.tolerance]
     solid = min(bores) == 0.0
-    radii = _radii(steps, solid, fineness.layers)
+    radii = _refined(_radii(steps, solid, fineness.layers), fillets, fineness)
     section = _section(radii, solid, fineness.sectors, half)
     counts = [len(part) - 1 for part in z]
     outer = np.repeat([s.diameter / 2.0 for s in pin.segments], counts)
     ends = np.unique(np.concatenate(list(z)).round(12))
-    return _drawn(section, ends, np.repeat(bores, counts), outer)
+    sharp = _drawn(section, ends, np.repeat(bores, counts), outer)
+    return replace(sharp, nodes=filleted(pin, sharp.nodes)) if fillets else sharp
 
 
 def annulus_mesh(radii: tuple[float, ...], z: Floats, fineness: Fineness, half: bool) -> Hexahedra:
@@ -151,6 +176,36 @@ def _radii(steps: list[float], solid: bool, layers: int) -> Floats:
         s = np.linspace(0.0, 1.0, count + 1)[1:]
         out += list(a + (b - a) * s * (1.3 - 0.3 * s))
     return np.array(out)
+
+
+def _refined(radii: Floats, fillets: list[Fillet], fineness: Fineness) -> Floats:
+    """The radii with those of the layers behind fillets and of the ends of elements on their
+    arcs.
+    """
+    out = radii
+    for fillet in fillets:
+        depths, places = fillet.depth * fineness.arc_depths, fillet.radius * fineness.arc_places
+        out = with_added(out, fillet.r - depths, depths[1] / 2.0)
+        out = with_added(out, fillet.r + places, (places[-1] - places[-2]) / 2.0)
+    return out
+
+
+def layers_at_fillets(z: Floats, fillets: Sequence[Fillet], fineness: Fineness) -> Floats:
+    """The ends of the layers of a segment, m, with those of a fillet at either end."""
+    for fillet in fillets:
+        depths, places = fillet.depth * fineness.arc_depths, fillet.radius * fineness.arc_places
+        z = with_added(z, fillet.z + fillet.direction * places, (places[-1] - places[-2]) / 2.0)
+        z = with_added(z, fillet.z - fillet.direction * depths, depths[1] / 2.0)
+    return z
+
+
+def with_added(positions: Floats, added: Floats, nearest: float) -> Floats:
+    """The sorted positions, with those added that lie between them and are not nearer to one than
+    a distance.
+    """
+    between = added[(added > positions[0]) & (added < positions[-1])]
+    apart = np.abs(between[:, None] - positions).min(axis=1, initial=np.inf)
+    return np.sort(np.concatenate([positions, between[apart > nearest]]))
 
 
 def _section(radii: Floats, solid: bool, sectors: int, half: bool) -> _Section:

@@ -92,7 +92,7 @@ def hexahedra(pin: Pin, fineness: HexSize, quarters: int = 4) -> HexMesh:
                     radius = np.linalg.norm(patch.position[:, local[:, 0] == 1.0], axis=2)
                     rim = np.flatnonzero(radius.min(axis=1) > b * (1.0 - 1e-9))
                     outside[i].append(count - len(xy) + rim)
-    points = _filleted(pin, np.concatenate(cells))
+    points = filleted(pin, np.concatenate(cells))
     nodes, elements = _merged(points, NODE_TOLERANCE * pin.smallest_diameter)
     return HexMesh(nodes, elements, tuple(np.concatenate(o) for o in outside), quarters)
 
@@ -124,7 +124,7 @@ def _merged(points: Floats, tolerance: float) -> tuple[Floats, Ints]:
 
 
 @dataclass(frozen=True)
-class _Fillet:
+class Fillet:
     """A fillet at the corner of a shaft and a shoulder.
 
     r, z: of the corner, m.
@@ -154,7 +154,7 @@ class _Fillet:
         return np.asarray(self.radius * reach * weight)
 
 
-def _fillets(pin: Pin) -> list[_Fillet]:
+def fillets_of(pin: Pin) -> list[Fillet]:
     """The fillets of a pin behind whose corners there is enough material."""
     fillets = []
     for i, (left, right) in enumerate(pairwise(pin.segments)):
@@ -166,15 +166,15 @@ def _fillets(pin: Pin) -> list[_Fillet]:
         depth = min(radius, wall, thick.length)
         if radius and depth >= MIN_FILLET_DEPTH * radius:
             at = thin.diameter / 2.0, pin.stations[i + 1]
-            fillets.append(_Fillet(*at, direction, radius, depth))
+            fillets.append(Fillet(*at, direction, radius, depth))
     return fillets
 
 
-def _filleted(pin: Pin, points: Floats) -> Floats:
+def filleted(pin: Pin, points: Floats) -> Floats:
     """Nodes (..., 3) of cells with fillets, from those with sharp corners."""
     r, z = np.hypot(points[..., 0], points[..., 1]), points[..., 2]
     outwards, along = np.zeros_like(r), np.zeros_like(z)
-    for fillet in _fillets(pin):
+    for fillet in fillets_of(pin):
         move = fillet.moved(r, z)
         outwards, along = outwards + move, along + fillet.direction * move
     stretch = 1.0 + np.divide(outwards, r, out=np.zeros_like(r), where=r > 0.0)
@@ -198,7 +198,7 @@ def _layers(pin: Pin, fineness: HexSize) -> Floats:
 
 def _patches(pin: Pin, fineness: HexSize) -> list[_Patch]:
     """Square, fan and rings of a quarter disc, between all radii that occur."""
-    ends = [fillet.r + fillet.radius for fillet in _fillets(pin)]
+    ends = [fillet.r + fillet.radius for fillet in fillets_of(pin)]
     every = sorted({*ends, *(x / 2.0 for s in pin.segments for x in (s.diameter, s.bore) if x)})
     radii = [r for below, r in pairwise([0.0, *every]) if r - below > pin.tolerance]
     n, first, patches = fineness.around // 2, radii[0], []

@@ -18,6 +18,7 @@ from assess.opinion.calculix_joint import (
     edges,
     joint_deck,
     joint_opinion,
+    stations_of,
 )
 from assess.opinion.calculix_joint_deck import JointDeck, surface_weights
 from assess.opinion.calculix_joint_mesh import Fineness, Hexahedra, annulus_mesh, pin_mesh
@@ -89,6 +90,17 @@ def test_a_mesh_fills_the_pin(segments: tuple[Segment, ...], half: bool) -> None
     assert np.linalg.norm(outside, axis=1) == pytest.approx(np.full(len(outside), 0.01))
 
 
+@pytest.mark.parametrize(("radius", "rel"), [(0.001, 1e-4), (0.0045, 1e-3)])
+def test_a_mesh_fills_the_fillets_too(radius: float, rel: float) -> None:
+    """Of the polygon's volume; the layers end on the arcs, and rings lie between them."""
+    thick, shaft = Segment(0.006, 0.03), Segment(0.03, 0.02, connection="L")
+    pin, fine = Pin("P", (thick, shaft, thick), fillet=radius), Fineness(sectors=32)
+    mesh = pin_mesh(pin, stations_of(pin, {"L": 0.0005}, fine), fine, True)
+    angle = 2.0 * math.pi / 32
+    expected = 0.5 * pin.volume * math.sin(angle) / angle
+    assert volume(mesh) == pytest.approx(expected, rel=rel)
+
+
 def test_middles_of_edges_lie_where_calculix_has_them() -> None:
     """C3D20: 9 to 12 round the lower face, 13 to 16 round the upper one, 17 to 20 between; on
     straight edges of a core exactly halfway.
@@ -102,7 +114,8 @@ def test_middles_of_edges_lie_where_calculix_has_them() -> None:
 
 
 def test_what_this_mesh_lacks_is_refused() -> None:
-    pin = Pin("P", (Segment(0.01, 0.02), Segment(0.01, 0.03)), fillet=0.001)
+    bored = (Segment(0.01, 0.02, 0.0195), Segment(0.01, 0.03, 0.0195))
+    pin = Pin("P", bored, fillet=0.001)  # a wall of a quarter of the radius
     with raises(ArgumentError, "fillet", "P"):
         pin_mesh(pin, [np.array([0.0, 0.01]), np.array([0.01, 0.02])], COARSE, False)
     with raises(ArgumentError, "not-a-multiple"):

@@ -11,13 +11,18 @@ import pytest
 
 import pinstress
 from assess.opinion.calculix import stresses
-from assess.opinion.calculix_joint import contact_forces
+from assess.opinion.calculix_in_lugs import PinInLugs, largest_moment, transverse
+from assess.opinion.calculix_joint import contact_forces, joint_opinion
+from assess.opinion.calculix_joint_mesh import Fineness
 from assess.opinion.opinions import (
     MAX_MAXIMUM_DIFFERENCE,
     MAX_MOMENT_DIFFERENCE,
     MAX_STRESS_DIFFERENCE,
 )
 from fea.core.voigt import von_mises
+from geometry import body_of_revolution
+from pinstress.analysis.plan import prepare
+from pinstress.analysis.solve import solve_tasks
 from pinstress.cli.commands import run_command_line
 from tests.conftest import ROOT
 from tests.support.each import each
@@ -56,6 +61,13 @@ forces = { left = [5000, 0, 800], middle = [-10000, 0, -800], right = [5000, 0, 
 tolerance = 0.2
 joints = "contact"
 """
+FILLETED = (
+    LUGS.replace('material = "steel"\nprofile', 'material = "steel"\nfillet = 2\nprofile')
+    .replace("length = 30, diameter = 20", "length = 30, diameter = 30")
+    .replace('tilt = "free"', "")
+    .replace("[case.pull]", "[lug_defaults]\nouter_diameter = 60\nedge_radius = 0.5\n[case.pull]")
+    .replace("tolerance = 0.2", "tolerance = 0.05")
+)
 NOTHING_HOLDS = QUICK.replace('clamp = ["start"]', "").replace("clamp", "# clamp")
 
 
@@ -221,3 +233,32 @@ def test_calculix_finds_the_expected_stress_and_moment_of_a_pin_in_lugs(tmp_path
     moment = 2.0 * abs(sum(z * f[0] - f[4] for f in before))  # the deck is a half
     limit = MAX_MOMENT_DIFFERENCE + error
     assert moment == pytest.approx(float(numbers["section_moment"]), rel=limit)
+
+
+@pytest.mark.peers
+def test_calculix_finds_the_stress_of_a_fillet_beside_a_lug(tmp_path: Path) -> None:
+    """On a coarse mesh, with three elements on half of an arc; forces as statics has them."""
+    path = tmp_path / "study.toml"
+    path.write_text(FILLETED, encoding="utf-8")
+    plan = prepare(pinstress.load_study(path), pins=["P"], cases=["pull"])
+    row = next(r for o in solve_tasks(plan) for r in o.rows)
+    task, peak = plan.tasks[0], row.maximum
+    pin = body_of_revolution(task.pin)
+    assert pin is not None
+    seated = PinInLugs(pin, task.material, task.lugs)
+    mesh = Fineness(rings=3, sectors=16, layers=1, eye=1, arc=3, along=2.0)
+    loads = transverse(seated, peak.governing)
+    theirs = joint_opinion(seated.pin, seated.material, seated.lugs, loads, mesh)
+    for lug, force in (("left", 5000.0), ("middle", -10000.0), ("right", 5000.0)):
+        band = seated.pin.band(lug)
+        on = (theirs.ends[:, 0] > band.z0 - 1e-9) & (theirs.ends[:, 1] < band.z1 + 1e-9)
+        assert theirs.force[on].sum(axis=0) == pytest.approx([force, 0.0], rel=1e-3, abs=1.0)
+    assert row.joint is not None
+    moment = largest_moment(theirs, seated.pin)
+    assert moment == pytest.approx(row.joint.bending_moment, rel=MAX_MOMENT_DIFFERENCE)
+    assert peak.location is not None
+    assert peak.max_von_mises is not None
+    assert peak.own_error is not None
+    assert 0.018 < peak.location[2] < 0.020  # on the fillet
+    stress = theirs.surface_at(np.array(peak.location), task.material.poisson_ratio)
+    assert stress == pytest.approx(peak.max_von_mises, rel=0.08, abs=peak.own_error)
