@@ -87,9 +87,11 @@ def pin_lines(results: Results) -> list[PinLine]:
     worst = worst_checks(results)
     checks = list(worst.values())
     if len(worst) == 1 and len(results.pins) <= MAX_DETAILED_CASES:
-        by_case = {check.case: check for check in reversed(judged_checks(results)) if check.case}
-        checks = [by_case[row.case] for row in results.pins]
-        checks += [check for check in judged_checks(results) if not check.case]
+        # The first is the worst, of a case as of a check over all cases that is also required.
+        judged = judged_checks(results)[::-1]
+        by_case = {check.case: check for check in judged if check.case}
+        over_all = {check.check: check for check in judged if not check.case}
+        checks = [*(by_case[row.case] for row in results.pins), *over_all.values()]
     checks.sort(key=lambda check: check.rank)
     return [_line(results, check, shapes.get(check.pin)) for check in checks]
 

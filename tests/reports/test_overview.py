@@ -10,6 +10,7 @@ import pytest
 from rich.console import Console
 
 from assess.diameter_law import BEARING_EXPONENT, estimated_scale
+from assess.margin import Margin, PinMargin
 from fea.core.places import ContactPlace, Places, SurfacePlace
 from reports.data.overview import factor_at, pin_lines, quiet_cases
 from reports.data.requirement_matrix import matrix_rows
@@ -80,6 +81,16 @@ def test_a_single_pin_with_several_cases_is_one_pin_with_one_column(few: Results
     assert all(len(row["cells"]) == 1 for row in part["matrix"])
     open_ = tuple(with_values(p, verdict="singular", decided=None) for p in alone.pins)
     assert overview_part(replace(alone, pins=open_), {}, "")["why_title"] == "Why"
+
+
+def test_a_check_over_all_cases_has_one_line(few: Results) -> None:
+    """A life that is also required is judged twice, with its own factor and the required one."""
+    life = Margin("fatigue life", "", "fatigue", "limit", 1.0, 2e-6, 1e-6, "1")
+    twice = PinMargin("A", "", life), PinMargin("A", "", replace(life, factor=3.0))
+    alone = tuple(p for p in few.pins if p.pin == "A")
+    lines = pin_lines(replace(few, pins=alone, spectrum_margins=twice))
+    (line,) = (line for line in lines if line.check.check == "fatigue life")
+    assert line.check.used == pytest.approx(6.0)
 
 
 def test_a_single_pin_that_is_not_decided_is_told_once(few: Results) -> None:
