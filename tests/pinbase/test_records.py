@@ -17,8 +17,8 @@ from fea.core.peak import Maximum, Refinement, SingularZone
 from pinbase.records import in_units, pack, plain, unpack
 from pinstress.analysis.stored import Entry, PinOutcome
 from pinstress.study.schema.units import UNIT_SYSTEMS
+from reports.data import mechanics, motion, row, sensitivities
 from reports.data import results as data
-from reports.data import row
 from reports.data.fields import Field
 from reports.data.mechanics import DriveEffort, DriveTable, ReactionTable
 from reports.data.motion import BodyMotion
@@ -56,7 +56,8 @@ def test_every_array_has_a_dimension_or_is_known_to_need_none() -> None:
     """A new field that holds numbers cannot be left in SI by oversight."""
     plain = {
         f"{name}.{f.name}"
-        for name, kind in (vars(data) | vars(row)).items()
+        for module in (data, row, mechanics, motion, sensitivities)
+        for name, kind in vars(module).items()
         if dataclasses.is_dataclass(kind)
         for f in dataclasses.fields(kind)
         if str(f.type).split(" | ")[0] in ("Floats", "float", "dict[str, Floats]")
@@ -70,7 +71,8 @@ def test_every_array_has_a_dimension_or_is_known_to_need_none() -> None:
         "PinResult.published_max_von_mises",  # as published, in the study's units
         "PinResult.published_safety_factor",
         "ReactionTable.turn",  # rad
-        "PowerLedger.violation",  # a ratio
+        "PowerLedger.violation",  # ratios
+        "WheelLoad.factor",
         "CutShape.angle",  # degrees
         "LinkageMotion.angle",  # degrees, and rad
         "LinkageMotion.angular_velocity",
