@@ -13,7 +13,7 @@ from pinstress.explore.sweep.evaluate import DesignRow, Evaluator, rows_without_
 from pinstress.explore.sweep.number import Number, number_at, si_value
 from pinstress.explore.sweep.workers import PROCESS_DIED
 from pinstress.study.model.lugs import with_given_lugs
-from pinstress.study.model.requirements import common_required_factor
+from pinstress.study.model.requirements import checks_besides_yield, common_required_factor
 from pinstress.study.reading.file import Study
 from reports.data.curve import CurvePoint, FactorCurve
 
@@ -67,6 +67,7 @@ def curve(
     return FactorCurve(
         study.name, key, number.unit, number.nominal / number.factor, required,
         study.system.stress, tuple(solved), with_given_lugs(study, names),
+        checks_besides_yield(study),
     )  # fmt: skip
 
 

@@ -66,6 +66,7 @@ class FactorCurve:
     stress_unit: of the points' stresses.
     points: by rising value.
     in_lugs: the pins whose lugs are not judged.
+    required_checks: those that the study requires besides yield, which are not judged either.
     """
 
     study: str
@@ -76,6 +77,7 @@ class FactorCurve:
     stress_unit: str
     points: tuple[CurvePoint, ...]
     in_lugs: tuple[str, ...] = ()
+    required_checks: tuple[str, ...] = ()
 
     @property
     def pins(self) -> tuple[str, ...]:

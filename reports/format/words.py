@@ -286,13 +286,19 @@ def _margin_words(check: JudgedCheck) -> str:
     return f"{check.check}, {name}{spare_words(check)}{case}"
 
 
-def lugs_not_judged(pins: Iterable[str]) -> str:
-    """Return the sentence that factors are of pins alone, of which these have lugs; empty where
-    none has.
+def not_judged(pins: Iterable[str], checks: Iterable[str]) -> str:
+    """Return the sentences that factors are of pins alone, of which these have lugs, and of yield
+    alone, beside which the study requires these checks; empty without any.
     """
-    names = ", ".join(dict.fromkeys(pins))
-    of = f"The lugs of {names} are not judged here, the pin alone"
-    return f"{of}: `pinstress run` judges both." if names else ""
+    names, required = (", ".join(dict.fromkeys(x)) for x in (pins, checks))
+    of_lugs = (
+        f"The lugs of {names} are not judged here, the pin alone: `pinstress run` judges both."
+    )
+    of_checks = (
+        f"What the study requires besides yield ({required}) is not judged here: "
+        "`pinstress run` judges it."
+    )
+    return " ".join([of_lugs] * bool(names) + [of_checks] * bool(required))
 
 
 def spare_words(check: JudgedCheck) -> str:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from reports.data.curve import Crossing, FactorCurve
 from reports.format.numbers import engineering
-from reports.format.words import lugs_not_judged
+from reports.format.words import not_judged
 from reports.tables.curve import least_table
 from reports.text.fitted_table import fitted_table
 
@@ -21,7 +21,7 @@ def print_curve(curve: FactorCurve, console: Console) -> None:
     console.print(fitted_table(least_table(curve), None, console.width))
     here = "* as in the study. " if curve.nominal in curve.values else ""
     console.print(Text(f"{here}A row has the case with the pin's smallest factor."))
-    said = filter(None, [lugs_not_judged(curve.in_lugs)])
+    said = filter(None, [not_judged(curve.in_lugs, curve.required_checks)])
     for line in (*reached_lines(curve), *_failures(curve), *said):
         console.print(Text(line))
 

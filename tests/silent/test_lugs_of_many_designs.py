@@ -58,6 +58,14 @@ sobol_samples = 0
 """
 SAID = "The lugs of P are not judged here, the pin alone: `pinstress run` judges both."
 KEY = "material.steel.yield_strength"
+REQUIRED = """[[require]]
+check = "rupture"
+level = "ultimate"
+factor = 100
+"""
+REQUIRED_SAID = (
+    "What the study requires besides yield (rupture) is not judged here: `pinstress run` judges it."
+)
 
 
 @each("command", [["sweep"], ["reliability"], ["curve", KEY, "--points", "2"]])
@@ -68,7 +76,25 @@ def test_what_judges_pins_alone_says_so(
     path.write_text(STUDY)
     arguments = [command[0], str(path), *command[1:], "--out", str(tmp_path / "out"), "--quiet"]
     run_command_line([*arguments, "--jobs", "1"])
-    assert SAID in " ".join(capsys.readouterr().out.split())
+    said = " ".join(capsys.readouterr().out.split())
+    assert SAID in said
+    assert "requires besides yield" not in said
+
+
+@each("command", [["sweep"], ["reliability"], ["curve", KEY, "--points", "2"]])
+def test_what_judges_yield_alone_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], command: list[str]
+) -> None:
+    """Rows read "safe" while the run misses the required rupture."""
+    path = tmp_path / "study.toml"
+    path.write_text(f"{STUDY}{REQUIRED}")
+    arguments = [command[0], str(path), *command[1:], "--out", str(tmp_path / "out"), "--quiet"]
+    run_command_line([*arguments, "--jobs", "1"])
+    said = " ".join(capsys.readouterr().out.split())
+    assert f"{SAID} {REQUIRED_SAID}" in said
+    if command == ["sweep"]:
+        study = pinstress.load_study(path)
+        assert summary(designs_of(pinstress.sweep(study, jobs=1))).endswith(f" {REQUIRED_SAID}")
 
 
 def test_the_run_judges_the_lugs(tmp_path: Path) -> None:

@@ -37,6 +37,7 @@ from pinstress.explore.sweep.parameters import Parameter
 from pinstress.explore.sweep.possible import drawn, require_balance
 from pinstress.study.model.hardened import require_no_hardened
 from pinstress.study.model.lugs import with_given_lugs
+from pinstress.study.model.requirements import checks_besides_yield
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.vary import ReliabilityTable
 from reports.data.reliability import (
@@ -48,7 +49,7 @@ from reports.data.reliability import (
 )
 from reports.data.results import Results
 from reports.data.row import PinResult
-from reports.format.words import lugs_not_judged
+from reports.format.words import not_judged
 
 if TYPE_CHECKING:
     from pinstress.explore.sweep.cluster import Cluster
@@ -310,7 +311,8 @@ def _notes(study: Study, nominal: Results, table: Iterable[tuple[str, str]]) -> 
         "Not included: the choice of the laws themselves, the model's idealisations (linear "
         "elasticity, the shape as drawn), and whatever does not vary."
     )
-    if said := lugs_not_judged(with_given_lugs(study, (pin for pin, _ in table))):
+    in_lugs = with_given_lugs(study, (pin for pin, _ in table))
+    if said := not_judged(in_lugs, checks_besides_yield(study)):
         yield said
     if any(p.verdict == "singular" for p in nominal.pins):
         yield (

@@ -13,7 +13,7 @@ from reports.format.numbers import DASH, short
 from reports.format.packed import packed
 from reports.format.script_json import script_json
 from reports.format.template import rendered
-from reports.format.words import VERDICT_MEANINGS, lugs_not_judged
+from reports.format.words import VERDICT_MEANINGS, not_judged
 from reports.plots.theme import style_sheet
 from reports.tables.column import Grid
 
@@ -54,7 +54,7 @@ def summary(designs: Designs) -> str:
     parts += [f"{varied} varied {'parameter' if varied == 1 else 'parameters'}"]
     if designs.required is not None:
         parts += [f"required safety factor {short(designs.required)}"]
-    return f"{'; '.join(parts)}. {lugs_not_judged(designs.in_lugs)}".rstrip()
+    return f"{'; '.join(parts)}. {not_judged(designs.in_lugs, designs.required_checks)}".rstrip()
 
 
 def page_data(designs: Designs) -> dict[str, Any]:

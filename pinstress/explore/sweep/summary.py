@@ -10,7 +10,7 @@ from rich.table import Table as Grid
 
 from pinstress.explore.sweep.table import facts
 from reports.format.numbers import DASH, engineering
-from reports.format.words import lugs_not_judged
+from reports.format.words import not_judged
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -59,7 +59,8 @@ def summary(table: pa.Table, console: Console) -> None:
             markup=False,
         )
     in_lugs = stated.get("pins_in_lugs", ())
-    if said := lugs_not_judged(row["pin"] for row in rows if row["pin"] in in_lugs):
+    held = (row["pin"] for row in rows if row["pin"] in in_lugs)
+    if said := not_judged(held, stated.get("required_checks", ())):
         console.print(said, highlight=False, markup=False)
     rough = Counter(row["pin"] for row in rows if row["verdict"] in ("unconverged", "singular"))
     if rough:

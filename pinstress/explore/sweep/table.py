@@ -15,7 +15,7 @@ from pinstress.explore.sweep.evaluate import DesignRow
 from pinstress.explore.sweep.number import unit_of
 from pinstress.explore.sweep.parameters import Parameter
 from pinstress.study.model.lugs import with_given_lugs
-from pinstress.study.model.requirements import common_required_factor
+from pinstress.study.model.requirements import checks_besides_yield, common_required_factor
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from reports.folder.inside import write_inside
@@ -145,6 +145,7 @@ def _schema(study: Study, parameters: Sequence[Parameter]) -> pa.Schema:
         "parameters": {p.key: {"unit": p.number.unit, "law": p.law_text} for p in parameters},
         "required_safety_factor": common_required_factor(study),
         "pins_in_lugs": with_given_lugs(study, study.table.pin),
+        "required_checks": checks_besides_yield(study),
     }
     return pa.schema(
         schema_fields, metadata={METADATA_KEY: json.dumps(stated, ensure_ascii=False).encode()}

@@ -52,6 +52,11 @@ def common_required_factor(study: Study, pins: Iterable[str] | None = None) -> f
     return factors.pop() if len(factors) == 1 else None
 
 
+def checks_besides_yield(study: Study) -> tuple[str, ...]:
+    """Return the checks besides yield for which the study states a requirement."""
+    return tuple(dict.fromkeys(t.check for t in study.table.require if t.check != "yield"))
+
+
 def sizing_factor(study: Study, pin: str, case: str) -> float | None:
     """Return the factor against yield with which a pin meets its requirements on stress in a case,
     on yield and rupture; None without any.
