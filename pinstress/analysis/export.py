@@ -35,11 +35,11 @@ SAME_MESH_NOTE = (
 CONTACT_NOTE = (
     "What differs from pinstress: the mesh (C3D20R); contact without friction has a linear "
     "stiffness instead of exact conditions, and is found between the moved bodies. The stress of "
-    "the node agrees to 30 % and the bending moment to 5 %, besides the row's error; the stress "
-    "under lugs and at their edges is not compared. Each lug begins where it touches: shifted by "
-    "half of its clearance along its force. The mean of its outer surface is an auxiliary node "
-    "(*EQUATION) with its force; the first lug stands still, and springs of 1e-7 of the pin's "
-    "stiffness hold what nothing else does."
+    "the node agrees to 30 % and the bending moment to 5 % (10 % with fillets in lugs), besides "
+    "the row's error; the stress under lugs and at their edges is not compared. Each lug begins "
+    "where it touches: shifted by half of its clearance along its force. The mean of its outer "
+    "surface is an auxiliary node (*EQUATION) with its force; the first lug stands still, and "
+    "springs of 1e-7 of the pin's stiffness hold what nothing else does."
 )
 DIALECT_NOTES = {
     "calculix": "Run: ccx -i NAME, with NAME.inp; the stress at the nodes is in NAME.frd.",
