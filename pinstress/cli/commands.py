@@ -150,7 +150,7 @@ def _settle_environment() -> None:
 @click.option(
     "--tolerance", type=SHARE, help="Override the study's tolerance on the maximum stress."
 )
-@click.option("--plots", is_flag=True, help=PLOTS_HELP)
+@click.option("--plots/--no-pictures", default=False, help=PLOTS_HELP)
 @click.option("--pdf", is_flag=True, help="Also write report.pdf, as `pinstress pdf` does.")
 @click.option(
     "--vtk",
@@ -241,7 +241,7 @@ def _require_calculix() -> None:
 @STUDY
 @output_folder("<study name>-loads")
 @CASES_OPTION
-@click.option("--plots", is_flag=True, help=PLOTS_HELP)
+@click.option("--plots/--no-pictures", default=False, help=PLOTS_HELP)
 @click.option("--quiet", is_flag=True, help="No notes; errors are still reported.")
 def loads(study: Path, out: Path | None, **options: Any) -> int:
     loaded = read_study(study)
