@@ -148,7 +148,7 @@ def test_processes_import_nothing_from_the_current_folder(tmp_path: Path) -> Non
     (tmp_path / "matplotlibrc").write_text("nonsense")
     study = str(STUDIES / "excavator.toml")
     main = "from pinstress.__main__ import main; main()"
-    done = python(tmp_path, "-c", main, "run", study, *TWO_PINS[:-1], "--plots", **TWIN)
+    done = python(tmp_path, "-c", main, "run", study, *TWO_PINS, "--plots", **TWIN)
     assert done.returncode == 0, done.stderr
     assert "imported" not in done.stderr
     assert "matplotlibrc" not in done.stderr
