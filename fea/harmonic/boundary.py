@@ -80,11 +80,8 @@ class Outline:
         for part in parts:
             z, weight = self._quadrature(part.surface)
             by_part.append(np.einsum("eqi,eqa->eia", weight, part.at(z)))
-        edge_forces, out = (
-            around(n) * np.concatenate(by_part).reshape(-1, 3),
-            np.zeros((len(self._nodes), 3)),
-        )
-        np.add.at(out, nodes.ravel(), edge_forces)
+        out = np.zeros((len(self._nodes), 3))
+        np.add.at(out, nodes.ravel(), around(n) * np.concatenate(by_part).reshape(-1, 3))
         return out
 
     def weights(self, rows: Ints) -> Floats:
