@@ -11,7 +11,7 @@ from benchmarks.timing import table
 from fea.core.requirement import Requirement
 from fea.support.contact.held import RESOLUTIONS, ROUGH, profile_of
 from fea.support.contact.solve_joint import ContactModel, Resolution
-from fea.support.contact.variations import ResolutionComparison, compare
+from fea.support.contact.variations import ResolutionComparison, compare, nowhere
 
 CLEARANCE = 5e-5  # m, of the diameters
 LOADS = 1.0, 0.3, 0.1, 0.03, 0.01  # of the clevis's
@@ -42,4 +42,4 @@ def _solved(cells: Resolution) -> list[ResolutionComparison]:
     model = ContactModel(profile_of(given.pin), given.material, lugs, cells)
     (case,) = given.cases
     pulls = (model.solve(replace(case, forces=load * case.forces)) for load in LOADS)
-    return [compare(model, [x], Requirement(), vary=(False,))[0] for x in pulls]
+    return [compare(model, [x], Requirement(), vary=nowhere)[0] for x in pulls]

@@ -40,7 +40,7 @@ from fea.support.contact.joint_result import contact_result
 from fea.support.contact.pressed_cases import Candidates, Compared, PressedCases
 from fea.support.contact.solve_joint import MAX_CELLS, ContactModel, JointContact, Resolution
 from fea.support.contact.unit_pressures import unit_model, unit_patterns
-from fea.support.contact.variations import ResolutionComparison, compare, uncompared
+from fea.support.contact.variations import ResolutionComparison, WhichVaried, compare, uncompared
 from fea.support.hardened_row import PartSearch, hardened_row, in_core
 from fea.support.lugs.axial import seats_note
 from fea.support.lugs.fit import fitted, on_structure
@@ -111,11 +111,14 @@ class ContactSupport:
         if not contact.instants.keys() <= near.keys():
             near = contact.near(requirement)
         contact.follow(near)
-        compared = contact.compared(near, requirement, alone=self.alone is not None)
         # More cells than memory allows are none; and on the last ones all cases are answered.
         finest = finer in (None, cells)
         if finer is not None:
             finest |= _ring_count(model, finer.rings) * finer.sectors > MAX_CELLS
+        if self.alone:
+            compared = contact.uncompared(near)
+        else:
+            compared = contact.compared(near, requirement, finest)
         starts = {case: contact.press(links) for case, links in contact.instants.items()}
         held = HeldContact(
             problem, contact, starts, near, compared, finest, refused, alone=self.alone is not None
@@ -352,7 +355,7 @@ class HeldContact:
         of = self.contact
         if self.alone:
             return uncompared
-        vary = (requirement.varied,)
+        vary: WhichVaried = lambda _: (requirement.varied,)  # noqa: E731
         return lambda contact: compare(of.model, [contact], requirement, of.patterns, vary)[0]
 
     def _section(self, case: PinLoads, cells: float, requirement: Requirement) -> FoundSection:

@@ -6,7 +6,7 @@ It also tells how far stress depends on the cells and on the uncertain propertie
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -228,30 +228,53 @@ class PressedCases:
         return self.model.joined(self.states(here), self.press(here))
 
     def compared(
-        self, near: Mapping[str, Candidates], requirement: Requirement, alone: bool = False
+        self, near: Mapping[str, Candidates], requirement: Requirement, finest: bool
     ) -> dict[str, Compared]:
         """The comparisons of each case, at the instants of the largest stress of the surface on the
         first mesh and of sections.
 
-        alone: whether nothing is wanted but the places.
+        finest: whether there are no finer cells. The joint is varied where these are not needed.
         """
-        at, vary, which = list[JointContact](), list[bool](), dict[str, tuple[int, int]]()
+        at, over_joint, which = list[JointContact](), list[str | None](), dict[str, list[int]]()
         for case, links in self.instants.items():
-            stress, instant = self.sections[case].largest(self.on_rings(links))
+            instants, governs = self._peaks(near[case], case, links)
             # Surface and section may peak at one instant, which is then compared once. The joint is
             # varied where the row is: at the instant of the larger stress.
-            both = near[case].instant, instant
-            distinct = dict.fromkeys(both)
-            first, second = (len(at) + list(distinct).index(t) for t in both)
-            which[case] = first, second
+            distinct = dict.fromkeys(instants)
+            which[case] = [len(at) + list(distinct).index(t) for t in instants]
             at += [self.joined(links, t) for t in distinct]
-            governs = both[stress > near[case].largest]
-            vary += [requirement.varied and t == governs for t in distinct]
-        if alone:
-            comparisons = tuple(uncompared(contact) for contact in at)
-        else:
-            comparisons = compare(self.model, at, requirement, self.patterns, vary)
-        return {case: Compared(comparisons[a], comparisons[b]) for case, (a, b) in which.items()}
+            over_joint += [case if t == governs else None for t in distinct]
+
+        def pairs(comparisons: Sequence[ResolutionComparison]) -> dict[str, Compared]:
+            return {case: Compared(*(comparisons[k] for k in both)) for case, both in which.items()}
+
+        def vary(comparisons: Sequence[ResolutionComparison]) -> list[bool]:
+            last = {
+                case
+                for case, x in pairs(comparisons).items()
+                if finest or x.fine(self.model.material, requirement.of_case(case))
+            }
+            return [requirement.varied and case in last for case in over_joint]
+
+        return pairs(compare(self.model, at, requirement, self.patterns, vary))
+
+    def uncompared(self, near: Mapping[str, Candidates]) -> dict[str, Compared]:
+        """The instants that would be compared, without any comparison."""
+        return {
+            case: Compared(
+                *(
+                    uncompared(self.joined(links, t))
+                    for t in self._peaks(near[case], case, links)[0]
+                )
+            )
+            for case, links in self.instants.items()
+        }
+
+    def _peaks(self, near: Candidates, case: str, links: PinLoads) -> tuple[tuple[int, int], int]:
+        """The instants of the largest stress of surface and sections, and that of the larger."""
+        stress, instant = self.sections[case].largest(self.on_rings(links))
+        both = near.instant, instant
+        return both, both[stress > near.largest]
 
 
 def _instants(case: PinLoads, between: Between | None) -> PinLoads:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -121,6 +121,15 @@ class ResolutionComparison:
         return apart <= float(np.diff(case.times).max(initial=0.0))
 
 
+# Tells, from the comparisons of cells at some instants, at which the joint is varied.
+WhichVaried = Callable[[Sequence[ResolutionComparison]], Sequence[bool]]
+
+
+def nowhere(compared: Sequence[ResolutionComparison]) -> Sequence[bool]:
+    """The joint is varied at no instant (WhichVaried)."""
+    return (False,) * len(compared)
+
+
 @dataclass(frozen=True)
 class _Joint:
     """The contact at an instant with something changed: the harmonics of its pressures, and the
@@ -145,54 +154,81 @@ def compare(
     at: Sequence[JointContact],
     requirement: Requirement,
     known: PressureModes | None = None,
-    vary: Sequence[bool] | None = None,
+    vary: WhichVaried | None = None,
 ) -> tuple[ResolutionComparison, ...]:
     """Compare joints in contact, each at one instant, with coarser cells and with a varied joint.
 
     known: patterns of the pressures on them.
-    vary: by instant, whether the joint is varied, by default always.
+    vary: tells from the comparisons of cells at which instants the joint is varied, by default at
+    all.
     """
     if not at:
         return ()
-    vary = (True,) * len(at) if vary is None else vary
-    # Varied joints are solved on cells twice as large, which cost less, and compared with the joint
-    # as given on the same cells. Where the model's own cells are already large, they are used
-    # instead.
-    few = model.cells.rings < USUAL_RING_COUNT
     exact = _on_both_cells(model, at)
-    over, varied, missing = _varied(model, at, few, vary)
     parts = [(one.waves, MODE_TOLERANCE) for both in exact for one in both]
-    parts += [(one.waves, VARIATION_MODE_TOLERANCE) for one in itertools.chain(*varied)]
     # One set of patterns for all, so that all stress comes from one solution on the first mesh.
     patterns = model.patterns(parts, known)
-    out = []
+    every = [
+        [_loads(model, patterns, x, contact) for x in (*both, _in_half_the_harmonics(both[1]))]
+        for contact, both in zip(at, exact, strict=True)
+    ]
+    by_cells, out, likes = _at_places(model, requirement, every), [], []
+    for contact in at:
+        first, twice, roughest = (by_cells.pop(0) for _ in range(3))
+        arc = model.half_angle(contact)
+        cells = _by_cells(first, roughest, model.cells.rings, arc * model.cells.highest)
+        out.append(ResolutionComparison(first, cells, contact.loads.links, (), half_angle=arc))
+        likes.append(first if _large_cells(model) else twice)  # on the cells of varied joints
+    which = (True,) * len(at) if vary is None else vary(out)
+    if any(which):
+        ratios = _over_joint(model, at, requirement, patterns, likes, which)
+        out = [replace(x, over=y, left_out=z) for x, (y, z) in zip(out, ratios, strict=True)]
+    return tuple(out)
+
+
+def _large_cells(model: ContactModel) -> bool:
+    """Whether the model's own cells are so large that varied joints are solved on them.
+
+    Otherwise they are solved on cells twice as large, which cost less.
+    """
+    return model.cells.rings < USUAL_RING_COUNT
+
+
+def _over_joint(
+    model: ContactModel,
+    at: Sequence[JointContact],
+    requirement: Requirement,
+    known: PressureModes,
+    likes: Sequence[AtPlaces],
+    vary: Sequence[bool],
+) -> list[tuple[tuple[Variation, ...], str]]:
+    """The variations of each contact, and what is not included in them.
+
+    likes: the stress of the joints as given, on the same cells.
+    vary: the contacts whose joint is varied.
+    """
+    over, varied, missing = _varied(model, at, _large_cells(model), vary)
+    parts = [(one.waves, VARIATION_MODE_TOLERANCE) for one in itertools.chain(*varied)]
+    patterns = model.patterns(parts, known) if parts else known
     every = [
         [
             _loads(model, patterns, one, contact)
-            for one in (
-                *both,
-                _in_half_the_harmonics(both[1]),
-                *itertools.chain(*(x.with_rougher for x in others)),
-            )
+            for one in itertools.chain(*(x.with_rougher for x in others))
         ]
-        for contact, both, others in zip(at, exact, varied, strict=True)
+        for contact, others in zip(at, varied, strict=True)
     ]
-    stress = _at_places(model, requirement, every)
+    stress = _at_places(model, requirement, every) if any(every) else []
     by_friction = _by_friction(model, requirement, at, vary, patterns)
-    every_contact = zip(at, over, every, varied, missing, by_friction, strict=True)
-    for contact, names, loads, changed, why, more in every_contact:
-        first, twice, roughest, *others = (stress.pop(0) for _ in loads)
-        like = first if few else twice  # on the same cells as the others
+    out = []
+    for like, names, joints, why, more in zip(
+        likes, over, varied, missing, by_friction, strict=True
+    ):
         ratios = tuple(
-            _ratio(x, [others.pop(0) for _ in y.with_rougher], like, model.cells.rings, y.per_arc)
-            for x, y in zip(names, changed, strict=True)
+            _ratio(x, [stress.pop(0) for _ in y.with_rougher], like, model.cells.rings, y.per_arc)
+            for x, y in zip(names, joints, strict=True)
         )
-        arc = model.half_angle(contact)
-        cells = _by_cells(first, roughest, model.cells.rings, arc * model.cells.highest)
-        left_out = f"not included: {'; '.join(why)}" if why else ""
-        links, over_all = contact.loads.links, ratios + more
-        out.append(ResolutionComparison(first, cells, links, over_all, left_out, arc))
-    return tuple(out)
+        out.append((ratios + more, f"not included: {'; '.join(why)}" if why else ""))
+    return out
 
 
 def _ratio(

@@ -12,7 +12,7 @@ from fea.core.requirement import Requirement
 from fea.solve.solve import solve
 from fea.support.contact.held import RESOLUTIONS, ROUGH, profile_of
 from fea.support.contact.solve_joint import MAX_CELLS, ContactModel, Resolution
-from fea.support.contact.variations import ResolutionComparison, compare
+from fea.support.contact.variations import ResolutionComparison, compare, nowhere
 from fea.support.lugs.lug import LugRange
 from fea.support.records import JointResult
 from fea.support.support import PinProblem
@@ -34,7 +34,7 @@ def on(cells: Resolution, load: float) -> tuple[ResolutionComparison, float]:
     given = loose(load)
     model = ContactModel(profile_of(given.pin), given.material, given.lugs, cells)
     contact = model.solve(given.cases[0])
-    (found,) = compare(model, [contact], Requirement(), vary=(False,))
+    (found,) = compare(model, [contact], Requirement(), vary=nowhere)
     return found, float(contact.contact_angle[0].min())
 
 
