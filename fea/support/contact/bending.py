@@ -75,10 +75,10 @@ class LoadedJoint:
         mean = forces[:, :, :2] / bands.length[:, None]
         slope = couples * (12.0 / bands.length**3)[:, None]
         even, rising = parts(z[:, None] - (bands.z - bands.length / 2.0), bands.length)
-        rings = np.einsum("zr,tra->tza", even, mean) + np.einsum("zr,tra->tza", rising, slope)
+        rings = even @ mean + rising @ slope
         weight = loads.body[:, None, :2] * self.mass[:, None]
         even, _ = parts(z[:, None] - ends[:-1], np.diff(ends))
-        return np.asarray(rings + np.einsum("zs,tsa->tza", even, weight))
+        return np.asarray(rings + even @ weight)
 
 
 def _moments(way: Floats, lengths: Floats) -> Parts:
