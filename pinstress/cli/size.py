@@ -91,12 +91,17 @@ def size_and_write(study: Study, goal: SizingGoal, options: SizeOptions) -> int:
     rows = [_row(study, new, result) for result in sized]
     s = study.system
     with unneeded(target):
-        print_sizes(rows, goal.written, Units(s.length, s.force, s.stress, s.time), console())
+        units = Units(s.length, s.force, s.stress, s.time)
+        print_sizes(rows, goal.written, units, console(), sizing.written)
     if not options.quiet:
         close(study, new, target if sizing.written else None)
-    missed = [row for row in rows if row.why]
-    for row in missed:
-        click.echo(f"{row.result.capitalize()}: pin {row.pin}: {row.why}.", err=True)
+    missed: dict[tuple[str, str], list[str]] = {}
+    for row in rows:
+        if row.why:
+            missed.setdefault((row.result.capitalize(), row.why), []).append(row.pin)
+    for (result, why), pins in missed.items():
+        of = f"pin{'s' * (len(pins) > 1)} {', '.join(pins)}"
+        click.echo(f"{result}: {of}: {why}.", err=True)
     return int(bool(missed))
 
 

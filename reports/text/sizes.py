@@ -55,23 +55,28 @@ class SizeRow:
 
 
 def print_sizes(
-    rows: Sequence[SizeRow], required: float | None, units: Units, console: Console
+    rows: Sequence[SizeRow],
+    required: float | None,
+    units: Units,
+    console: Console,
+    written: bool = True,
 ) -> None:
     """Print a row per pin and the number of pins that reach the factor.
 
     required: None where it is not the same for all.
+    written: whether there is a new study.
     """
     from rich.text import Text
 
     tints = {"Result": ["yellow" if row.why else "green" for row in rows]}
     console.print(fitted_table(sizes_table(rows), units, console.width, tints))
     whys, depending = [row.why for row in rows], sum(row.depends for row in rows)
-    console.print(
-        Text(
-            f"{reached(whys, depending, required, 'in the new study')}. Lengths and the weights of "
-            "links are unchanged; check that the links have room for the new diameters."
-        )
+    outcome = reached(whys, depending, required, "in the new study" if written else "")
+    unchanged = (
+        " Lengths and the weights of links are unchanged; check that the links have room for the "
+        "new diameters."
     )
+    console.print(Text(f"{outcome}.{unchanged * written}"))
     for line in _remarks(rows):
         console.print(Text(line))
 
@@ -90,7 +95,7 @@ def reached(whys: Sequence[str], depending: int, required: float | None, where: 
     if required is not None:
         factor = f"the safety factor {short(required)}"
     pins = "pin reaches" if len(whys) == 1 else "pins reach"
-    return f"{as_described} of {len(whys)} {pins} {factor} {where}{ranges}"
+    return f"{as_described} of {len(whys)} {pins} {factor}{where and f' {where}'}{ranges}"
 
 
 def _remarks(rows: Sequence[SizeRow]) -> Iterator[str]:
