@@ -63,7 +63,7 @@ def curve(
         for value, design in zip(part, rows, strict=True):
             solved += [_point(study, number, float(value), row) for row in design]
     names = tuple(dict.fromkeys(row.pin for row in solved))
-    required = common_required_factor(study, names)
+    required = None if _is_required(number) else common_required_factor(study, names)
     return FactorCurve(
         study.name, key, number.unit, number.nominal / number.factor, required,
         study.system.stress, tuple(solved), with_given_lugs(study, names),
@@ -76,6 +76,11 @@ def _number(study: Study, key: str) -> Number:
         return number_at(study, key)
     except ArgumentError as error:
         raise study.error(f"{key}: {error}", code=error.code) from None
+
+
+def _is_required(number: Number) -> bool:
+    """Whether the number is itself a factor that is required."""
+    return number.path[0] == "require" or number.path[-1] == "required_safety_factor"
 
 
 def _range(study: Study, number: Number, ends: Ends) -> tuple[float, float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from assess.judgement import SAFE
 from reports.data.curve import Crossing, FactorCurve
 from reports.format.numbers import engineering
 from reports.format.words import not_judged
@@ -22,7 +23,7 @@ def print_curve(curve: FactorCurve, console: Console) -> None:
     here = "* as in the study. " if curve.nominal in curve.values else ""
     console.print(Text(f"{here}A row has the case with the pin's smallest factor."))
     said = filter(None, [not_judged(curve.in_lugs, curve.required_checks)])
-    for line in (*reached_lines(curve), *_failures(curve), *said):
+    for line in (*reached_lines(curve), *_unmoved(curve), *_failures(curve), *said):
         console.print(Text(line))
 
 
@@ -39,7 +40,27 @@ def reached_lines(curve: FactorCurve) -> list[str]:
             all_above = min(factors) >= curve.required
             state = "throughout" if all_above else "nowhere in this range"
             lines.append(f"Pin {pin} reaches the required factor {curve.required:g} {state}.")
+        lines += _not_safe(curve, pin)
     return lines
+
+
+def _not_safe(curve: FactorCurve, pin: str) -> list[str]:
+    """Say where a pin has the required factor, but is not shown to be safe."""
+    by_outcome: dict[str, list[float]] = {}
+    for point in curve.least(pin):
+        if (point.safety_factor or 0.0) >= (curve.required or 0.0) and point.outcome != SAFE:
+            by_outcome.setdefault(point.outcome, []).append(point.value)
+    return [
+        f"At {', '.join(map(engineering, values))} pin {pin} has this factor as described, but its "
+        f'result is "{outcome}".'
+        for outcome, values in by_outcome.items()
+    ]
+
+
+def _unmoved(curve: FactorCurve) -> list[str]:
+    """Say that the number changes no factor, as a limit of sizing or a required factor."""
+    moved = any(len({p.safety_factor for p in curve.least(pin)}) > 1 for pin in curve.pins)
+    return [] if moved else [f"No factor of safety depends on {curve.key} in this range."]
 
 
 def _reached(curve: FactorCurve, crossing: Crossing) -> str:

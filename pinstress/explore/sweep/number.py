@@ -227,6 +227,8 @@ def _path(study: Study, raw: Any, key: str) -> Path:
                 raise _no_number("has the index 0; elements are counted from 1")
             said = f"[{part + 1}]" if isinstance(part, int) else as_text(part)
             meant = nearest(part, here) if isinstance(here, Mapping) else None
+            pins = raw.get("pin", {}).items() if not path and isinstance(part, str) else ()
+            meant = next((f"pin.{name}.{key}" for name, pin in pins if _has(pin, part)), meant)
             hint = f"did you mean {meant!r}?" if meant else "write it in the study"
             raise _no_number(f"the study has no {said} there; {hint}")
         path.append(part)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ from pinstress.explore.curve import curve
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.in_python import changed_study
 from reports.data.curve import CurvePoint, FactorCurve
+from reports.text.curve import reached_lines
 from tests.support.each import each
 from tests.support.programs.command_line import ONE_PIN
 
@@ -87,6 +89,31 @@ def test_the_command_writes_table_and_picture_and_says_where_the_factor_is_reach
     assert {path.name for path in out.iterdir()} >= {"curve.csv", "curve.svg", "curve.png"}
 
 
+def test_a_required_factor_is_no_factor_that_is_reached(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Found by hand: it said "reaches the required factor 10 throughout" beside rows that fail."""
+    arguments = ["curve", str(_study(tmp_path)), "analysis.required_safety_factor"]
+    arguments += ["--from", "60", "--to", "180", "--points", "2", "--out", str(tmp_path / "o")]
+    assert run_command_line(arguments) == 0
+    printed = capsys.readouterr().out
+    assert "No factor of safety depends on analysis.required_safety_factor" in printed
+    assert "reaches" not in printed
+    assert [line.split()[-2] for line in printed.splitlines() if "converged" in line] == [
+        "safe",
+        "fails",
+    ]
+
+
+def test_what_is_not_safe_beside_its_factor_is_named() -> None:
+    low = replace(point(2.0, 10.1), outcome="not decided")
+    lines = reached_lines(of(point(1.0, 12.0), low))
+    assert lines == [
+        "Pin P reaches the required factor 10 throughout.",
+        'At 2.000 pin P has this factor as described, but its result is "not decided".',
+    ]
+
+
 def test_designs_that_cannot_be_built_are_named(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -104,6 +131,7 @@ def test_designs_that_cannot_be_built_are_named(
         ("pin.B.profil[1].diameter", "did you mean 'profile'?"),
         ("pin.B", "is a table, not a number"),
         ("case.landing.forces.B[1]", "is 0 in the study, so there is no usual range"),
+        ("profile[2].diameter", "did you mean 'pin.B.profile[2].diameter'?"),
         ("title", "is the text 'One pin', not a number"),
     ],
 )
