@@ -85,7 +85,7 @@ def _besides(results: Results) -> list[RequirementRow]:
     def besides(r: RequirementRow) -> bool:
         if r.check == "yield":
             return r.required > factors.get((r.pin, r.case), inf)
-        return r.key in stated or (r.check == "rupture" and r.outcome == DEPENDS)
+        return r.key in stated or r.outcome == DEPENDS
 
     return [r for r in requirement_rows(results) if besides(r) and not r.left_out]
 

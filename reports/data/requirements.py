@@ -224,6 +224,8 @@ def _of_limit_load(plain: RequirementRow, row: PinResult, margins: list[Margin])
     if limit is not None and limit.lower is not None and limit.upper is not None:
         outcome: Outcome = "met" if limit.lower >= plain.required else "not decided"
         outcome = "missed" if limit.upper < plain.required else outcome
+        if outcome == "met" and limit.lower < plain.required * _most_load(row):
+            outcome = "depends"
         return replace(plain, reached=limit.lower, outcome=outcome)
     if elastic.outcome == "depends":
         return elastic
@@ -249,10 +251,10 @@ def _assumed(
 def _judged(plain: RequirementRow, margins: list[Margin], row: PinResult | None) -> RequirementRow:
     """Return a requirement as its margins have it, or the row's stress if it is of that."""
     if plain.check not in ("yield", "rupture") or row is None:
-        return _of_margins(plain, margins)
+        return _of_margins(plain, margins, _most_load(row))
     hardened = row.places is not None and row.places.hardened
     if hardened and plain.check == "rupture":  # its largest stress need not be the row's
-        return _of_margins(plain, margins)
+        return _of_margins(plain, margins, _most_load(row))
     if row.max_von_mises is None:
         return replace(plain, outcome="not decided", needs=f"a maximum ({row.verdict})")
     strengths = [m.allowable for m in margins if m.allowable is not None]
@@ -274,10 +276,18 @@ def _of_stress(plain: RequirementRow, row: PinResult, strength: float) -> Requir
     return replace(plain, reached=row.safety_factor, outcome=outcome, needs="")
 
 
-def _of_margins(plain: RequirementRow, margins: list[Margin]) -> RequirementRow:
+def _most_load(row: PinResult | None) -> float:
+    """Return the largest load over the ranges of a landing, over that of the case."""
+    return max(row.landing.largest_load, 1.0) if row is not None and row.landing else 1.0
+
+
+def _of_margins(
+    plain: RequirementRow, margins: list[Margin], most_load: float = 1.0
+) -> RequirementRow:
     """Return a requirement with the least of what margins reach.
 
-    One that was not made leaves it unchecked, unless another misses it anyway.
+    One that was not made leaves it unchecked, unless another misses it anyway. One that is reached
+    depends where it is not under the most load, to which the demand is taken to be in proportion.
     """
     if not margins:
         return replace(plain, needs=f"a force across pin {plain.pin}")
@@ -287,7 +297,8 @@ def _of_margins(plain: RequirementRow, margins: list[Margin]) -> RequirementRow:
         return replace(plain, reached=known, outcome="missed")
     if needs := _needs(margins):
         return replace(plain, reached=known, needs=needs)
-    return replace(plain, reached=known, outcome="met")
+    outcome: Outcome = "met" if reached >= plain.required * most_load else "depends"
+    return replace(plain, reached=known, outcome=outcome)
 
 
 def _reached(margin: Margin) -> float:

@@ -94,6 +94,7 @@ class LandingRange:
     safety_factor: (P,), None without a yield strength.
     nominal, nominal_pulse: of the case itself. verdict: of the case, valid for all points.
     spread: for a `singular` verdict the ends of the interval of the factor, over the factor.
+    largest_load: the largest force on a band at any point, over the largest in the case.
     """
 
     pin: str
@@ -109,6 +110,7 @@ class LandingRange:
     pulses: tuple[str, ...] = ()
     nominal_pulse: str = ""
     error: float = 0.0
+    largest_load: float = 1.0
 
 
 @dataclass(frozen=True)

@@ -96,7 +96,7 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "nothing": _nothing(lines),
         "command": steps.command,
         "curve": draw_factor_curve(lines[0], results.units.length) if lines else None,
-        "accuracy": [*_accurate(lines), *certainty(lines), *measure_first(unknown)],
+        "accuracy": [*_accurate(lines), *certainty(lines), *measure_first(unknown, lines)],
         "unknowns": [_unknown(x, results) for x in unknown[:MAX_UNKNOWNS]],
         "caveats": [*skipped_checks(results, lines), *caveats(results)],
     }

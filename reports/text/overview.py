@@ -145,7 +145,7 @@ def skipped_checks(results: Results, lines: Sequence[PinLine]) -> Content:
     return [f"Skipped: {'; '.join(parts)}."] if parts else []
 
 
-def measure_first(unknown: Sequence[Unknown]) -> Content:
+def measure_first(unknown: Sequence[Unknown], lines: Sequence[PinLine] = ()) -> Content:
     """Return a sentence on the open value to measure first."""
     matters = [x for x in unknown if x.ratio > NO_SPREAD]
     if not matters:
@@ -156,10 +156,11 @@ def measure_first(unknown: Sequence[Unknown]) -> Content:
     first = matters[0]
     row, value = max(first.rows, key=lambda x: x[1].ratio)
     low, high = (factor_text(end, row.required or 1.0) for end in (value.low, value.high))
-    return [
-        f"Nothing open changes an outcome alone; {first.what} matters most (factor of {row.pin} "
-        f"{low} to {high})."
-    ]
+    others = [x.pin for x in lines if x.outcome == DEPENDS and x.check.row is None]
+    nothing = "Nothing open changes an outcome alone"
+    if others:
+        nothing = f"Checks besides yield depend on what is open ({names(others)})"
+    return [f"{nothing}; {first.what} matters most (factor of {row.pin} {low} to {high})."]
 
 
 def flips_words(unknown: Unknown, units: Units) -> str:
@@ -255,7 +256,8 @@ def _good(lines: Sequence[PinLine]) -> str:
         return ""
     state = "safe" if any(x.outcome == SAFE for x in good) else BELOW_YIELD
     if _one_pin(lines):
-        return f"{state.capitalize()} in {names([x.row.case for x in good])}."
+        cases = [x.check.case for x in good if x.check.case]
+        return f"{state.capitalize()} in {names(cases)}." if cases else ""
     return f"{names([x.pin for x in good])} {'are' if len(good) > 1 else 'is'} {state}."
 
 

@@ -98,7 +98,7 @@ def _parts(
     errors = accuracy(lines)
     if not errors and any(x.row.max_von_mises != 0.0 for x in lines):
         errors = ["not known, as every row is singular or unsolved."]
-    errors = [*errors, *measure_first(unknown)]
+    errors = [*errors, *measure_first(unknown, lines)]
     parts = [
         ("Why:", why(results, lines, 1), ""),
         ("Do:", steps.repairs if brief else [*steps.repairs, *steps.remarks], steps.command),

@@ -14,6 +14,7 @@ from pinstress import run, study_from
 from pinstress.analysis.results import RunResults
 from pinstress.cli.commands import run_command_line
 from reports.data.decision import factor_ends
+from reports.data.headline import worst_checks
 from reports.data.requirements import RequirementRow, requirement_rows
 from tests.conftest import ROOT
 from tests.pinstress.analysis.test_margins import STRENGTHS, study
@@ -133,3 +134,54 @@ def test_reliability_keeps_its_own_factor(tmp_path: Path) -> None:
         written = json.loads((out / "reliability.json").read_text(encoding="utf-8"))
         found.append({key: x for key, x in written.items() if key not in ("study_sha256", "hash")})
     assert found[0] == found[1]
+
+
+LANDED = """
+title = "Two bars under a landing"
+units = "mm-N-s"
+[material.steel]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+yield_strength = 1000
+[pin.C]
+material = "steel"
+profile = [
+  { length = 10, diameter = 20, connection = "C1" },
+  { length = 20, diameter = 20, connection = "C2" },
+  { length = 10, diameter = 20, name = "far", ear_of = "C1" },
+]
+[mechanism]
+gravity = [0, 0]
+joint.A = { at = [0, 0], fixed_in = "ground", connections = { A = "a" } }
+joint.B = { at = [800, 0], fixed_in = "ground", connections = { B = "b" } }
+joint.C = { at = [400, 300], connections = { C1 = "a", C2 = "b" }, weight = 0 }
+body.a = { mass = 0, inertia = 0 }
+body.b = { mass = 0, inertia = 0 }
+[case.landing]
+kind = "static"
+[[case.landing.apply]]
+body = "a"
+at = "C"
+[case.landing.apply.impulse]
+mass = "1000 kg"
+velocity_change = "5 m/s"
+impulse_time = 0.15
+pulse = "rectangular"
+direction = [0, -1]
+range = { impulse_time = [0.05, 0.15], velocity_change = ["5 m/s"] }
+"""
+
+
+def test_checks_by_formula_hold_over_the_range_of_a_landing() -> None:
+    """By hand: 1000 kg of 5 m/s in 0.15 s are 33.3 kN, 5/6 of which is in each bar; 1000 MPa over
+    27.8 kN / (20 * 20 mm) is 14.4, and 4.8 in 0.05 s.
+    """
+    for factor, outcome in ((4.7, "met"), (4.9, "depends"), (14.5, "missed")):
+        asked = require(check="bearing", factor=factor) + require(check="yield", factor=0.1)
+        results = run(study_from(LANDED + asked), tolerance=0.2)
+        (bearing,) = (r for r in stated(results) if r.check == "bearing")
+        assert bearing.reached == pytest.approx(14.4, rel=1e-6)
+        assert bearing.outcome == outcome
+        assert results["C", "landing"].outcome == "safe"
+        (worst,) = worst_checks(results).values()
+        assert worst.outcome == {"met": "safe", "missed": "fails"}.get(outcome, outcome)

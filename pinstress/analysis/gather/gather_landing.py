@@ -31,7 +31,14 @@ def landing_range(
     maxima = _maxima(task, solution, task.ranges[case])
     strength = solution.peak.yield_strength(task.material.yield_strength)
     nominal = range_of(solution.peak, over, maxima, strength)
-    return replace(nominal, spread=_spread(solution.peak))
+    as_described = next(x for x in task.loads if x.case == case)
+    most = _largest_force(task.ranges[case]) / (_largest_force(as_described) or 1.0)
+    return replace(nominal, spread=_spread(solution.peak), largest_load=most)
+
+
+def _largest_force(loads: PinLoads) -> float:
+    """Return the largest force on any band at any instant, N."""
+    return float(np.linalg.norm(loads.forces, axis=-1).max(initial=0.0))
 
 
 def sharing_range(task: Task, solution: Solution) -> SharingRange | None:
