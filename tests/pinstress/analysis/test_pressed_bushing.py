@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import pinstress
+from reports.data.headline import worst_checks
 from reports.files import write_reports
 from tests.support.mechanism.machines import STUDIES
 
@@ -87,3 +88,42 @@ def test_heat_presses_the_bushing_and_closes_its_bore(
     p = 6e-6 * 50.0 * B / (lug + bush)
     closed = 2.0 * 2.0 * p * B * B * A / (110e3 * (B * B - A * A))
     assert bands["EYE"].clearance == pytest.approx(0.05 + 6e-6 * 20.0 * 50.0 - closed, rel=1e-9)
+
+
+def test_a_press_fit_without_a_shank_is_judged_by_lame(tmp_path: Path) -> None:
+    """It was judged nowhere: bronze at 671 MPa of its 150 was safe. Air Force manual, 9.16, on the
+    ring of facts.md, D3: p 5618.2, hoop stress of the bore -25683 and of the hole 7022.7 psi.
+    """
+    hole, bore = {"youngs_modulus": 10.3e6, "yield_strength": 66e3}, {"youngs_modulus": 16.0e6}
+    bore["yield_strength"] = 30e3
+    ring = {"thickness": 0.0625, "material": "bronze", "interference": 0.001}
+    lug = {"material": "plate", "outer_diameter": 1.5}
+    profile = [{"length": 0.5, "diameter": 0.375, "connection": name} for name in "LR"]
+    raw = {
+        "title": "D3",
+        "units": "in-lbf-s",
+        "analysis": {"joints": "prescribed", "required_safety_factor": 1.25},
+        "material": {
+            "plate": {**hole, "poisson_ratio": 0.33},
+            "bronze": {**bore, "poisson_ratio": 0.33},
+        },
+        "case": {"pull": {"kind": "given", "forces": {"L": [-10, 0], "R": [10, 0]}}},
+        "pin": {
+            "P": {
+                "material": "plate",
+                "profile": profile,
+                "lug": {"L": lug, "R": {**lug, "bushing": ring}},
+            }
+        },
+    }
+    results = pinstress.run(pinstress.study_from(raw))
+    margins = {m.method: m for m in results["P", "pull"].margins if "press fit" in m.method}
+    bushing, eye = margins["press fit, bushing"], margins["press fit, eye"]
+    assert bushing.demand == pytest.approx(25683.0, abs=1.0)
+    assert bushing.margin == pytest.approx(30e3 / (1.25 * 25683.0) - 1.0, abs=1e-4)
+    assert bushing.passing is not None
+    assert bushing.passing.value == pytest.approx(1e-3 * 30e3 / (1.25 * 25683.0), rel=1e-4)
+    hoop, p = 7022.7, 5618.2
+    assert eye.demand == pytest.approx((hoop**2 + hoop * p + p**2) ** 0.5, abs=1.0)
+    assert (bushing.at, eye.at) == ("R", "R")
+    assert worst_checks(results)["P"].outcome == "fails"
