@@ -131,7 +131,8 @@ def _require_elastic(lug: Lug, band: Band, bore: float, material: Material) -> N
     if lug.bushing is not None:
         walls = _walls(lug, radius)
         at_yield = min(_reserve(walls, bushing_press_fit(lug, radius)))
-        fits.append(("its bushing's", lug.bushing.misfit, at_yield))
+        most = max(x.misfit for x in lug.pressed_bushings())
+        fits.append(("its bushing's", most, at_yield))
     for whose, interference, at_yield in fits:
         if interference > MAX_INTERFERENCE_RATIO * at_yield:
             times = interference / at_yield
@@ -157,16 +158,19 @@ def press_fit_stresses(
     lug: Lug, radius: float, bore: float, pin: Material
 ) -> Iterator[tuple[Material, float]]:
     """Yield the material of the bushing and of the eye, and the largest von Mises stress (Pa) in
-    each, by their press fits alone: of the pin in its bore, and of the bushing in its hole.
+    each, by their press fits alone: of the pin in its bore, and of the bushing in its hole, with
+    the most interference in its range.
 
     radius, bore: of the pin, both radii, m.
 
     Source: AFFDL-TR-69-42, 9.16, superposed.
     """
     walls = [(bore, radius, pin), *_walls(lug, radius)]
-    fields = max(-lug.clearance, 0.0) * _press_fit(walls)[1:]
+    tightest = min((lug.clearance, *(lug.range.clearance or ())))
+    fields = max(-tightest, 0.0) * _press_fit(walls)[1:]
     if lug.bushing is not None:
-        fields = fields + lug.bushing.misfit * bushing_press_fit(lug, radius)
+        most = max((x.misfit for x in lug.pressed_bushings()), key=abs)
+        fields = fields + most * bushing_press_fit(lug, radius)
     for (inner, _, material), constants in zip(walls[1:], fields, strict=True):
         yield material, _largest(inner, constants)
 
