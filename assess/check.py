@@ -18,15 +18,16 @@ import numpy as np
 
 from assess.margin import Kind, Level, Margin, skipped, strength_key
 from assess.situation import Situation
-from assess.work import Work, WorkQuantity, scaled
+from assess.work import Work, WorkQuantity
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from geometry import Band
 from pinbase.arrays import Floats
 
-# By the number of a place: the work of the allowable there; the name and the length of a dimension,
-# and the power of it with which the allowable grows.
-Shown = Callable[[int], tuple[Work, str, float, float]]
+# By the number of a place: the work of the allowable there, and the dimension that would just pass,
+# by the utilisation.
+Passing = Callable[[float], WorkQuantity | None]
+Shown = Callable[[int], tuple[Work, Passing]]
 Takes = Literal["results", "loads", "statics", "section forces"]
 Scope = Literal["case", "pin"]
 Rupture = Literal["shear", "bearing", "ultimate"]
@@ -169,9 +170,8 @@ class CheckText:
         margin = self.margin(s, float(demand[t, k]), float(allowable[k]), place, basis=basis)
         if shown is None:
             return margin
-        formula, symbol, length, power = shown(int(k))
-        passing = scaled(symbol, length, margin.used, power)
-        return replace(margin, work=(formula,), passing=passing)
+        formula, passing = shown(int(k))
+        return replace(margin, work=(formula,), passing=passing(margin.used))
 
     def along(
         self,

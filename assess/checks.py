@@ -41,6 +41,7 @@ from assess.strength.lug_out_of_plane import lug_out_of_plane
 from assess.strength.lug_stress import lug_stress
 from assess.strength.model_stress import model_rupture, model_yield
 from assess.strength.plastic_bending import plastic_bending
+from assess.strength.press_fit import press_fit
 from assess.strength.section_forces import with_section_forces
 
 CHECKS: tuple[Check, ...] = (
@@ -48,6 +49,7 @@ CHECKS: tuple[Check, ...] = (
     model_rupture,
     crushed_case,
     lug_stress,
+    press_fit,
     lug_out_of_plane,
     collapse,
     lug_collapse,

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated
 
+from fea.beam.round_section import Circle
+
 MAX_CHANGE = 10.0  # times by which a dimension is changed at most to find what just passes
 STEP_RATIO = 1.5  # of dimensions that are tried one after another; the root is between two
 PASSING_TOLERANCE = 1e-6  # relative, of the value that just passes
@@ -53,6 +55,26 @@ def scaled(symbol: str, now: float, utilisation: float, power: float) -> WorkQua
     if not 0.0 < utilisation < float("inf"):
         return None
     return WorkQuantity(symbol, now * utilisation ** (1.0 / power), "length")
+
+
+def wider(
+    section: Circle, utilisation: float, power: float, resists: Callable[[Circle], float]
+) -> WorkQuantity | None:
+    """Return the diameter of a pin that would just pass with its bore as it is; None without a
+    load, and where none within MAX_CHANGE does.
+
+    resists: what a check carries in proportion to, which grows with a power of the diameter of a
+    solid pin.
+    """
+    now, bore = 2.0 * section.outer, 2.0 * section.inner
+    if not bore or not 0.0 < utilisation < float("inf"):
+        return scaled("diameter", now, utilisation, power)
+
+    def used(wall: float) -> float:
+        return utilisation * resists(section) / resists(Circle(section.inner + wall, section.inner))
+
+    wall = would_pass(used, section.outer - section.inner)
+    return None if wall is None else WorkQuantity("diameter", bore + 2.0 * wall, "length")
 
 
 def would_pass(utilisation: Callable[[float], float], now: float) -> float | None:

@@ -27,6 +27,7 @@ from assess.clauses.eye_margin import (
     EyeCapacity,
     eye_margin,
     lug_key,
+    not_axial,
     strengths_of,
 )
 from assess.margin import Margin, strength_key
@@ -159,9 +160,11 @@ def _margins(
     instead: str,
 ) -> list[Margin]:
     """instead: the factor by which another check covers the same, where only that is given."""
-    margins = []
+    margins = list[Margin]()
     for x in loaded_eyes(s):
         if not x.axial.any():
+            if not x.transverse.any() and (pushed := not_axial(text, s, x)):
+                margins.append(pushed)
             continue
         capacity = capacity_of(s, x)
         if not isinstance(capacity, list):

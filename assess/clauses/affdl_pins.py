@@ -12,6 +12,7 @@ Source: AFFDL-TR-69-42, Stress Analysis Manual, 9.4, equations 9-12 to 9-15.
 from __future__ import annotations
 
 from dataclasses import replace
+from operator import attrgetter
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from assess.clauses.affdl_joint import DoubleShear, joint_of
 from assess.clauses.cozzone import bending_strength
 from assess.margin import Margin, for_comparison, strength_key
 from assess.situation import Situation
-from assess.work import Work, scaled, work
+from assess.work import Work, wider, work
 from fea.beam.round_section import Circle
 from geometry import ArgumentError
 
@@ -90,5 +91,6 @@ def _of_section(
         WorstPlace(forces.labels[k], float(forces.z[k]), time), s.material.name, forces.basis,
         allowed,
     )  # fmt: skip
-    d, power = 2.0 * forces.sections[k].outer, 2.0 if quantity == "shear" else 3.0
-    return replace(margin, passing=scaled("diameter", d, margin.used, power))
+    power, per = (2.0, "area") if quantity == "shear" else (3.0, "modulus")
+    passing = wider(forces.sections[k], margin.used, power, attrgetter(per))
+    return replace(margin, passing=passing)

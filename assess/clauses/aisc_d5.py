@@ -91,13 +91,17 @@ def aisc_member(text: CheckText, s: Situation) -> list[Margin]:
     margins = []
     for x in loaded_eyes(s):
         strengths = strengths_of(x.lug)
-        if across := not_axial(text, s, x):
-            margins.append(across)
-        elif strengths.missing:
+        if strengths.missing:
             margins.append(text.lacks(s, *strengths.missing))
-        elif x.axial.any():
-            for state, clause, strength, dimension in _FORMS:
-                capacity = partial(strength, yields=strengths.yields, ultimate=strengths.ultimate)
-                named = replace(text, method=f"AISC {state}", clause=f"ANSI/AISC 360-16, {clause}")
-                margins.append(eye_margin(named, s, x, x.axial, capacity, dimension))
+            continue
+        other = not_axial(text, s, x)
+        margins += [other] if other else []
+        for state, clause, strength, dimension in _FORMS:
+            bears = strength is bearing
+            if other and not bears:
+                continue
+            capacity = partial(strength, yields=strengths.yields, ultimate=strengths.ultimate)
+            named = replace(text, method=f"AISC {state}", clause=f"ANSI/AISC 360-16, {clause}")
+            force = x.size if bears else x.axial  # a pin bears in whatever direction it pushes
+            margins.append(eye_margin(named, s, x, force, capacity, dimension))
     return margins

@@ -142,13 +142,13 @@ def bth1_bearing(text: CheckText, s: Situation) -> list[Margin]:
 def _margins(text: CheckText, s: Situation, strength: Strength, dimension: str) -> list[Margin]:
     N_d, margins = s.design_factor, list[Margin]()
     for x in loaded_eyes(s):
-        strengths = strengths_of(x.lug)
-        if across := not_axial(text, s, x):
-            margins.append(across)
+        strengths, bears = strengths_of(x.lug), strength is bearing_strength
+        if not bears and (other := not_axial(text, s, x)):
+            margins.append(other)
         elif strengths.missing or N_d is None:
             lacking = [DESIGN_FACTOR_KEY] if N_d is None else []
             margins.append(text.lacks(s, *lacking, *strengths.missing))
-        elif x.axial.any():
+        else:
 
             def capacity(
                 eye: PlateEye,
@@ -158,5 +158,6 @@ def _margins(text: CheckText, s: Situation, strength: Strength, dimension: str) 
             ) -> Work:
                 return strength(eye, fy, fu, N_d)
 
-            margins.append(eye_margin(text, s, x, x.axial, capacity, dimension))
+            force = x.size if bears else x.axial  # a pin bears in whatever direction it pushes
+            margins.append(eye_margin(text, s, x, force, capacity, dimension))
     return margins

@@ -41,14 +41,19 @@ def lug_key(s: Situation, connection: str, key: str) -> str:
 
 
 def not_axial(text: CheckText, s: Situation, loaded: LoadedEye) -> Margin | None:
-    """The margin of a clause for axial loads where a force acts across the shank; else None."""
-    if loaded.transverse.max() <= MAX_TRANSVERSE_RATIO * loaded.size.max():
-        return None
-    return text.lacks(
-        s,
-        f"a force along the shank at lug {loaded.connection}, where it also acts across (clauses "
-        'for that: code = "aircraft")',
-    )
+    """The margin of a clause for a pull along the shank where a force acts across it, or only
+    pushes; else None.
+    """
+    at = f"at lug {loaded.connection}"
+    if loaded.transverse.max() > MAX_TRANSVERSE_RATIO * loaded.size.max():
+        return text.lacks(
+            s,
+            f"a force along the shank {at}, where it also acts across (clauses for that: code = "
+            '"aircraft")',
+        )
+    if not loaded.axial.any():
+        return text.lacks(s, f"a pull of the shank {at}, where the force only pushes it")
+    return None
 
 
 def eye_margin(

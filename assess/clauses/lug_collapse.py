@@ -56,7 +56,7 @@ def lug_rupture(text: CheckText, s: Situation) -> list[Margin]:
     margins = []
     for loaded in loaded_eyes(s):
         limit = limits.get(loaded.connection)
-        if limit is None or not loaded.axial.any():
+        if limit is None:
             continue
         if across := not_axial(text, s, loaded):
             margins.append(across)
@@ -73,8 +73,6 @@ def _of_lug(text: CheckText, s: Situation, loaded: LoadedEye, limit: LugCollapse
         return [across]
     if limit.lower is None or limit.upper is None:
         return [text.lacks(s, limit.needs)]
-    if not loaded.axial.any():
-        return []
     bracket = f"collapse at 1 to {limit.upper / limit.lower:.3f} times what is allowed"
     return [_against(text, s, loaded, limit.lower, bracket)]
 

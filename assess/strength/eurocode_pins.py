@@ -28,10 +28,11 @@ from functools import partial
 
 import numpy as np
 
-from assess.check import CheckText, check
+from assess.check import CheckText, Passing, check
 from assess.margin import RATIO_DIMENSION, Margin, strength_key
 from assess.situation import SectionForces, Situation
-from assess.work import Work, work
+from assess.work import Work, scaled, wider, work
+from fea.beam.round_section import Circle
 from pinbase.arrays import Floats
 
 GAMMA_M0, GAMMA_M2, GAMMA_M6_SER = 1.0, 1.25, 1.0  # recommended partial factors; 2.2 of the same
@@ -106,14 +107,14 @@ def eurocode_shear(text: CheckText, s: Situation) -> list[Margin]:
     if fu is None:
         return [text.lacks(s, strength_key(s.material.name, "ultimate"))]
 
-    def shown(k: int) -> tuple[Work, str, float, float]:
+    def shown(k: int) -> tuple[Work, Passing]:
         section = s.forces.sections[k]
         resisted = work(
             "F_v,Rd", float(shear_resistance(section.area, fu)), "force",
             "0.6 × {A} × {f_up} / {γ_M2}", A=(section.area, "length^2"), f_up=(fu, "stress"),
             γ_M2=(GAMMA_M2, "1"),
         )  # fmt: skip
-        return resisted, "diameter", 2.0 * section.outer, 2.0
+        return resisted, lambda used: wider(section, used, 2.0, lambda x: x.area)
 
     return [text.along(s, s.forces.shear, _sheared(s.forces, fu), shown=shown)]
 
@@ -195,20 +196,23 @@ def _bending(text: CheckText, s: Situation, *, replaceable: bool = False) -> lis
     if fy is None:
         return [text.lacks(s, strength_key(s.material.name, "yield"))]
 
-    def shown(k: int) -> tuple[Work, str, float, float]:
+    def resistance(x: Circle) -> float:
+        W_pl = x.plastic_modulus
+        return float(bending_resistance(x.modulus, fy, plastic=W_pl, replaceable=replaceable))
+
+    def shown(k: int) -> tuple[Work, Passing]:
         section = s.forces.sections[k]
-        W_el, W_pl = section.modulus, section.plastic_modulus
-        resisted = bending_resistance(W_el, fy, plastic=W_pl, replaceable=replaceable)
+        W_el, W_pl, resisted = section.modulus, section.plastic_modulus, resistance(section)
         strength, moduli = {"f_yp": (fy, "stress")}, {"W_el": (W_el, "length^3")}
         if replaceable:
             formula = "0.8 × {W_el} × {f_yp} / {γ_M6}"
-            moment = work("M_Rd,ser", float(resisted), "moment", formula, **moduli, **strength,
+            moment = work("M_Rd,ser", resisted, "moment", formula, **moduli, **strength,
                           γ_M6=(GAMMA_M6_SER, "1"))  # fmt: skip
         else:
             formula = "min(1.5 × {W_el}, {W_pl}) × {f_yp} / {γ_M0}"
-            moment = work("M_Rd", float(resisted), "moment", formula, **moduli, **strength,
+            moment = work("M_Rd", resisted, "moment", formula, **moduli, **strength,
                           W_pl=(W_pl, "length^3"), γ_M0=(GAMMA_M0, "1"))  # fmt: skip
-        return moment, "diameter", 2.0 * section.outer, 3.0
+        return moment, lambda used: wider(section, used, 3.0, resistance)
 
     bent = _bent(s.forces, fy, replaceable=replaceable)
     return [text.along(s, s.forces.moment, bent, shown=shown)]
@@ -240,14 +244,14 @@ def _bearing(text: CheckText, s: Situation, *, replaceable: bool = False) -> lis
     basis = f"strength of the pin alone at {', '.join(bare)}: no lug given" if bare else ""
     factor = "0.6" if replaceable else "1.5"
 
-    def shown(k: int) -> tuple[Work, str, float, float]:
+    def shown(k: int) -> tuple[Work, Passing]:
         band, gamma = bands[k], GAMMA_M6_SER if replaceable else GAMMA_M0
         bears = work(
             "F_b,Rd", float(resisted[k]), "force", f"{factor} × {{t}} × {{d}} × {{f_y}} / {{γ}}",
             t=(band.length, "length"), d=(2.0 * band.radius, "length"),
             f_y=(strengths[k], "stress"), γ=(gamma, "1"),
         )  # fmt: skip
-        return bears, "thickness", band.length, 1.0
+        return bears, lambda used: scaled("thickness", band.length, used, 1.0)
 
     return [text.worst(s, s.across, resisted, s.loads.surfaces, basis, shown)]
 

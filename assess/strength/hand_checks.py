@@ -30,8 +30,9 @@ import numpy as np
 from assess.check import CheckText, Rupture, WorstPlace, check
 from assess.margin import Margin
 from assess.situation import ForcesKind, NominalStress, Situation
-from assess.work import Work, scaled, work
+from assess.work import Work, wider, work
 from fea.beam.line_load import acting, shares
+from fea.beam.round_section import Circle
 from fea.beam.timoshenko import SHEAR, stepped_beam
 from fea.core.hardened import linear_strength
 from fea.core.material import Material
@@ -153,10 +154,18 @@ def _along(
     margins = text.at_levels(
         s, stress.stress, place, s.material, strength, ruptures, formula, basis
     )
-    shown, d = _shown(stress, formula), 2.0 * stress.section.outer
-    power = 3.0 if formula == BENDING_FORMULA else 2.0
+    shown, bends = _shown(stress, formula), formula == BENDING_FORMULA
+    at_axis = formula not in (BENDING_FORMULA, "V / A")
+
+    def resists(section: Circle) -> float:
+        if bends:
+            return section.modulus
+        return section.area / (section.vq_it if at_axis else 1.0)
+
+    power = 3.0 if bends else 2.0
     return [
-        replace(m, work=(shown,), passing=scaled("diameter", d, m.used, power)) for m in margins
+        replace(m, work=(shown,), passing=wider(stress.section, m.used, power, resists))
+        for m in margins
     ]
 
 

@@ -43,9 +43,10 @@ def _margins(text: CheckText, s: Situation, stress: LugStress, lug: Lug) -> list
     material = _material(stress, lug)
     place = WorstPlace(stress.connection, stress.z, stress.time)
     named = text if stress.wall == "bore" else replace(text, method=f"{text.method}, {stress.wall}")
+    over = "" if stress.interference is None else " over the range of the bushing's interference"
     margins = named.at_levels(
         s, stress.max_von_mises + stress.error_estimate, place, material, material.yield_strength,
-        "ultimate", basis="maximum with its error",
+        "ultimate", basis=f"maximum with its error{over}",
     )  # fmt: skip
     if stress.place == "beneath":
         return [for_comparison(replace(m, method=f"{m.method}, beneath the pin")) for m in margins]

@@ -209,3 +209,9 @@ class Places:
     section: SectionPlace | None = None
     contact: ContactPlace | None = None
     hardened: tuple[PartPlace, ...] = ()
+
+    @property
+    def governing(self) -> str:
+        """The place that governs; of a pin with a hardened surface its case or core."""
+        part = self.hardened[0].part if self.hardened else "unhardened"
+        return self.governs if part == "unhardened" else part

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
+from fea.core.material import Material
 from fea.lug.lug_stress import BoreStress, LugInPlane, LugLoad, bore_stresses
 from fea.lug.slipping import SlippingBushing
 from fea.lug.through_thickness import EyeStress, eye_stress
@@ -66,18 +67,36 @@ def lug_stresses(
         angle = _along(force, count) if given is None else given.at(links.times, count)
         load = LugLoad(force, pressure, length, angle, links.times)
         inner = max(max(s.bores) for s in model.whole.segments if s.connection == lug.connection)
-        of = lug, model.material, inner / 2.0, band.radius
+        of = model.material, inner / 2.0, band.radius
         eye = _eye(contact, lug, ends, memo)
         assumed = ALONG_FORCE if given is None else given.assumed
         middles = band.z0 + 0.5 * (ends[1:] + ends[:-1])
-        bonded = partial(LugInPlane, *of, memo=memo)
-        pressed = lug.bushing is not None and lug.bushing.pressed
-        slipping = partial(SlippingBushing, *of, memo=memo) if pressed else None
         out += [
-            _record(lug, stress, float(middles[stress.ring]), assumed)
-            for stress in bore_stresses(bonded, eye, load, slipping)
+            _record(at, stress, float(middles[stress.ring]), assumed)
+            for at, stress in _over_interference(lug, of, eye, load, memo)
         ]
     return tuple(out)
+
+
+def _over_interference(
+    lug: Lug, of: tuple[Material, float, float], eye: EyeStress, load: LugLoad, memo: Memo
+) -> list[tuple[Lug, BoreStress]]:
+    """Return the largest stress at each wall and place over the range of the interference of a
+    lug's bushing, with the lug in which it is.
+
+    of: material of the pin, radius of its bore and of its band, m.
+    """
+    largest: dict[tuple[str, str], tuple[Lug, BoreStress]] = {}
+    for bushing in lug.pressed_bushings() or (None,):
+        at = replace(lug, bushing=bushing)
+        bonded = partial(LugInPlane, at, *of, memo=memo)
+        pressed = bushing is not None and bushing.pressed
+        slipping = partial(SlippingBushing, at, *of, memo=memo) if pressed else None
+        for stress in bore_stresses(bonded, eye, load, slipping):
+            place, size = (stress.wall, stress.place), stress.von_mises + stress.error
+            if place not in largest or size > largest[place][1].von_mises + largest[place][1].error:
+                largest[place] = at, stress
+    return list(largest.values())
 
 
 def _along(force: Floats, count: int) -> Floats:
@@ -104,6 +123,7 @@ def degrees_from_shank(angle: float) -> float:
 
 
 def _record(lug: Lug, stress: BoreStress, z: float, assumed: str) -> LugStress:
+    pressed = lug.bushing if lug.range.interference else None
     return LugStress(
         connection=lug.connection,
         wall=stress.wall,
@@ -122,4 +142,5 @@ def _record(lug: Lug, stress: BoreStress, z: float, assumed: str) -> LugStress:
         assumed=assumed,
         interface=stress.interface,
         other_interface=stress.other,
+        interference=pressed.interference if pressed else None,
     )

@@ -91,6 +91,8 @@ class LugStress:
     assumed: what the study does not state.
     interface: of a pressed bushing in its hole, "bonded" or "frictionless": friction is between
     the two, and the larger stress counts. other_interface: the stress with the other one.
+    interference: of a bushing whose interference has a range, that of the largest stress, at the
+    temperature of the study's dimensions.
     """
 
     connection: str
@@ -110,6 +112,7 @@ class LugStress:
     assumed: str = ""
     interface: str = ""
     other_interface: Stress | None = None
+    interference: Length | None = None
 
     @property
     def safety_factor(self) -> float | None:

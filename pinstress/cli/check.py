@@ -18,6 +18,7 @@ from pinstress.explore.sweep.parameters import parameters_of, require_laws
 from pinstress.explore.sweep.sample import designs_of
 from pinstress.study.model.balance import other_warnings, unheld
 from pinstress.study.model.cases import CaseLoads, case_loads
+from pinstress.study.model.hardened import require_strengths
 from pinstress.study.model.lost_fits import lost_fit_warnings
 from pinstress.study.model.lugs import lugs
 from pinstress.study.model.mechanism.drives import span
@@ -106,7 +107,7 @@ def examine(study: Study) -> Examination:
     lines += fit_note(study) + temperature_assumption(study)
     warnings = other_warnings(study, todo) + lost_fit_warnings(study, todo)
     if table.vary is not None or "reliability" in table.model_fields_set:
-        lines += _varied(study)
+        lines += _varied(study, todo)
         warnings += _impossible(study) if todo else []
     loose = [line for task in todo for line in unheld(study, task).values()]
     return Examination(lines, loads, todo, loose, warnings)
@@ -129,7 +130,7 @@ def _sampled(vary: VaryTable) -> bool:
     )
 
 
-def _varied(study: Study) -> list[str]:
+def _varied(study: Study, todo: list[Task]) -> list[str]:
     """Describe the tasks of `sweep` and `reliability`, as far as the study asks for them."""
     vary = study.table.vary
     sampled = vary is not None and _sampled(vary)
@@ -143,6 +144,7 @@ def _varied(study: Study) -> list[str]:
         lines.append(f"varies {many} in {count:,} design{'s' * (count > 1)} ({vary.sample})")
     if not sampled or "reliability" in study.table.model_fields_set:
         require_laws(study)
+        require_strengths(study, (task.pin.name for task in todo))
         a = study.table.reliability
         lines.append(
             f"reliability: {many} scatter, a factor below {a.factor:g} is failure; "

@@ -9,6 +9,7 @@ import click
 
 from assess.judgement import DEPENDS, NOT_DECIDED
 from pinbase.processes.pool import preload, processes
+from pinstress.analysis.plan import prepare
 from pinstress.analysis.results import run
 from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.run import RUN_LIBRARIES, RUN_MODELS, console, progress_bar
@@ -16,6 +17,7 @@ from pinstress.cli.shared import connected
 from pinstress.cli.streams import unneeded
 from pinstress.explore.reliability.assess import assess
 from pinstress.explore.reliability.designs import for_values, random_numbers
+from pinstress.study.model.hardened import require_strengths
 from pinstress.study.reading.file import Study
 from reports.data.reliability import Reliability
 from reports.page.reliability import write_reliability_page
@@ -53,6 +55,8 @@ def reliability_and_write(
     most = processes(jobs)
     study = for_values(study)
     random_numbers(study)  # mistakes there should not wait for the stresses, nor those of a cluster
+    todo = prepare(study, pins=pins, cases=cases).tasks
+    require_strengths(study, (task.pin.name for task in todo))
     if connection is not None:
         from pinstress.explore.sweep.scheduler import require_cluster
 

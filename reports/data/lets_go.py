@@ -15,6 +15,7 @@ from math import inf, isclose
 from assess.margin import JOINT_MODEL_BASIS, Margin
 from assess.strength.lug_stress import METHOD as LUG_METHOD
 from assess.strength.model_stress import CLAUSE, YIELD_METHOD
+from assess.strength.press_fit import METHOD as PRESS_FIT_METHOD
 from fea.support.records import LugStress
 from reports.data.decision import factor_ends, worst_first
 from reports.data.results import PinShape, Results
@@ -203,7 +204,8 @@ def _of_margins(row: PinResult) -> Iterator[tuple[LettingGo, bool]]:
         by_model = m.method == YIELD_METHOD or (
             m.method.startswith(LUG_METHOD) and m.level == "limit"
         )
-        if factor is None or by_model or not m.governs or m.kind == "fatigue":
+        without_load = m.kind == "fatigue" or m.method.startswith(PRESS_FIT_METHOD)
+        if factor is None or by_model or not m.governs or without_load:
             continue
         high = None
         if m.kind == "collapse" and row.limit_load and m.dimension == "1":

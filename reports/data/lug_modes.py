@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from assess.strength.press_fit import METHOD as PRESS_FIT_METHOD
+
 BORE_STRESS = "stress at the bore"
 # The beginnings of the names of checks, by mode, in the order of a table.
 LUG_MODES: Mapping[str, tuple[str, ...]] = MappingProxyType(
@@ -26,6 +28,7 @@ LUG_MODES: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "across the shank": ("Melcon-Hoblit transverse", "Ekvall transverse"),
         "oblique": ("Melcon-Hoblit oblique",),
         "bushing": ("AFFDL bushing",),
+        "press fit": (PRESS_FIT_METHOD,),
         "pin and lugs together": ("AFFDL joint in double shear",),
         "collapse": ("lug, limit load",),
     }

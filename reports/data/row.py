@@ -186,7 +186,7 @@ class PinResult:
             within = f" ± {error:.2g} %" * (self.max_von_mises_interval is None)
             if self.safety_factor is not None:
                 parts.append(f"factor {_brief(self.safety_factor)}{within}")
-            place = f"{self.places.governs} " if self.places else ""
+            place = f"{self.places.governing} " if self.places else ""
             stress, z = _brief(self.max_von_mises), _brief(self.location[2])
             parts.append(f"{stress} {self.units.stress} at {place}z = {z} {self.units.length}")
         return f"<{self.pin} {self.case}: {', '.join(parts)}>"

@@ -38,7 +38,8 @@ def place_words(row: PinResult, shape: PinShape | None, units: Units | None = No
     section = row.places.section
     governs = row.places.governs
     z = section.z if governs == "section" and section else row.location[2]
-    kind = action(row) if governs == "section" else governs
+    kind = row.places.governing
+    kind = action(row) if kind == "section" else kind
     at = "" if units is None else f", z = {engineering(z, MAX_Z_DIGITS)} {units.length}"
     where = "" if shape is None else along_words(shape, z)
     comma = "," if where.startswith(("step", "a step")) else ""

@@ -24,8 +24,8 @@ BANDS_NOTE = (
     "carries), and the size of the bending moment."
 )
 LUG_ORDER = (
-    "connection wall place max_von_mises error_estimate interface other_interface max_hoop_stress "
-    "angle time safety_factor limit_load"
+    "connection wall place max_von_mises error_estimate interface other_interface interference "
+    "max_hoop_stress angle time safety_factor limit_load"
 )
 LUGS_NOTE = (
     "Stress of a lug: the largest about its bore over all instants. Free: where the pin does not "

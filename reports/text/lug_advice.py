@@ -34,6 +34,7 @@ PASSING_WORDS = {
     "outer_diameter": "an eye of {}",
     "thickness": "{} of thickness",
     "diameter": "a pin of {}",
+    "interference": "an interference of {}",
 }
 
 

@@ -16,7 +16,7 @@ def pin_sentence(pin: PinResult, units: Units) -> str:
     if pin.max_von_mises is None:
         return verdict
     outside = " outside the excluded zones" if pin.verdict == "singular" else ""
-    where = f" of its {pin.places.governs}" if pin.places and pin.places.section else ""
+    where = f" of its {pin.places.governing}" if pin.places and pin.places.section else ""
     text = f"Maximum von Mises stress{where}{outside} {engineering(pin.max_von_mises)} "
     text += f"{units.stress}"
     text += f" ({error_words(pin)})"

@@ -35,7 +35,7 @@ from fea.core.pin_loads import Floats
 from fea.support.bands import Bands
 from fea.support.contact.contact_answer import AdjointContact, Answer
 from fea.support.contact.contact_state import ContactState, wide_gap_half_angle
-from fea.support.contact.least_energy import any_forces, least_energy_cells
+from fea.support.contact.least_energy import any_forces, least_energy_cells, unsettled
 from fea.support.contact.sectors import CellFlexibility, Sectors
 from pinbase.arrays import Mask
 
@@ -205,7 +205,7 @@ class ContactProblem:
         first = self._facing(acting) if start is None else self._cells.first(start)
         state = self._settled(required, first) or self._by_energy(required)
         if state is None:
-            raise SolveError("contact does not settle", "contact-unsettled")
+            raise unsettled()
         return state
 
     def _along_x(self, required: Floats) -> bool:

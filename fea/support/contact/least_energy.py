@@ -29,6 +29,11 @@ MAX_MINIMA_PER_CELL = 1.0
 FEASIBLE_RESIDUAL = 1e-6  # of the largest resultant: ten times the tolerance of HiGHS
 
 
+def unsettled() -> SolveError:
+    """The error that no set of cells in contact was found."""
+    return SolveError("contact does not settle", "contact-unsettled")
+
+
 def any_forces(resultants: Floats, required: Floats) -> Floats:
     """Forces of the cells (U,), none of them negative, that have the required resultants (Y,).
 
@@ -49,7 +54,7 @@ def any_forces(resultants: Floats, required: Floats) -> Floats:
         b_eq=required,
     )
     if least.x is None or least.fun is None:
-        raise SolveError("contact does not settle", "contact-unsettled")
+        raise unsettled()
     if least.fun > FEASIBLE_RESIDUAL:
         raise SolveError(
             "the links leave a couple on the pin that no lug reacts", "couple-not-reacted"
@@ -90,7 +95,7 @@ def least_energy_cells(
             return active, force  # within round-off
         active, force = next_active, next_force
         minima.add(active.tobytes())
-    raise SolveError("contact does not settle", "contact-unsettled")
+    raise unsettled()
 
 
 def _descent(

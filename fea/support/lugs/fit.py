@@ -8,7 +8,7 @@ yields one of them linear elasticity does not apply.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -126,15 +126,21 @@ def _require_gap(lug: Lug, band: Band, in_contact: bool) -> None:
 
 
 def _require_elastic(lug: Lug, band: Band, bore: float, material: Material) -> None:
-    interference = -lug.clearance
-    most = MAX_INTERFERENCE_RATIO * yielding_interference(lug, band.radius, bore, material)
-    if interference > most:
-        times = MAX_INTERFERENCE_RATIO * interference / most
-        raise ArgumentError(
-            f"lug {lug.connection}: its interference is {times:.3g} times what makes pin, "
-            f"bushing or lug yield; linear elasticity ends at {MAX_INTERFERENCE_RATIO:g} times",
-            "interference-too-large",
-        )
+    radius = band.radius
+    fits = [("its", -lug.clearance, yielding_interference(lug, radius, bore, material))]
+    if lug.bushing is not None:
+        walls = _walls(lug, radius)
+        at_yield = min(_reserve(walls, bushing_press_fit(lug, radius)))
+        most = max(x.misfit for x in lug.pressed_bushings())
+        fits.append(("its bushing's", most, at_yield))
+    for whose, interference, at_yield in fits:
+        if interference > MAX_INTERFERENCE_RATIO * at_yield:
+            times = interference / at_yield
+            raise ArgumentError(
+                f"lug {lug.connection}: {whose} interference is {times:.3g} times what makes pin, "
+                f"bushing or lug yield; linear elasticity ends at {MAX_INTERFERENCE_RATIO:g} times",
+                "interference-too-large",
+            )
 
 
 def yielding_interference(lug: Lug, radius: float, bore: float, material: Material) -> float:
@@ -146,6 +152,27 @@ def yielding_interference(lug: Lug, radius: float, bore: float, material: Materi
     """
     walls = [(bore, radius, material), *_walls(lug, radius)]
     return min(_reserve(walls, _press_fit(walls)))
+
+
+def press_fit_stresses(
+    lug: Lug, radius: float, bore: float, pin: Material
+) -> Iterator[tuple[Material, float]]:
+    """Yield the material of the bushing and of the eye, and the largest von Mises stress (Pa) in
+    each, by their press fits alone: of the pin in its bore, and of the bushing in its hole, with
+    the most interference in its range.
+
+    radius, bore: of the pin, both radii, m.
+
+    Source: AFFDL-TR-69-42, 9.16, superposed.
+    """
+    walls = [(bore, radius, pin), *_walls(lug, radius)]
+    tightest = min((lug.clearance, *(lug.range.clearance or ())))
+    fields = max(-tightest, 0.0) * _press_fit(walls)[1:]
+    if lug.bushing is not None:
+        most = max((x.misfit for x in lug.pressed_bushings()), key=abs)
+        fields = fields + most * bushing_press_fit(lug, radius)
+    for (inner, _, material), constants in zip(walls[1:], fields, strict=True):
+        yield material, _largest(inner, constants)
 
 
 def bushing_press_fit(lug: Lug, radius: float) -> Floats:
@@ -167,12 +194,18 @@ def _walls(lug: Lug, radius: float) -> list[Wall]:
 def _reserve(walls: Iterable[Wall], fields: Floats) -> Iterable[float]:
     """The yield strength over the von Mises stress of each wall under an interference of 1 m."""
     yield math.inf
-    for (inner, outer, material), (a, b) in zip(walls, fields, strict=True):
+    for (inner, _, material), (a, b) in zip(walls, fields, strict=True):
         if material.yield_strength is not None:
-            r = np.array([inner if inner > 0.0 else outer, outer])
-            radial, hoop = a - b / r**2, a + b / r**2
-            stress = np.sqrt(radial**2 - radial * hoop + hoop**2).max()
-            yield float(material.yield_strength / stress)
+            yield material.yield_strength / _largest(inner, (a, b))
+
+
+def _largest(inner: float, constants: Sequence[float] | Floats) -> float:
+    """The largest von Mises stress, Pa, in a wall, which is at its inside: sqrt(A^2 + 3 B^2 / r^4).
+
+    inner: its inner radius, m, 0 of a solid wall, where B is 0. constants: A and B.
+    """
+    a, b = constants
+    return math.hypot(a, math.sqrt(3.0) * b / inner**2 if inner > 0.0 else 0.0)
 
 
 def _press_fit(walls: Sequence[Wall]) -> Floats:

@@ -83,6 +83,7 @@ class LugRange:
     clearance: m.
     stiffness: times that of the lug.
     tilt: N m/rad.
+    interference: of the bushing, m.
 
     Raises: ArgumentError for an upper end below the lower one, or a stiffness that is not positive.
     """
@@ -90,9 +91,10 @@ class LugRange:
     clearance: tuple[float, float] | None = None
     stiffness: tuple[float, float] | None = None
     tilt: tuple[float, float] | None = None
+    interference: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
-        for name in ("clearance", "stiffness", "tilt"):
+        for name in ("clearance", "stiffness", "tilt", "interference"):
             ends = getattr(self, name)
             if ends is not None and not ends[0] <= ends[1]:
                 raise ArgumentError(
@@ -167,6 +169,16 @@ class Lug:
         """The same lug with its materials, and its bushing's, changed."""
         bushing = self.bushing and replace(self.bushing, material=change(self.bushing.material))
         return replace(self, material=change(self.material), bushing=bushing)
+
+    def pressed_bushings(self) -> tuple[Bushing, ...]:
+        """Its bushing as the study has it, and at the ends of the range of its interference; none
+        without one, one without a range.
+        """
+        if self.bushing is None:
+            return ()
+        ends = self.range.interference or ()
+        interferences = dict.fromkeys((self.bushing.interference, *ends))
+        return tuple(replace(self.bushing, interference=x) for x in interferences)
 
     def outline(self, radius: float) -> LugOutline:
         """The outline of a lug that has a shank, about a band of some radius, m.

@@ -13,7 +13,7 @@ from dataclasses import replace
 
 from fea.core.material import Material
 from fea.support.lugs.fit import bushing_press_fit, widening
-from fea.support.lugs.lug import Lug, LugRange
+from fea.support.lugs.lug import Lug
 from geometry import ArgumentError
 
 
@@ -42,7 +42,7 @@ def at_temperature(lug: Lug, pin: Material, radius: float, rise: float) -> Lug:
         clearance=lug.clearance + growth,
         growth=growth,
         bushing=bushing,
-        range=LugRange(ends, lug.range.stiffness, lug.range.tilt),
+        range=replace(lug.range, clearance=ends),
     )
 
 
@@ -56,12 +56,15 @@ def bore_widening(lug: Lug, radius: float) -> float:
 
 
 def bushing_opening_rise(lug: Lug, rise: float) -> float | None:
-    """The rise of temperature, K, at which a pressed bushing becomes loose; None where it holds.
+    """The rise of temperature, K, at which a pressed bushing becomes loose with the least of its
+    interferences; None where it holds.
 
     lug: at a temperature, which is `rise` above that of its dimensions.
     """
-    bushing = lug.bushing
-    if bushing is None or not bushing.pressed or bushing.misfit > 0.0:
+    if lug.bushing is None:
+        return None
+    bushing = min(lug.pressed_bushings(), key=lambda x: x.interference)
+    if not bushing.pressed or bushing.misfit > 0.0:
         return None
     return -rise * bushing.interference / bushing.outgrown
 

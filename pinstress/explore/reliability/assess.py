@@ -35,7 +35,7 @@ from pinstress.explore.sweep.batches import DesignProblem, evaluator_of, shapes
 from pinstress.explore.sweep.evaluate import Evaluator
 from pinstress.explore.sweep.parameters import Parameter
 from pinstress.explore.sweep.possible import drawn, require_balance
-from pinstress.study.model.hardened import require_no_hardened
+from pinstress.study.model.hardened import require_strengths
 from pinstress.study.model.lugs import with_given_lugs
 from pinstress.study.model.requirements import checks_besides_yield
 from pinstress.study.reading.file import Study
@@ -84,7 +84,7 @@ def assess(
     parameters, space = random_numbers(study)
     problem = DesignProblem.of(study, [p.number for p in parameters], pins, cases)
     evaluator, elsewhere = evaluator_of(problem), None
-    _require_strengths(study, evaluator)
+    require_strengths(study, (pin for pin, _ in evaluator.table))
     require_balance(study, evaluator, drawn(study, parameters))
     if cluster is not None:
         from pinstress.explore.reliability.on_cluster import design_rows
@@ -129,18 +129,6 @@ def _correlations(study: Study) -> tuple[str, ...]:
     vary = study.table.vary
     assert vary is not None
     return tuple(f"{c.between[0]} and {c.between[1]}: {c.coefficient:g}" for c in vary.correlations)
-
-
-def _require_strengths(study: Study, evaluator: Evaluator) -> None:
-    for name in dict.fromkeys(pin for pin, _ in evaluator.table):
-        material = study.table.pin[name].material
-        require_no_hardened(study, name, "reliability")
-        if study.table.material[material].yield_strength is None:
-            raise study.error(
-                f"material.{material}: reliability needs its yield_strength, for the factors of "
-                f"pin {name}",
-                code="no-strength",
-            )
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from itertools import groupby
 
@@ -87,6 +88,19 @@ def require_no_hardened(study: Study, pin: str, what: str) -> None:
             "yield_strength instead, that of the core to be safe",
             code="hardened-not-known",
         )
+
+
+def require_strengths(study: Study, pins: Iterable[str]) -> None:
+    """Raise InputError for pins that do not have the one yield strength of reliability."""
+    for name in dict.fromkeys(pins):
+        material = study.table.pin[name].material
+        require_no_hardened(study, name, "reliability")
+        if study.table.material[material].yield_strength is None:
+            raise study.error(
+                f"material.{material}: reliability needs its yield_strength, for the factors of "
+                f"pin {name}",
+                code="no-strength",
+            )
 
 
 def hardened_reason(key: str) -> str:

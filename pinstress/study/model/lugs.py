@@ -18,7 +18,7 @@ from pinstress.study.model.iso286 import fit_of
 from pinstress.study.model.pins import material
 from pinstress.study.model.temperature import at_case, band_radius, rise_of, temperature_words
 from pinstress.study.reading.file import Study
-from pinstress.study.schema.lugs import BushingTable, LugRangeTable, LugTable, ShankTable
+from pinstress.study.schema.lugs import LugRangeTable, LugTable, ShankTable
 from pinstress.study.schema.pins import PinTable
 
 EYE_DIAMETER_RATIO = 2.5  # outer diameter over the band's
@@ -280,8 +280,7 @@ def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Mater
     tilt = _bending(made_of, outer, band.length) if given.tilt is None else _stiffness(given.tilt)
     fit = None if given.fit is None else _fit(connection, given.fit, 2.0 * band.radius)
     middle = 0.0 if fit is None else sum(fit) / 2.0
-    ring = given.bushing
-    bushing = None if ring is None else _bushing(study, ring)
+    bushing, pressed = _bushing(study, connection, given, 2.0 * band.radius)
     return Lug(
         connection,
         outer,
@@ -290,15 +289,49 @@ def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Mater
         given.edge_radius,
         tilt,
         bushing=bushing,
-        range=_range(given.range, fit),
+        range=replace(_range(given.range, fit), interference=pressed),
         shank=None if given.shank is None else _shank(given.shank, outer),
         friction=given.friction,
         axial=(given.axial, given.axial) if isinstance(given.axial, str) else given.axial,
     )
 
 
-def _bushing(study: Study, given: BushingTable) -> Bushing:
-    return Bushing(given.thickness, material(study, given.material), given.interference)
+def _bushing(
+    study: Study, connection: str, lug: LugTable, bore: float
+) -> tuple[Bushing | None, tuple[float, float] | None]:
+    """Return the bushing of a lug and the range of its interference, m.
+
+    bore: its diameter, m.
+
+    Raises: ArgumentError for a range without a bushing or that excludes its interference, and for
+    a fit that may leave it loose.
+    """
+    given, ends, what = lug.bushing, lug.range.interference, f"lug {connection}"
+    if given is None:
+        if ends is None:
+            return None, None
+        raise ArgumentError(
+            f"{what}: range.interference is of a bushing; give lug.{connection}.bushing, or a "
+            "negative clearance where the pin itself is pressed in",
+            "no-bushing",
+        )
+    if given.fit is not None:
+        clearance = _fit(f"{connection}: bushing", given.fit, bore + 2.0 * given.thickness)
+        if clearance[1] >= 0.0 and ends is None:
+            raise ArgumentError(
+                f"{what}: bushing: fit {given.fit} may leave it without interference; use a "
+                "tighter fit, as H7/s6, or state range.interference",
+                "loose-bushing",
+            )
+        ends = ends or (-clearance[1], -clearance[0])
+    middle = 0.0 if ends is None else sum(ends) / 2.0
+    pressed = middle if given.interference is None else given.interference
+    if ends is not None and not min(ends) <= pressed <= max(ends):
+        raise ArgumentError(
+            f"{what}: the bushing's interference is not within its range.interference",
+            "range-order",
+        )
+    return Bushing(given.thickness, material(study, given.material), pressed), ends
 
 
 def _shank(given: ShankTable, outer: float) -> Shank:

@@ -25,9 +25,14 @@ class BushingTable(StrictTable):
     """Wall thickness."""
     material: str
     """Name of a `[material]`."""
-    interference: NotNegativeLength = 0.0
+    interference: NotNegativeLength | None = None
     """Outer diameter of the bushing minus the diameter of the hole into which it was pressed.
-    Default: it is bonded."""
+    Default: the middle of the `fit` or of `range.interference`; else it is bonded."""
+    fit: str | None = None
+    """Tolerance classes of hole and bushing by ISO 286-1, as "H7/s6", at the diameter of the hole.
+    Not with `interference`."""
+
+    _one_interference = at_most_one("fit", "interference")
 
 
 class ShankTable(StrictTable):
@@ -87,6 +92,9 @@ class LugRangeTable(StrictTable):
     """Times that of the lug as described. Default: [0.5, 2]."""
     tilt: tuple[Tilt, Tilt] | None = None
     """Default: ["free", "guided"]."""
+    interference: tuple[PositiveLength, PositiveLength] | None = None
+    """Of the bushing; its stress and that of the lug are the largest over it. Default: that of the
+    bushing's `fit`."""
 
 
 class LugTable(StrictTable):
@@ -172,18 +180,34 @@ def _connections(pin: dict[str, Any]) -> Iterator[str]:
 def _completed(lug: Any, defaults: dict[str, Any]) -> Any:
     """Return a lug with the keys of the defaults that it omits, those of its own tables as well.
 
-    Its own fit or clearance replaces what the defaults say of clearance.
+    Its own fit or clearance replaces what the defaults say of clearance, and likewise its bushing's
+    what they say of interference.
     """
     if not isinstance(lug, dict):
         return lug
-    if "fit" in lug or "clearance" in lug:
-        defaults = {k: v for k, v in defaults.items() if k not in ("fit", "clearance")}
-    if "fit" in lug and isinstance(defaults.get("range"), dict):
-        known = {k: v for k, v in defaults["range"].items() if k != "clearance"}
-        defaults = {**defaults, "range": known}
+    defaults = _without_replaced(defaults, lug, "clearance")
+    if isinstance(lug.get("bushing"), dict) and isinstance(defaults.get("bushing"), dict):
+        defaults = _without_replaced(defaults, lug, "interference", "bushing")
     inner = {
         key: {**defaults[key], **value}
         for key, value in lug.items()
         if isinstance(value, dict) and isinstance(defaults.get(key), dict)
     }
     return {**defaults, **lug, **inner}
+
+
+def _without_replaced(
+    defaults: dict[str, Any], lug: dict[str, Any], key: str, table: str = ""
+) -> dict[str, Any]:
+    """Return the defaults without those of a fit that a lug states itself.
+
+    key: what the fit gives. table: in which both are.
+    """
+    given, common = (x[table] if table else x for x in (lug, defaults))
+    if "fit" in given or key in given:
+        kept = {k: v for k, v in common.items() if k not in ("fit", key)}
+        defaults = {**defaults, table: kept} if table else kept
+    if "fit" in given and isinstance(defaults.get("range"), dict):
+        known = {k: v for k, v in defaults["range"].items() if k != key}
+        defaults = {**defaults, "range": known}
+    return defaults

@@ -36,7 +36,6 @@ from reports.format.words import (
 from reports.tables.column import Column, Table, fields, grid_of, in_order, unit_columns
 from reports.tables.published import published_maxima
 from reports.tables.stress.joint import lugs_word
-from reports.tables.stress.places import governing_words
 
 FACTOR_COLUMN_ORDER = (  # for people; columns that are not named here come last
     "pin case outcome safety_factor utilisation max_von_mises error_estimate governs sharing_high "
@@ -134,7 +133,7 @@ COLUMNS: tuple[Column[FactorRow], ...] = (
     _error("truncation"),
     Column("depends_on", lambda row: depends_words(row.pin.depends_on, row.units)
            if row.pin.outcome == DEPENDS else None),
-    Column("governs", lambda row: governing_words(row.pin.places), "", "at",
+    Column("governs", lambda row: row.pin.places and row.pin.places.governing, "", "at",
            numeric=False, rank=5, drop_if_empty=True),
     *fields("surface=pin.places?.surface?.max_von_mises", "stress"),
     *fields("section=pin.places?.section?.max_von_mises", "stress"),

@@ -118,6 +118,7 @@ LUG_COLUMNS: list[Column[PinRow[LugStress]]] = [
     *fields("of.safety_factor", heading="factor of safety"),
     Column("interface", lambda row: row.of.interface or None, "", "interface", drop_if_empty=True),
     *fields("of.other_interface", "stress", heading="with the other interface", drop_if_empty=True),
+    *fields("of.interference", "length", heading="interference", drop_if_empty=True),
     *unit_columns("length stress time"),
     *fields("of.mesh of.rings of.sampling", "stress"),
     *fields("of.material of.assumed"),

@@ -9,7 +9,6 @@ from fea.core.places import (
     ContactEdge,
     ContactPlace,
     PartPlace,
-    Places,
     SectionPlace,
     SurfacePlace,
 )
@@ -29,14 +28,6 @@ def factor_at(pin: PinResult, stress: float | None, there: float | None = None) 
     """
     strength = there or pin.yield_strength
     return strength / stress if strength and stress else None
-
-
-def governing_words(places: Places | None) -> str | None:
-    """Return the place that governs a row, of a pin with a hardened surface its case or core."""
-    if places is None:
-        return None
-    part = places.hardened[0].part if places.hardened else "unhardened"
-    return places.governs if part == "unhardened" else part
 
 
 def places_json(pin: PinResult) -> dict[str, Any]:

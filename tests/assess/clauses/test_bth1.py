@@ -21,10 +21,13 @@ from assess.clauses.bth1 import (
     tension_strength,
 )
 from assess.clauses.eye import PlateEye
+from assess.codes import Code
+from assess.margin import Margin
 from assess.situation import Situation
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.support.lugs.lug import Lug
+from fea.support.lugs.lug import Lug, Shank
+from tests.support.each import each
 from tests.support.pins.plain_pins import double_shear
 
 IN, KIP, KSI = 0.0254, 4448.2216, 6.894757e6
@@ -105,3 +108,39 @@ def test_a_wide_net_section_is_not_all_used() -> None:
     parts = [effective_width(eye, 58.0 / 36.0) / eye.side for eye in (narrow, wide)]
     assert parts[0] == pytest.approx(0.6 * 58.0 / 36.0)
     assert parts[1] == pytest.approx(min(0.6 * 58.0 / 36.0 * math.sqrt(0.1), 0.3))
+
+
+def turned(code: Code, angle: float) -> dict[str, Margin]:
+    """The margins of the plate with a shank at an angle, degrees, from the force on its pin."""
+    s = clevis(12.0)
+    (lug,) = s.lugs
+    shank = Shank("square", 3.0 * IN, 6.0 * IN, 1.5 * IN, math.radians(angle))
+    lugs = (replace(lug, shank=shank),)
+    found = margins_of(replace(s, codes=(code,), lugs=lugs, sized=lugs))
+    return {m.method: m for m in found if m.method.startswith(("BTH-1", "AISC", "AFFDL lug"))}
+
+
+@each(
+    ("code", "bearing", "named"),
+    [
+        ("lifting", 1.25 * FY * 0.75 * 0.75 * IN**2 / 3.0, 3),
+        ("civil", 0.75 * 1.8 * FY * 0.75 * 0.75 * IN**2, 1),
+        ("aircraft", None, 2),
+    ],
+)
+def test_a_plate_that_is_only_pushed_bears_and_is_not_silent(
+    code: Code, bearing: float | None, named: int
+) -> None:
+    """It had no margin at all, nor a word of that: wrong by 180 degrees a shank made all green."""
+    margins = turned(code, 180.0)
+    lacking = [m for m in margins.values() if "only pushes" in m.needs]
+    assert len(lacking) == named
+    made = [m for m in margins.values() if not m.needs]
+    assert [m.allowable for m in made] == pytest.approx([bearing] if bearing else [])
+    assert all(m.demand == pytest.approx(12.0 * KIP) for m in made)
+
+
+def test_a_pin_bears_across_the_plate_too() -> None:
+    margins = turned("lifting", 60.0)
+    assert margins["BTH-1 plate, bearing"].demand == pytest.approx(12.0 * KIP)
+    assert "acts across" in margins["BTH-1 plate, tension"].needs

@@ -42,8 +42,14 @@ def test_the_lower_end_of_the_bracket_is_allowed() -> None:
     assert "1.022" in margin.basis
 
 
-def test_a_lug_that_is_pushed_or_has_no_request_has_no_margin() -> None:
-    assert not lug_collapse(_situation(math.pi, FOUND))
+def test_a_lug_that_is_only_pushed_is_named() -> None:
+    for check, limit in ((lug_collapse, FOUND), (lug_rupture, replace(FOUND, breaks_by="strain"))):
+        (margin,) = check(_situation(math.pi, limit))
+        assert margin.allowable is None
+        assert "only pushes" in margin.needs
+
+
+def test_a_lug_without_a_request_has_no_margin() -> None:
     assert not lug_collapse(replace(_situation(0.0, FOUND), lug_collapses=()))
 
 
@@ -67,7 +73,6 @@ def test_the_ultimate_load_is_allowed_where_a_failure_strain_is_given() -> None:
     assert "failure strain is reached" in margin.basis
     assert "20 bars" in margin.scatter
     assert lug_rupture(_situation(0.0, FOUND)) == []
-    assert lug_rupture(_situation(math.pi, broken)) == []
     (across,) = lug_rupture(_situation(0.5, broken))
     assert "along the shank" in across.needs
     key = "material.steel.ultimate_strength"

@@ -375,3 +375,27 @@ def test_stress_of_the_model_with_its_error(peak: Maximum, demand: float | None)
         assert ruptures.margin == pytest.approx(360e6 / (1.5 * demand) - 1.0)
     (missing,) = model_rupture(replace(s, material=replace(S235, ultimate_strength=None)))
     assert missing.needs == "material.S235.ultimate_strength"
+
+
+def test_the_diameter_that_would_pass_leaves_the_bore_as_it_is() -> None:
+    """Of a hollow pin the bore was scaled with it, to 3.65 mm about one of 10: each check is made
+    again with the diameter that it names.
+    """
+    steel = replace(S235, shear_strength=200e6)
+
+    def named(diameter: float) -> dict[tuple[str, str], Margin]:
+        s = in_double_shear(0.008, 0.002, 0.018, diameter, 20e3, steel)
+        hollow = tuple(replace(x, bore=0.01) for x in s.pin.segments)
+        s = replace(s, profile=replace(s.pin, segments=hollow), bending_factor=1.5,
+                    codes=("general", "aircraft"))  # fmt: skip
+        return {(m.method, m.level): m for m in margins_of(s)}
+
+    diameters = {
+        key: m.passing.value
+        for key, m in named(0.024).items()
+        if m.passing is not None and m.passing.symbol == "diameter"
+    }
+    assert len(diameters) >= 8
+    for key, diameter in diameters.items():
+        assert diameter > 0.01
+        assert named(diameter)[key].used == pytest.approx(1.0, abs=1e-5)

@@ -3,27 +3,34 @@
 from __future__ import annotations
 
 import csv
+import math
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import pinstress
+from assess.margin import Margin
+from fea.support.records import LugStress
+from pinstress.study.reading.in_python import study_from
+from reports.data.headline import worst_checks
 from reports.files import write_reports
 from tests.support.mechanism.machines import STUDIES
 
 CLEVIS = (STUDIES / "clevis.toml").read_text(encoding="utf-8")
-BRONZE = """
+HOT = """[case.hot]
+kind = "given"
+temperature = "70 degC"
+forces = { LEFT = [-25000, 0], EYE = [50000, 0], RIGHT = [-25000, 0] }
+"""
+BRONZE = f"""
 [material.bronze]
 youngs_modulus = "110 GPa"
 poisson_ratio = 0.34
 yield_strength = "150 MPa"
 thermal_expansion = "18e-6 1/K"
 
-[case.hot]
-kind = "given"
-temperature = "70 degC"
-forces = { LEFT = [-25000, 0], EYE = [50000, 0], RIGHT = [-25000, 0] }
-
+{HOT}
 [analysis]
 """
 EYE = """lug.EYE = { tilt = "guided", shank = {}, bushing = { thickness = 3, material = "bronze", \
@@ -87,3 +94,96 @@ def test_heat_presses_the_bushing_and_closes_its_bore(
     p = 6e-6 * 50.0 * B / (lug + bush)
     closed = 2.0 * 2.0 * p * B * B * A / (110e3 * (B * B - A * A))
     assert bands["EYE"].clearance == pytest.approx(0.05 + 6e-6 * 20.0 * 50.0 - closed, rel=1e-9)
+
+
+HOOP, PRESSURE, BORE = 7022.7, 5618.2, 25683.0  # psi, at 0.001 in
+HOLE = math.hypot(HOOP + PRESSURE / 2.0, math.sqrt(0.75) * PRESSURE)  # von Mises, in plane stress
+
+
+def ring(bushing: dict[str, Any], **lug: Any) -> pinstress.RunResults:
+    """The ring of AFFDL-TR-69-42, 9.16: radii 0.1875, 0.25 and 0.75 in."""
+    plate = {"youngs_modulus": 10.3e6, "poisson_ratio": 0.33, "yield_strength": 66e3}
+    bronze = {"youngs_modulus": 16.0e6, "poisson_ratio": 0.33, "yield_strength": 30e3}
+    left: dict[str, Any] = {"material": "plate", "outer_diameter": 1.5}
+    right = {**left, **lug, "bushing": {"thickness": 0.0625, "material": "bronze", **bushing}}
+    profile = [{"length": 0.5, "diameter": 0.375, "connection": name} for name in "LR"]
+    raw = {
+        "title": "D3",
+        "units": "in-lbf-s",
+        "analysis": {"joints": "prescribed", "required_safety_factor": 1.25},
+        "material": {"plate": plate, "bronze": bronze},
+        "case": {"pull": {"kind": "given", "forces": {"L": [-10, 0], "R": [10, 0]}}},
+        "pin": {
+            "P": {"material": "plate", "profile": profile, "lug": {"L": left, "R": right}},
+        },
+    }
+    return pinstress.run(pinstress.study_from(raw))
+
+
+def press_fits(results: pinstress.RunResults) -> list[Margin]:
+    """Of bushing and eye."""
+    return [m for m in results["P", "pull"].margins if "press fit" in m.method]
+
+
+def test_a_press_fit_without_a_shank_is_judged_by_lame() -> None:
+    """It was judged nowhere: bronze at 671 MPa of its 150 was safe."""
+    results = ring({"interference": 0.001})
+    bushing, eye = press_fits(results)
+    assert bushing.demand == pytest.approx(BORE, abs=1.0)
+    assert bushing.margin == pytest.approx(30e3 / (1.25 * BORE) - 1.0, abs=1e-4)
+    assert bushing.passing is not None
+    assert bushing.passing.value == pytest.approx(1e-3 * 30e3 / (1.25 * BORE), rel=1e-4)
+    assert eye.demand == pytest.approx(HOLE, abs=1.0)
+    assert (bushing.at, eye.at) == ("R", "R")
+    assert worst_checks(results)["P"].outcome == "fails"
+
+
+def test_the_most_interference_of_a_range_counts() -> None:
+    """In the middle of the range, 0.0006 in, both walls would pass."""
+    results = ring({}, range={"interference": [0.0002, 0.001]})
+    bushing, eye = press_fits(results)
+    assert bushing.demand == pytest.approx(BORE, abs=1.0)
+    assert eye.demand == pytest.approx(HOLE, abs=1.0)
+    assert worst_checks(results)["P"].outcome == "fails"
+    (bushing, _) = press_fits(ring({"interference": 0.0006}))
+    assert bushing.demand == pytest.approx(0.6 * BORE, abs=1.0)
+    assert (bushing.margin or 0.0) > 0.0
+
+
+def test_the_most_interference_of_a_fit_counts() -> None:
+    """H7/s6 at 12.7 mm: 0 to 18 and 28 to 39 micrometres."""
+    (bushing, _) = press_fits(ring({"fit": "H7/s6"}))
+    assert bushing.demand == pytest.approx(0.039 / 25.4 / 0.001 * BORE, rel=1e-4)
+
+
+@pytest.mark.slow
+def test_the_stress_of_a_lug_is_the_largest_over_the_range() -> None:
+    """Of each wall, as of runs at the ends alone, which know of no range."""
+    least, most, over = (
+        of_walls(x)
+        for x in (
+            ", interference = 0.002 }",
+            ", interference = 0.03 }",
+            " }, range = { interference = [0.002, 0.03] }",
+        )
+    )
+    governs = {
+        place: max((x[place].max_von_mises, at) for x, at in ((least, 0.002), (most, 0.03)))
+        for place in over
+    }
+    for place, (stress, interference) in governs.items():
+        assert over[place].max_von_mises == pytest.approx(stress, rel=1e-9)
+        assert over[place].interference == pytest.approx(interference)
+    # A press fit takes tension off the free bore, and adds to that of the hole.
+    assert governs["bushing", "free"][1] == 0.002
+    assert governs["hole", "bushing"][1] == 0.03
+
+
+def of_walls(bushing: str) -> dict[tuple[str, str], LugStress]:
+    """The stress of the eye of the clevis by wall and place."""
+    text = CLEVIS.replace("\n[analysis]\n", BRONZE.replace(HOT, "")).replace(
+        'lug.EYE = { tilt = "guided" }', EYE.replace(", interference = 0.03 }", bushing)
+    )
+    joint = pinstress.run(study_from(text))["P", "pull"].joint
+    assert joint is not None
+    return {(x.wall, x.place): x for x in joint.lugs}

@@ -53,6 +53,10 @@ profile = {DOUBLE_SHEAR}
 """
 GROWTH = (23.4e-6 - 12e-6) * 0.02 * 100.0  # m
 FIT = "clearance = 0.02\n"
+# In its middle it holds; its least is that of BUSHED.
+RANGED = (
+    'bushing = { thickness = 2, material = "steel" }\nrange = { interference = [0.02, 0.06] }\n'
+)
 BUSHED = 'bushing = { thickness = 2, material = "steel", interference = 0.02 }\n'
 
 
@@ -117,6 +121,11 @@ def test_one_expansion_leaves_the_fits_and_one_task() -> None:
             ((FIT, FIT + BUSHED),),
             "loose-bushing",
             ("lug L of pin P", "loose at 120 degC", "used up at 93.1 degC", "more than 0.0274 mm"),
+        ),
+        (
+            ((FIT, FIT + RANGED),),
+            "loose-bushing",
+            ("loose at 120 degC", "used up at 93.1 degC", "more than 0.0274 mm"),
         ),
         ((('"120 degC"', "120"),), "missing-unit", ("120 needs a unit", "degF or K")),
         ((('"120 degC"', '"-300 degC"'),), "out-of-range", ("absolute zero",)),

@@ -72,6 +72,7 @@ def test_materials_without_a_modulus(modulus: float) -> None:
         ({"clearance": 0.00201}, "clearance-too-large", "at most 0.1 is a joint"),
         ({"edge_radius": 0.0101}, "edge-radius-too-large", "0.505 of the length"),
         ({"clearance": -0.01}, "interference-too-large", "times what makes"),
+        ({"bushing": Bushing(0.003, BRONZE, 0.5)}, "interference-too-large", "its bushing.s inter"),
     ],
 )
 def test_lugs_that_do_not_fit(change: dict[str, Any], code: str, said: str) -> None:

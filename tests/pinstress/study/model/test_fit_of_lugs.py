@@ -39,6 +39,19 @@ def test_a_stated_range_and_interference(tmp_path: Path) -> None:
     assert lug.range.clearance == (0.0, 0.0)
 
 
+def test_the_interference_of_a_bushing_is_the_middle_of_its_fit(tmp_path: Path) -> None:
+    """H7/s6 at 24 mm: 0 to 21 and 35 to 48 micrometres."""
+    bushing = 'bushing = { thickness = 2, material = "steel", fit = "H7/s6" }'
+    lug = middle_lug(fitted(tmp_path, f"lug.M = {{ {bushing} }}"))
+    assert lug.bushing is not None
+    assert lug.bushing.interference == pytest.approx(31e-6)
+    assert lug.range.interference == pytest.approx((14e-6, 48e-6))
+    known = middle_lug(
+        fitted(tmp_path, f"lug.M = {{ {bushing}, range.interference = [0.02, 0.03] }}")
+    )
+    assert known.range.interference == pytest.approx((20e-6, 30e-6))
+
+
 def test_the_range_over_the_joint_is_over_the_fit(tmp_path: Path) -> None:
     pin = "".join(f'[pin.P.lug.{name}]\nfit = "H7/f7"\n' for name in "LMR")
     (row,) = run(fitted(tmp_path, pin, "foundation")).pins
@@ -53,6 +66,23 @@ def test_the_range_over_the_joint_is_over_the_fit(tmp_path: Path) -> None:
     [
         ('fit = "H7/f7", clearance = 0', r"pin.P.lug.M: give fit or clearance, not both"),
         ('fit = "H7/zc7"', r"study.toml:\d+: lug M: fit: deviation zc is not included"),
+        (
+            'bushing = { thickness = 2, material = "steel", fit = "H7/k6" }',
+            r"study.toml:\d+: lug M: bushing: fit H7/k6 may leave it without interference",
+        ),
+        (
+            'bushing = { thickness = 2, material = "steel", fit = "H7/s6", interference = 0.03 }',
+            r"pin.P.lug.M.bushing: give fit or interference, not both",
+        ),
+        (
+            'bushing = { thickness = 2, material = "steel", interference = 0.05 }, '
+            "range = { interference = [0.02, 0.03] }",
+            r"study.toml:\d+: lug M: the bushing's interference is not within its range",
+        ),
+        (
+            "range = { interference = [0.02, 0.03] }",
+            r"study.toml:\d+: lug M: range.interference is of a bushing",
+        ),
         ('fit = "f7"', r"study.toml:\d+: lug M: fit: 'f7' is not a fit"),
     ],
 )

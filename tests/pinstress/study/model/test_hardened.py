@@ -129,3 +129,29 @@ def test_what_takes_one_strength_refuses(tmp_path: Path, command: list[str], tol
     done = run_here(command[0], path, *command[1:], cwd=tmp_path)
     assert done.returncode != 0
     assert told in " ".join((done.stdout + done.stderr).split())
+
+
+VARIED = """
+[vary.parameters]
+"pin.P.profile[2].bore" = { normal = [10, 0.1] }
+"""
+
+
+@each(("surface", "part"), [("900", "core"), ("510", "case")])
+def test_the_terminal_says_whether_case_or_core_governs(
+    tmp_path: Path, surface: str, part: str
+) -> None:
+    """Stress falls linearly, to 18/20 at the boundary: the case governs up to a ratio of 20/18."""
+    path = study(tmp_path, CASE.replace("900", surface))
+    done = run_here("run", str(path), cwd=tmp_path)
+    assert f"({part} under B)" in " ".join(done.stdout.split())
+
+
+@each("command", ["check", "reliability"])
+def test_reliability_is_refused_before_anything_is_solved(tmp_path: Path, command: str) -> None:
+    path = study(tmp_path, CASE)
+    path.write_text(path.read_text() + VARIED)
+    done = run_here(command, str(path), cwd=tmp_path)
+    assert done.returncode == 2
+    assert "hardened: reliability takes one yield strength" in " ".join(done.stderr.split())
+    assert "the study as it is" not in done.stderr

@@ -95,6 +95,20 @@ def test_what_a_lug_says_of_its_clearance_replaces_what_the_defaults_say(
     assert lugs(study(defaults, f"lug.M = {{ {own} }}")) == lugs(by_hand(written))
 
 
+@each("own", ["interference = 0.02", 'fit = "H7/s6"'])
+def test_what_a_bushing_says_of_its_interference_replaces_what_the_defaults_say(own: str) -> None:
+    ring, known = 'thickness = 1, material = "bronze"', "range = { interference = [0.01, 0.04] }\n"
+    defaults = f"[lug_defaults]\nbushing = {{ {ring}, fit = 'H7/r6' }}\n"
+    written = dict.fromkeys(EVERY, f"bushing = {{ {ring}, fit = 'H7/r6' }}")
+    written["M"] = f"bushing = {{ {ring}, {own} }}"
+    given = f"lug.M = {{ bushing = {{ {own} }} }}"
+    assert lugs(study(defaults, given)) == lugs(by_hand(written))
+    kept = {name: f"{keys}\n{known}" for name, keys in written.items()}
+    if "fit" in own:  # which has a range of its own
+        kept["M"] = written["M"]
+    assert lugs(study(defaults + known, given)) == lugs(by_hand(kept))
+
+
 def test_a_pin_that_says_so_gets_no_lugs_and_cannot_have_any() -> None:
     assert lugs(study(pin="lugs = false"))["P"] == ()
     with pytest.raises(InputError, match=r"pin.P: lugs = false, but lugs are given"):

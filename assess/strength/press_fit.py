@@ -1,0 +1,63 @@
+"""The stress of press fits alone, by Lame's tubes: of a pin in the bore of a lug, and of a bushing
+in its hole.
+
+It needs neither loads nor a shank. A lug whose stress is solved has it in that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from assess.check import CheckText, WorstPlace, check
+from assess.margin import Margin
+from assess.situation import Situation
+from assess.work import WorkQuantity
+from fea.support.lugs.fit import on_structure, press_fit_stresses
+from fea.support.lugs.lug import Lug
+
+METHOD = "press fit"
+
+
+@check(
+    METHOD,
+    "AFFDL-TR-69-42, 9.16",
+    kind="model",
+    takes="loads",
+    omits="the loads, which the stress of a lug with a shank has; the eye is a ring",
+)
+def press_fit(text: CheckText, s: Situation) -> list[Margin]:
+    """The margins of bushing and eye of lugs with an interference whose stress is not solved."""
+    solved = {stress.connection for stress in s.lug_stresses}
+    lugs = (lug for lug in s.lugs if lug.connection not in solved)
+    return [margin for lug in lugs for margin in _margins(text, s, lug)]
+
+
+def _margins(text: CheckText, s: Situation, lug: Lug) -> Iterator[Margin]:
+    pin = on_structure(s.pin, s.lugs)
+    band = pin.band(lug.connection)
+    bore = max(max(x.bores) for x in pin.segments if x.connection == lug.connection)
+    place = WorstPlace(lug.connection, band.middle)
+    stresses = list(press_fit_stresses(lug, band.radius, bore / 2.0, s.material))
+    required = s.row.required if s.row else None
+    for wall, (material, stress) in zip(
+        ("bushing", "eye")[-len(stresses) :], stresses, strict=True
+    ):
+        if stress > 0.0:
+            named = replace(text, method=f"{text.method}, {wall}")
+            (margin,) = named.at_levels(s, stress, place, material, material.yield_strength)
+            margin = replace(margin, factor=max(margin.factor, required or 0.0))
+            yield replace(margin, passing=_passing(lug, margin.used))
+
+
+def _passing(lug: Lug, used: float) -> WorkQuantity | None:
+    """The interference that would just pass, at the temperature of the study's dimensions; None
+    where pin and bushing are pressed in, or none would.
+    """
+    if lug.bushing is None:
+        now, grown = -lug.clearance, -lug.growth
+    else:
+        now, grown = lug.bushing.misfit, lug.bushing.outgrown
+    passes = now / used - grown if used > 0.0 else 0.0
+    both = lug.bushing is not None and lug.clearance < 0.0
+    return WorkQuantity("interference", passes, "length") if passes > 0.0 and not both else None
