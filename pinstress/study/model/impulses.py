@@ -162,8 +162,8 @@ def over_range(
     points = [
         (time, velocity, pulse)
         for pulse in pulses
-        for velocity in impulse.range.velocity_change
-        for time in impulse.range.impulse_time
+        for velocity in impulse.range.velocity_change or (impulse.velocity_change,)
+        for time in impulse.range.impulse_time or (impulse.impulse_time,)
     ]
     sizes = np.array([_size(impulse, v, t, pulse) for t, v, pulse in points])
     return ImpulseLoads(

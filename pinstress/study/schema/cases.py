@@ -122,12 +122,23 @@ class ImpulseRange(StrictTable):
     all combinations, and a pin is safe only if it meets its factor in all of them.
     """
 
-    impulse_time: Annotated[list[Duration], Field(min_length=1)]
-    """Durations of the impulse."""
-    velocity_change: Annotated[list[Annotated[Velocity, POSITIVE]], Field(min_length=1)]
-    """Velocity changes."""
+    impulse_time: Annotated[list[Duration], Field(min_length=1)] | None = None
+    """Durations of the impulse. Default: its own."""
+    velocity_change: Annotated[list[Annotated[Velocity, POSITIVE]], Field(min_length=1)] | None = (
+        None
+    )
+    """Velocity changes. Default: its own."""
     pulse: Annotated[list[Pulse], Field(min_length=1)] | None = None
-    """Shapes of the pulse. Default: that of the impulse."""
+    """Shapes of the pulse. Default: its own."""
+
+    @model_validator(mode="after")
+    def _of_something(self) -> "ImpulseRange":
+        if self.impulse_time is self.velocity_change is self.pulse is None:
+            raise ArgumentError(
+                "give one of impulse_time = [...], velocity_change = [...] and pulse = [...]",
+                "give-one",
+            )
+        return self
 
 
 class ImpulseTable(StrictTable):

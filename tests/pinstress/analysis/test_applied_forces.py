@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from pinstress.analysis.gather.gather import loads_only
+from pinstress.analysis.plan import prepare
 from pinstress.study.reading.file import load_study
+from tests.support.each import each
 
 STUDIES = Path(__file__).parents[3] / "studies"
 
@@ -35,6 +37,31 @@ def test_an_impulse_acts_at_its_joint() -> None:
     assert f"{load.sizes[0]:,.1f} lbf" in results.reactions[0].note
     assert load.force[0, 0] == 0.0
     assert motion.aside == ()
+
+
+@each(
+    ("ranges", "ratios"),
+    [
+        ("impulse_time = [0.1, 0.2]", [1.5, 0.75]),  # of the impulse over 0.15 s
+        ('velocity_change = ["10 ft/s", "25 ft/s"]', [0.4, 1.0]),  # of 25 ft/s
+        ('pulse = ["half-sine"]', [1.0, np.pi / 2.0]),  # and its own, the mean force
+    ],
+)
+def test_an_impulse_may_have_a_range_of_one_of_its_numbers(
+    tmp_path: Path, ranges: str, ratios: list[float]
+) -> None:
+    """The others are its own: the documentation shows a range of the impulse time alone."""
+    before, rest = (STUDIES / "landing_gear.toml").read_text(encoding="utf-8").split("[published]")
+    head, _ = before.split("[case.landing.apply.impulse.range]")
+    (study := tmp_path / "ranged.toml").write_text(
+        f"{head}[case.landing.apply.impulse.range]\n{ranges}\n[mechanism]{rest.split('[mechanism]')[1]}"
+    )
+    (task,) = prepare(load_study(study), pins=["J"], cases=["landing"]).tasks
+    (load,) = task.loads
+    upwards = task.also["landing"].forces[:, load.surfaces.index("J2"), 1]
+    # Weights are nearly nothing beside the 194,000 lbf of the impulse.
+    given = load.forces[0, load.surfaces.index("J2"), 1]
+    assert upwards / given == pytest.approx(ratios, rel=1e-3)
 
 
 def test_side_forces_are_apart_from_those_in_the_plane(tmp_path: Path) -> None:
