@@ -94,7 +94,7 @@ class LandingRange:
     safety_factor: (P,), None without a yield strength.
     nominal, nominal_pulse: of the case itself. verdict: of the case, valid for all points.
     spread: for a `singular` verdict the ends of the interval of the factor, over the factor.
-    largest_load: the largest force on a band at any point, over the largest in the case.
+    largest_load: the largest ratio of the force on a band at any point to that in the case.
     """
 
     pin: str

@@ -21,6 +21,10 @@ from pinstress.study.model.tasks import Task
 from reports.data.row import LandingRange, SharingRange
 
 
+# Of the largest force on a pin: one that is neglected where ratios of forces count.
+NEGLIGIBLE_LOAD = 0.01
+
+
 def landing_range(
     loads: Mapping[str, CaseLoads], task: Task, solution: Solution
 ) -> LandingRange | None:
@@ -32,13 +36,22 @@ def landing_range(
     strength = solution.peak.yield_strength(task.material.yield_strength)
     nominal = range_of(solution.peak, over, maxima, strength)
     as_described = next(x for x in task.loads if x.case == case)
-    most = _largest_force(task.ranges[case]) / (_largest_force(as_described) or 1.0)
+    most = _largest_load(task.ranges[case], as_described)
     return replace(nominal, spread=_spread(solution.peak), largest_load=most)
 
 
-def _largest_force(loads: PinLoads) -> float:
-    """Return the largest force on any band at any instant, N."""
-    return float(np.linalg.norm(loads.forces, axis=-1).max(initial=0.0))
+def _largest_load(ranged: PinLoads, nominal: PinLoads) -> float:
+    """Return the largest ratio of the force on a band over ranges to that of the case.
+
+    Bands with next to no load are left out: a check of theirs governs nothing.
+    """
+    over, own = (
+        np.linalg.norm(x.forces, axis=-1).max(axis=0, initial=0.0) for x in (ranged, nominal)
+    )
+    if not (loaded := over > NEGLIGIBLE_LOAD * over.max(initial=0.0)).any():
+        return 1.0
+    least = NEGLIGIBLE_LOAD * over.max()  # a band may be loaded by the range alone
+    return float((over[loaded] / np.maximum(own[loaded], least)).max())
 
 
 def sharing_range(task: Task, solution: Solution) -> SharingRange | None:

@@ -133,7 +133,7 @@ class ImpulseRange(StrictTable):
 
     @model_validator(mode="after")
     def _of_something(self) -> "ImpulseRange":
-        if self.impulse_time is self.velocity_change is self.pulse is None:
+        if self.impulse_time is None and self.velocity_change is None and self.pulse is None:
             raise ArgumentError(
                 "give one of impulse_time = [...], velocity_change = [...] and pulse = [...]",
                 "give-one",
