@@ -146,6 +146,8 @@ def _together(checks: list[Check], situations: Iterable[Situation]) -> Iterator[
     for s in situations:
         for check in checks:
             margins = _with_code(check, s)
+            if s.section_forces is not None and s.section_forces.kind == "joint":
+                margins = [replace(m, over_joint=s.over_joint) for m in margins]
             yield from margins if s.governs else map(for_comparison, margins)
 
 

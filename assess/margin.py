@@ -39,6 +39,7 @@ class Margin:
     work: the formulas of the allowable with their numbers. passing: the dimension that would just
     pass, by its key. scatter: of the method against tests, where it was measured. omits: what the
     check does not cover.
+    over_joint: the largest demand over the uncertain properties of the joint, over this one.
     """
 
     method: str
@@ -62,6 +63,7 @@ class Margin:
     passing: WorkQuantity | None = None
     scatter: str = ""
     omits: str = ""
+    over_joint: float = 1.0
 
     @property
     def shown(self) -> str:

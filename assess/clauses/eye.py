@@ -106,11 +106,11 @@ def eye_of(s: Situation, lug: Lug) -> PlateEye:
     """The eye of a lug on its band of the pin, as thick as the band is long.
 
     Without a shank the head is round, and its end half of its width from the centre. The clearance
-    of a bushing is not in the hole of the lug.
+    of a bushing is not in the hole of the lug; any other is the largest that is stated.
     """
     band, bushed, shank = s.pin.band(lug.connection), lug.bushing is not None, lug.shank
     pin = 2.0 * band.radius
-    ring = 2.0 * lug.bushing.thickness if lug.bushing else max(lug.clearance, 0.0)
+    ring = 2.0 * lug.bushing.thickness if lug.bushing else max(lug.loosest, 0.0)
     if shank is None:
         return PlateEye(lug.outer_diameter, pin + ring, pin, band.length, bushed)
     square = shank.shape == "square"

@@ -168,7 +168,7 @@ def eurocode_contact_replaceable(text: CheckText, s: Situation) -> list[Margin]:
     if lacking:
         return [text.lacks(s, *lacking)]
     lugs = [s.lug(name) for name in s.loads.surfaces]
-    loose = [k for k, lug in enumerate(lugs) if lug is not None and lug.clearance > 0.0]
+    loose = [k for k, lug in enumerate(lugs) if lug is not None and lug.loosest > 0.0]
     if not loose:
         return [text.lacks(s, f"a clearance in pin.{s.pin.name}.lug")]
     holes = [_hole(s, s.loads.surfaces[k]) for k in loose]
@@ -265,4 +265,4 @@ def _hole(s: Situation, name: str) -> tuple[float, float, float, float]:
     assert lug is not None
     E = 2.0 / (1.0 / s.material.youngs_modulus + 1.0 / lug.bearing.youngs_modulus)
     d = 2.0 * band.radius
-    return d, d + lug.clearance, band.length, E
+    return d, d + lug.loosest, band.length, E

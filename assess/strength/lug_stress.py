@@ -48,6 +48,7 @@ def _margins(text: CheckText, s: Situation, stress: LugStress, lug: Lug) -> list
         s, stress.max_von_mises + stress.error_estimate, place, material, material.yield_strength,
         "ultimate", basis=f"maximum with its error{over}",
     )  # fmt: skip
+    margins = [replace(m, over_joint=stress.over_joint) for m in margins]
     if stress.place == "beneath":
         return [for_comparison(replace(m, method=f"{m.method}, beneath the pin")) for m in margins]
     required = s.row.required if s.row else None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -14,6 +14,7 @@ from fea.lug.lug_stress import BoreStress, LugInPlane, LugLoad, bore_stresses
 from fea.lug.slipping import SlippingBushing
 from fea.lug.through_thickness import EyeStress, eye_stress
 from fea.support.contact.pressed_cases import PressedCases
+from fea.support.contact.variations import ResolutionComparison, VariedPressures
 from fea.support.lugs.lug import Lug
 from fea.support.records import LugStress
 from pinbase.arrays import Floats
@@ -42,61 +43,111 @@ class ShankAngle:
         return np.asarray(np.interp(times, self.times, np.unwrap(self.angle)))
 
 
+@dataclass(frozen=True)
+class _LoadedLug:
+    """A lug on its band, whose stress under any pressures is superposed.
+
+    rows: of its rings among those of the pin. of: material of the pin, radius of its bore and of
+    its band, m. length: of the rings, (R,) m.
+    """
+
+    lug: Lug
+    rows: slice
+    of: tuple[Material, float, float]
+    eye: EyeStress
+    length: Floats
+    memo: Memo
+
+    def force(self, waves: Floats) -> Floats:
+        """The force (T, 2) N of pressures (N + 1, T, rings of the pin, 2) Pa."""
+        around = 2.0 * math.pi * self.of[2] * self.length
+        return np.asarray(0.5 * np.einsum("trp,r->tp", waves[1][:, self.rows], around))
+
+    def largest(
+        self, waves: Floats, angle: Floats, times: Floats | None
+    ) -> dict[tuple[str, str], tuple[Lug, BoreStress]]:
+        """The largest stress by wall and place, and the lug in which it is: of those with either
+        end of the interference of its bushing.
+
+        waves: as of `force`. angle: of the shank, (T,) rad. times: (T,) s, None for one instant.
+        """
+        load = LugLoad(self.force(waves), waves[:, :, self.rows], self.length, angle, times)
+        largest: dict[tuple[str, str], tuple[Lug, BoreStress]] = {}
+        for bushing in self.lug.pressed_bushings() or (None,):
+            at = replace(self.lug, bushing=bushing)
+            bonded = partial(LugInPlane, at, *self.of, memo=self.memo)
+            pressed = bushing is not None and bushing.pressed
+            slipping = partial(SlippingBushing, at, *self.of, memo=self.memo) if pressed else None
+            for stress in bore_stresses(bonded, self.eye, load, slipping):
+                place, size = (stress.wall, stress.place), stress.von_mises + stress.error
+                before = largest.get(place)
+                if before is None or size > before[1].von_mises + before[1].error:
+                    largest[place] = at, stress
+        return largest
+
+
 def lug_stresses(
-    contact: PressedCases, case: str, angles: Mapping[str, ShankAngle], memo: Memo
+    contact: PressedCases,
+    case: str,
+    angles: Mapping[str, ShankAngle],
+    over: ResolutionComparison | None,
+    memo: Memo,
 ) -> tuple[LugStress, ...]:
     """The stress at the bores of all lugs that have a shank, in one case.
 
     angles: of shanks, by connection; a shank without one lies along the largest force.
+    over: the joint with its uncertain properties changed, at one instant.
 
     Raises: ArgumentError for an impossible outline; MeshError, SolveError.
     """
     model, links = contact.model, contact.instants[case]
-    waves = model.waves(contact.states(links))
-    count, out = waves.shape[1], list[LugStress]()
+    waves, out = model.waves(contact.states(links)), list[LugStress]()
     for rows, lug, ends in model.by_lug():
         if lug.shank is None:
             continue
-        pressure = waves[:, :, rows]
         band = model.whole.band(lug.connection)
-        length = np.diff(ends)
-        force = 0.5 * np.einsum("trp,r->tp", pressure[1], 2.0 * math.pi * band.radius * length)
+        inner = max(max(s.bores) for s in model.whole.segments if s.connection == lug.connection)
+        of = model.material, inner / 2.0, band.radius
+        loaded = _LoadedLug(lug, rows, of, _eye(contact, lug, ends, memo), np.diff(ends), memo)
+        force = loaded.force(waves)
         if not force.any():
             continue
         given = angles.get(lug.connection)
-        angle = _along(force, count) if given is None else given.at(links.times, count)
-        load = LugLoad(force, pressure, length, angle, links.times)
-        inner = max(max(s.bores) for s in model.whole.segments if s.connection == lug.connection)
-        of = model.material, inner / 2.0, band.radius
-        eye = _eye(contact, lug, ends, memo)
+        angle = _along(force, len(force)) if given is None else given.at(links.times, len(force))
         assumed = ALONG_FORCE if given is None else given.assumed
         middles = band.z0 + 0.5 * (ends[1:] + ends[:-1])
+        ratios = {}
+        if over is not None and over.pressures:
+            then = angle[:1] if given is None else given.at(over.links.times, 1)
+            ratios = _over_joint(loaded, over.pressures, then)
         out += [
-            _record(at, stress, float(middles[stress.ring]), assumed)
-            for at, stress in _over_interference(lug, of, eye, load, memo)
+            replace(
+                _record(at, stress, float(middles[stress.ring]), assumed),
+                over_joint=ratios.get(place, 1.0),
+            )
+            for place, (at, stress) in loaded.largest(waves, angle, links.times).items()
         ]
     return tuple(out)
 
 
-def _over_interference(
-    lug: Lug, of: tuple[Material, float, float], eye: EyeStress, load: LugLoad, memo: Memo
-) -> list[tuple[Lug, BoreStress]]:
-    """Return the largest stress at each wall and place over the range of the interference of a
-    lug's bushing, with the lug in which it is.
-
-    of: material of the pin, radius of its bore and of its band, m.
+def _over_joint(
+    loaded: _LoadedLug, pressures: Sequence[VariedPressures], angle: Floats
+) -> dict[tuple[str, str], float]:
+    """The largest stress by wall where nothing presses on it under any of some pressures, over
+    that under the first ones.
     """
-    largest: dict[tuple[str, str], tuple[Lug, BoreStress]] = {}
-    for bushing in lug.pressed_bushings() or (None,):
-        at = replace(lug, bushing=bushing)
-        bonded = partial(LugInPlane, at, *of, memo=memo)
-        pressed = bushing is not None and bushing.pressed
-        slipping = partial(SlippingBushing, at, *of, memo=memo) if pressed else None
-        for stress in bore_stresses(bonded, eye, load, slipping):
-            place, size = (stress.wall, stress.place), stress.von_mises + stress.error
-            if place not in largest or size > largest[place][1].von_mises + largest[place][1].error:
-                largest[place] = at, stress
-    return list(largest.values())
+
+    def sizes(joint: VariedPressures) -> dict[tuple[str, str], float]:
+        (lug,) = (x for x in joint.lugs if x.connection == loaded.lug.connection)
+        largest = replace(loaded, lug=lug).largest(joint.waves, angle, None)
+        return {place: x.von_mises for place, (_, x) in largest.items() if x.place == "free"}
+
+    given, *varied = map(sizes, pressures)
+    return {
+        place: max([1.0, *(x.get(place, 0.0) / size for x in varied)])
+        for place, size in given.items()
+        if size > 0.0
+    }
 
 
 def _along(force: Floats, count: int) -> Floats:

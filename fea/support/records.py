@@ -51,6 +51,8 @@ class Variation:
     interval: of the maximum with the error of the model, where that is part of the range.
     beneath: the largest stress beneath the contact then (fea.core.places), None where only the
     maximum is known.
+    across: the largest shear force or moment across the pin then, over that of the joint as given,
+    whichever grows more.
     """
 
     what: str
@@ -59,6 +61,7 @@ class Variation:
     length: Length | None = None
     interval: tuple[Stress, Stress] | None = None
     beneath: Stress | None = None
+    across: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -75,6 +78,11 @@ class JointRange:
     variations: tuple[Variation, ...]
     model: str = "contact"
     assumed: bool = False
+
+    @property
+    def across(self) -> float:
+        """The largest shear force or moment across the pin, over that of the joint as given."""
+        return max((x.across for x in self.variations), default=1.0)
 
 
 @dataclass(frozen=True)
@@ -93,6 +101,8 @@ class LugStress:
     the two, and the larger stress counts. other_interface: the stress with the other one.
     interference: of a bushing whose interference has a range, that of the largest stress, at the
     temperature of the study's dimensions.
+    over_joint: the largest stress over the uncertain properties of the joint, over that of the
+    joint as given.
     """
 
     connection: str
@@ -113,6 +123,7 @@ class LugStress:
     interface: str = ""
     other_interface: Stress | None = None
     interference: Length | None = None
+    over_joint: float = 1.0
 
     @property
     def safety_factor(self) -> float | None:

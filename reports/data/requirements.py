@@ -287,7 +287,8 @@ def _of_margins(
     """Return a requirement with the least of what margins reach.
 
     One that was not made leaves it unchecked, unless another misses it anyway. One that is reached
-    depends where it is not under the most load, to which the demand is taken to be in proportion.
+    depends where it is not under the most load, to which the demand is taken to be in proportion,
+    or not over the uncertain properties of the joint.
     """
     if not margins:
         return replace(plain, needs=f"a force across pin {plain.pin}")
@@ -297,7 +298,8 @@ def _of_margins(
         return replace(plain, reached=known, outcome="missed")
     if needs := _needs(margins):
         return replace(plain, reached=known, needs=needs)
-    outcome: Outcome = "met" if reached >= plain.required * most_load else "depends"
+    least = min(_reached(m) / m.over_joint for m in margins)
+    outcome: Outcome = "met" if least >= plain.required * most_load else "depends"
     return replace(plain, reached=known, outcome=outcome)
 
 

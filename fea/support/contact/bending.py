@@ -68,6 +68,12 @@ class LoadedJoint:
         names = tuple(lug.connection for lug in self.lugs)
         return JointForces(z, self.loads.times, shear, moment, names, np.stack(forces, axis=1))
 
+    def largest_across(self) -> Floats:
+        """The largest shear force, N, and bending moment, N m, at any instant, (2,)."""
+        z = stations(self.pin)
+        across = self.shear_force(z), self.bending_moment(z)
+        return np.array([np.linalg.norm(x, axis=2).max(initial=0.0) for x in across])
+
     def _summed(self, z: Floats, parts: Callable[[Floats, Floats], Parts]) -> Floats:
         bands, loads, ends = self.bands, self.loads, np.array(self.pin.stations)
         forces, moments = (x[:, : len(bands.z)] for x in (loads.forces, loads.moments))
@@ -79,6 +85,15 @@ class LoadedJoint:
         weight = loads.body[:, None, :2] * self.mass[:, None]
         even, _ = parts(z[:, None] - ends[:-1], np.diff(ends))
         return np.asarray(rings + even @ weight)
+
+
+def growth_across(varied: LoadedJoint, own: LoadedJoint) -> float:
+    """The largest shear force or moment across a pin over that of another joint, whichever grows
+    more.
+    """
+    before = own.largest_across()
+    ratios = np.divide(varied.largest_across(), before, out=np.ones(2), where=before > 0.0)
+    return float(ratios.max())
 
 
 def _moments(way: Floats, lengths: Floats) -> Parts:

@@ -22,13 +22,21 @@ from fea.harmonic.field import HarmonicField
 from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.section.section_stress import SectionField
 from fea.singular.singularities import singularities_of
+from fea.support.contact.bending import LoadedJoint, growth_across
 from fea.support.contact.coarser_cells import on_coarser_cells
 from fea.support.contact.contact import ContactProblem
 from fea.support.contact.contact_state import ContactState
 from fea.support.contact.friction import SLIDING, TURNING, coefficient_words, rubbed, rubs
-from fea.support.contact.pressure_loads import MODE_TOLERANCE, PressureLoads, PressureModes, stacked
+from fea.support.contact.pressure_loads import (
+    MODE_TOLERANCE,
+    PressureLoads,
+    PressureModes,
+    resultants,
+    stacked,
+)
 from fea.support.contact.solve_joint import ContactModel, JointContact
 from fea.support.lugs.changes import joint_variations
+from fea.support.lugs.lug import Lug
 from fea.support.lugs.rings import USUAL_RING_COUNT
 from fea.support.records import FRICTION, JointRange, Variation
 
@@ -76,6 +84,17 @@ NOWHERE = AtPlaces(0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
+class VariedPressures:
+    """The pressures of a varied joint at an instant.
+
+    lugs: with their clearance and tilt. waves: harmonics, (N + 1, 1, R, 2) Pa.
+    """
+
+    lugs: tuple[Lug, ...]
+    waves: Floats
+
+
+@dataclass(frozen=True)
 class ResolutionComparison:
     """The stress at one instant on the first mesh, and its relative error from the cells.
 
@@ -84,6 +103,7 @@ class ResolutionComparison:
     contact, relative to those of the joint as given.
     left_out: the variations that could not be solved, and why.
     half_angle: of contact where a lug presses most, rad (ContactModel.half_angle).
+    pressures: of the joint as given and of each variation but those by friction, on the same cells.
     """
 
     stress: AtPlaces
@@ -92,6 +112,7 @@ class ResolutionComparison:
     over: tuple[Variation, ...]
     left_out: str = ""
     half_angle: float = 0.5 * math.pi
+    pressures: tuple[VariedPressures, ...] = ()
 
     def range(self, largest: float, below: float = 0.0) -> JointRange:
         """The range over the joint of a maximum and of the stress beneath contact, Pa."""
@@ -136,11 +157,13 @@ class _Joint:
     cells.
 
     per_arc: harmonics that the cells follow, times the half angle of contact in rad.
+    lugs: of a varied joint.
     """
 
     waves: Floats
     states: list[ContactState]
     per_arc: float = math.inf
+    lugs: tuple[Lug, ...] = ()
 
     @property
     def with_rougher(self) -> tuple[_Joint, ...]:
@@ -173,16 +196,18 @@ def compare(
         for contact, both in zip(at, exact, strict=True)
     ]
     by_cells, out, likes = _at_places(model, requirement, every), [], []
-    for contact in at:
+    for contact, both in zip(at, exact, strict=True):
         first, twice, roughest = (by_cells.pop(0) for _ in range(3))
         arc = model.half_angle(contact)
         cells = _by_cells(first, roughest, model.cells.rings, arc * model.cells.highest)
         out.append(ResolutionComparison(first, cells, contact.loads.links, (), half_angle=arc))
-        likes.append(first if _large_cells(model) else twice)  # on the cells of varied joints
+        # The joint as given on the cells of varied joints.
+        likes.append((first, both[0]) if _large_cells(model) else (twice, both[1]))
     which = (True,) * len(at) if vary is None else vary(out)
     if any(which):
         ratios = _over_joint(model, at, requirement, patterns, likes, which)
-        out = [replace(x, over=y, left_out=z) for x, (y, z) in zip(out, ratios, strict=True)]
+        pairs = zip(out, ratios, strict=True)
+        out = [replace(x, over=a, left_out=b, pressures=c) for x, (a, b, c) in pairs]
     return tuple(out)
 
 
@@ -199,12 +224,13 @@ def _over_joint(
     at: Sequence[JointContact],
     requirement: Requirement,
     known: PressureModes,
-    likes: Sequence[AtPlaces],
+    likes: Sequence[tuple[AtPlaces, _Joint]],
     vary: Sequence[bool],
-) -> list[tuple[tuple[Variation, ...], str]]:
-    """The variations of each contact, and what is not included in them.
+) -> list[tuple[tuple[Variation, ...], str, tuple[VariedPressures, ...]]]:
+    """The variations of each contact, what is not included in them, and the pressures
+    (ResolutionComparison).
 
-    likes: the stress of the joints as given, on the same cells.
+    likes: the joints as given on the same cells, with their stress.
     vary: the contacts whose joint is varied.
     """
     over, varied, missing = _varied(model, at, _large_cells(model), vary)
@@ -220,15 +246,28 @@ def _over_joint(
     stress = _at_places(model, requirement, every) if any(every) else []
     by_friction = _by_friction(model, requirement, at, vary, patterns)
     out = []
-    for like, names, joints, why, more in zip(
-        likes, over, varied, missing, by_friction, strict=True
-    ):
-        ratios = tuple(
-            _ratio(x, [stress.pop(0) for _ in y.with_rougher], like, model.cells.rings, y.per_arc)
+    of_contacts = zip(at, likes, over, varied, missing, by_friction, strict=True)
+    for contact, (like, given), names, joints, why, more in of_contacts:
+        own = _loaded(model, given, contact)
+        ratios = [
+            replace(
+                _ratio(
+                    x, [stress.pop(0) for _ in y.with_rougher], like, model.cells.rings, y.per_arc
+                ),
+                across=growth_across(_loaded(model, y, contact), own),
+            )
             for x, y in zip(names, joints, strict=True)
-        )
-        out.append((ratios + more, f"not included: {'; '.join(why)}" if why else ""))
+        ]
+        left_out = f"not included: {'; '.join(why)}" if why else ""
+        pressures = tuple(VariedPressures(x.lugs or model.lugs, x.waves) for x in (given, *joints))
+        out.append(((*ratios, *more), left_out, pressures))
     return out
+
+
+def _loaded(model: ContactModel, joint: _Joint, contact: JointContact) -> LoadedJoint:
+    """A varied joint with the resultants of its pressures on the rings."""
+    loads = resultants(model.pin, model.rings, joint.waves, contact.loads.links)
+    return LoadedJoint(model.pin, model.lugs, model.bands, loads, contact.mass)
 
 
 def _ratio(
@@ -423,7 +462,8 @@ def _varied(
                 continue
             try:
                 joint = _coarse(other, contact.loads.links, *cells)
-                changed.append(replace(joint, per_arc=highest * other.half_angle(contact)))
+                per_arc = highest * other.half_angle(contact)
+                changed.append(replace(joint, per_arc=per_arc, lugs=other.lugs))
             except SolveError as error:
                 why.append(f"{change.what} {change.value} ({error})")
                 continue

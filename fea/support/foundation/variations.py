@@ -14,7 +14,8 @@ from dataclasses import dataclass
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.support.foundation.bounds import StressBounds, stress_bounds
+from fea.support.contact.bending import growth_across
+from fea.support.foundation.bounds import stress_bounds
 from fea.support.foundation.foundation_model import FoundationModel
 from fea.support.foundation.stress import FoundationStress
 from fea.support.lugs.changes import joint_variations, with_stiffness
@@ -61,20 +62,26 @@ class FoundationRange:
 
         Raises: SolveError as FoundationModel.solve.
         """
-        given = stress_bounds(self.own, self.own.model.solve(loads))
+        own = self.own.model.solve(loads)
+        given = stress_bounds(self.own, own)
         if given.bounds is None:
             return None, given.why
         over, left_out = [], []
         for joint in self.varied:
-            varied_bounds = _tried(joint.stress, loads)
-            if varied_bounds is None:
+            try:
+                varied = joint.stress.model.solve(loads)
+            except SolveError:  # lugs that are free to tilt may leave a couple on the pin
                 continue
+            varied_bounds = stress_bounds(joint.stress, varied)
             if varied_bounds.bounds is None:
                 left_out.append(f"{joint.what} {joint.value}")
                 continue
             size = varied_bounds.maximum
+            across = growth_across(varied, own)
             over.append(
-                Variation(joint.what, joint.value, size, joint.length, varied_bounds.bounds)
+                Variation(
+                    joint.what, joint.value, size, joint.length, varied_bounds.bounds, across=across
+                )
             )
         bounds = [given.bounds, *(v.interval for v in over if v.interval)]
         ends = min(low for low, _ in bounds), max(high for _, high in bounds)
@@ -109,16 +116,6 @@ def _prescribed(over: FoundationRange, loads: PinLoads) -> JointResult:
     except SolveError as error:
         return JointResult("prescribed", remark=str(error))
     return JointResult("prescribed", range=joint_range, remark=remark)
-
-
-def _tried(stress: FoundationStress, loads: PinLoads) -> StressBounds | None:
-    """The bounds with a varied joint; None where lugs that are free to tilt leave a couple on the
-    pin.
-    """
-    try:
-        return stress_bounds(stress, stress.model.solve(loads))
-    except SolveError:
-        return None
 
 
 def _varied(given: FoundationStress) -> Iterator[Varied]:

@@ -156,6 +156,11 @@ class Lug:
             raise ArgumentError(f"{what}: its friction must be from 0 to 1", "friction-range")
 
     @property
+    def loosest(self) -> float:
+        """The largest clearance that is stated, m."""
+        return self.range.clearance[1] if self.range.clearance else self.clearance
+
+    @property
     def bearing(self) -> Material:
         """The material on which the pin bears: the bushing's or the lug's."""
         return self.material if self.bushing is None else self.bushing.material

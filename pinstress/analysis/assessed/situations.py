@@ -184,7 +184,8 @@ def _situation(
         return replace(s, complete=False), why
     pin = on_structure(profile, task.lugs) if structure else profile
     simple = None if simple is whole else simple
-    return replace(s, profile=pin, loads=whole, joint=along, simple=simple), ""
+    over = joint.range.across if joint and joint.range else 1.0
+    return replace(s, profile=pin, loads=whole, joint=along, simple=simple, over_joint=over), ""
 
 
 def _not_made(s: Situation, why: str) -> Iterable[Margin]:

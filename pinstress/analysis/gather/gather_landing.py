@@ -20,7 +20,6 @@ from pinstress.study.model.impulses import ImpulseLoads
 from pinstress.study.model.tasks import Task
 from reports.data.row import LandingRange, SharingRange
 
-
 # Of the largest force on a pin: one that is neglected where ratios of forces count.
 NEGLIGIBLE_LOAD = 0.01
 

@@ -94,7 +94,7 @@ COLUMNS: list[Column[MarginRow]] = [
     *fields("margin.governs margin.code"),
     Column("work", lambda row: work_text(row.margin, row.units)),
     Column("would_pass", lambda row: passing_text(row.margin, row.units)),
-    *fields("margin.scatter not_covered=margin.omits"),
+    *fields("margin.scatter not_covered=margin.omits margin.over_joint"),
 ]  # fmt: skip
 ARM_COLUMNS: list[Column[ArmsRow]] = [
     *texts("arms.pin arms.case"),
