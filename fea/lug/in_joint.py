@@ -138,7 +138,9 @@ def _over_joint(
     """
 
     def sizes(joint: VariedPressures) -> dict[tuple[str, str], float]:
-        (lug,) = (x for x in joint.lugs if x.connection == loaded.lug.connection)
+        # Lugs that are stiffer, as other links than theirs would make them, are of the same metal.
+        (loose,) = (x.clearance for x in joint.lugs if x.connection == loaded.lug.connection)
+        lug = replace(loaded.lug, clearance=loose)
         largest = replace(loaded, lug=lug).largest(joint.waves, angle, None)
         return {place: x.von_mises for place, (_, x) in largest.items() if x.place == "free"}
 

@@ -156,7 +156,8 @@ def measure_first(unknown: Sequence[Unknown], lines: Sequence[PinLine] = ()) -> 
     first = matters[0]
     row, value = max(first.rows, key=lambda x: x[1].ratio)
     low, high = (factor_text(end, row.required or 1.0) for end in (value.low, value.high))
-    others = [x.pin for x in lines if x.outcome == DEPENDS and x.check.row is None]
+    depending = [x.pin for x in lines if x.outcome == DEPENDS and x.check.row is None]
+    others = list(dict.fromkeys(depending))
     nothing = "Nothing open changes an outcome alone"
     if others:
         nothing = f"Checks besides yield depend on what is open ({names(others)})"
