@@ -41,7 +41,11 @@ PASSING_WORDS = {
 def lug_advice(results: Results, lines: Iterable[PinLine]) -> list[str]:
     """Return sentences on the lugs that fail where a check of one is the worst of its pin."""
     failing = _failing(lines)
-    whole = [c for c in failing if c.used > MAX_THICKNESS_RATIO and _at_bore(c)]
+    whole = [
+        c
+        for c in failing
+        if c.used > MAX_THICKNESS_RATIO and _at_bore(c) and not _pressed(_lug(c, results))
+    ]
     alone = [c for c in failing if c not in whole]
     told = [_of_whole(whole)] if whole else []
     told += [_of_lug(check, results) for check in alone[:MAX_TOLD_LUGS]]
@@ -82,17 +86,34 @@ def _of_whole(checks: Sequence[JudgedCheck]) -> str:
 
 
 def _of_lug(check: JudgedCheck, results: Results) -> str:
-    shape = next((s for s in results.shapes if s.pin == check.pin), None)
+    lug, ways = _lug(check, results), _ways(check, results)
     where = "at the bore" if _at_bore(check) else check.check
     factor = f"factor {engineering(check.factor, 3)} {where}"
-    return f"Lug {check.lug} of {check.pin} ({factor}) needs {_or(_ways(check, shape, results))}."
+    return f"Lug {check.lug} of {check.pin} ({factor}) needs {_or(ways, _pressed(lug))}."
 
 
-def _ways(check: JudgedCheck, shape: PinShape | None, results: Results) -> list[str]:
+def _lug(check: JudgedCheck, results: Results) -> LugSketch | None:
+    """Return the lug of a check."""
+    shape = _shape(check, results)
+    return next((x for x in shape.lugs if x.connection == check.lug), None) if shape else None
+
+
+def _shape(check: JudgedCheck, results: Results) -> PinShape | None:
+    return next((s for s in results.shapes if s.pin == check.pin), None)
+
+
+def _pressed(lug: LugSketch | None) -> bool:
+    """Return whether a bushing's press fit is a part of a lug's stress, which no size takes off in
+    proportion.
+    """
+    return lug is not None and lug.interference > 0.0
+
+
+def _ways(check: JudgedCheck, results: Results) -> list[str]:
     """Return the changes of which each alone is enough, as an estimate."""
     ways, units = list[str](), results.units
-    lug = next((x for x in shape.lugs if x.connection == check.lug), None) if shape else None
-    if _at_bore(check) and shape and lug:
+    shape, lug = _shape(check, results), _lug(check, results)
+    if _at_bore(check) and shape and lug and not _pressed(lug):
         bore = _bore(shape, lug)
         ways += (
             _of_face(check.used, lug, bore, units)
@@ -159,5 +180,7 @@ def _and(parts: Sequence[str]) -> str:
     return " and ".join(filter(None, [", ".join(parts[:-1]), parts[-1]]))
 
 
-def _or(ways: Sequence[str]) -> str:
-    return " or ".join(filter(None, [", ".join(ways[:-1]), ways[-1]])) if ways else "less load"
+def _or(ways: Sequence[str], pressed: bool) -> str:
+    if not ways:
+        return "less interference or less load" if pressed else "less load"
+    return " or ".join(filter(None, [", ".join(ways[:-1]), ways[-1]]))

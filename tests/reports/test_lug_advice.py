@@ -18,6 +18,7 @@ from reports.tables.strength.overview import check_words
 from reports.text.lug_advice import lug_advice, lug_peaks
 from reports.text.overview import actions
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.results.made_up_run import make_results
 from tests.support.results.rows import with_values
 
@@ -61,6 +62,18 @@ def test_a_lug_whose_face_a_bending_pin_loads() -> None:
     (text,) = lug_advice(*failing(replace(STRESS, z=0.95)))
     assert "thickness" not in text
     assert "a stiffer pin, of 1.25 in (now 1.00), in an eye of 3.12 in (now 2.50)" in text
+
+
+@each(("used", "needs"), [(1.25, "a yield strength of 100,000 psi"), (9.0, "less interference or")])
+def test_no_size_takes_off_the_stress_of_a_press_fit(used: float, needs: str) -> None:
+    """Thickness and width were named as for stress that grows with the load alone."""
+    results, lines = failing(replace(STRESS, demand=50e3 * used / 1.25))
+    (shape,) = (x for x in results.shapes if x.lugs)
+    lugs = tuple(replace(x, bushing=0.1, interference=0.002) for x in shape.lugs)
+    results = replace(results, shapes=(replace(shape, lugs=lugs),))
+    (text,) = lug_advice(results, lines)
+    assert f" needs {needs}" in text
+    assert "thickness" not in text
 
 
 def test_a_joint_that_is_much_too_small() -> None:

@@ -16,6 +16,7 @@ import pytest
 
 from fea.core.linear_solver import ConstrainedSystem
 from fea.core.material import Material
+from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.core.voigt import von_mises
@@ -28,7 +29,7 @@ from fea.support.contact.contact_state import ContactState
 from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from fea.support.support import PinProblem
-from geometry import Cut, CutPin, Flat, Hole, Pin, Segment
+from geometry import Cut, CutPin, Flat, Hole, Pin, Segment, Slot
 from geometry.mesh import cut_piece
 from geometry.mesh.cut_piece import Piece, piece_mesh
 from pinbase.arrays import Floats, Mask
@@ -181,6 +182,43 @@ def test_real_contact_is_within_the_error(
     the middle of the pin: it is soft under pressure. CalculiX has 0.92 of the moment with such a
     flat (its ends slant), and without it agrees to 0.4 %.
     """
+    real, peak = real_and_ours(cut, moment, monkeypatch)
+    assert peak.max_von_mises is not None
+    assert peak.error_estimate is not None
+    coarse = 0.05 * real  # of the solid, 8 elements over the diameter and 6 on a hole's quarter
+    assert abs(real - peak.max_von_mises) < coarse
+    assert abs(real - peak.max_von_mises) < peak.error_estimate + 0.01 * real
+    assert peak.error_estimate < 0.08 * peak.max_von_mises
+
+
+@pytest.mark.slow
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("cut", "moment"),
+    [
+        (Slot(0.018, 0.028, 0.004, 0.0025, math.pi, 0.0008), 0.970),
+        (Slot(0.0195, 0.0265, 0.005, 0.003, math.pi, 0.001), 0.970),
+    ],
+)
+def test_real_contact_of_keyways_is_within_their_error(
+    cut: Cut, moment: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Under the pressure of the eye, with round ends: square ones have corners without a maximum,
+    and 703 MPa of the solid, 0.2 mm off one, is not to be compared with 551 outside of its zone.
+    """
+    real, peak = real_and_ours(cut, moment, monkeypatch)
+    assert peak.max_von_mises is not None
+    assert peak.error_estimate is not None
+    assert 0.88 * real < peak.max_von_mises < 1.05 * real
+    assert 1.05 * real < peak.max_von_mises + peak.error_estimate  # the solid is right to 5 %
+
+
+def real_and_ours(
+    cut: Cut, moment: float, monkeypatch: pytest.MonkeyPatch
+) -> tuple[float, Maximum]:
+    """The largest stress of the solid off the lugs' edges, Pa, and our maximum, where both have
+    a bending moment over that without the cut.
+    """
     monkeypatch.setattr(
         cut_piece, "REMOTE_MESH_SIZE", replace(cut_piece.REMOTE_MESH_SIZE, across=8.0)
     )
@@ -193,18 +231,11 @@ def test_real_contact_is_within_the_error(
     (ours,) = solve_in_lugs(
         PinProblem(CutPin.of(CLEVIS, (cut,)), STEEL, LUGS, (LOADS,)), requirement
     )
-    peak = ours.peak
-    assert peak.max_von_mises is not None
-    assert peak.error_estimate is not None
+    assert ours.joint is not None
+    assert ours.joint.bending_moment is not None
+    assert ours.joint.bending_moment / uncut == pytest.approx(moment, abs=0.035)
     z = half.space.nodes[:, 2]
     edges = [z_ for b in map(CLEVIS.band, "ABC") for z_ in (b.z0, b.z1)]
     away = np.abs(z[:, None] - edges).min(axis=1) > EDGE
     on = np.isin(np.arange(len(z)), half.boundary.corners)
-    real = float(stress[on & away].max())
-    coarse = 0.05 * real  # of the solid, 8 elements over the diameter and 6 on a hole's quarter
-    assert abs(real - peak.max_von_mises) < coarse
-    assert abs(real - peak.max_von_mises) < peak.error_estimate + 0.01 * real
-    assert peak.error_estimate < 0.08 * peak.max_von_mises
-    assert ours.joint is not None
-    assert ours.joint.bending_moment is not None
-    assert ours.joint.bending_moment / uncut == pytest.approx(moment, abs=0.035)
+    return float(stress[on & away].max()), ours.peak
