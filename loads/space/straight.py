@@ -12,30 +12,35 @@ from pinbase.arrays import Floats
 
 
 def straight(
-    linkage: Linkage, middles: Mapping[str, float], stated: Mapping[str, float]
+    linkage: Linkage,
+    middles: Mapping[str, float],
+    stated: Mapping[str, float],
+    roots: Mapping[str, float] | None = None,
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Place pins along z so that each link meets all its pins at one height, as near as can be.
 
     linkage: planar.
     middles: z of the middle of a connection's band from the start of its pin, m; 0 of others.
     stated: z of the start of a joint's pin, m.
+    roots: z at which the body that carries a joint's pin holds it, from its start, m; of others
+    the mean of the links on it.
 
-    Returns: z of every connection, m, and of every body how far its connections lie from its
-    middle plane, m. Where no z is stated the mean of all connections is at z = 0.
+    Returns: z of every connection, m, and of every body how far its connections and the pins that
+    it carries lie from its middle plane, m. Where no z is stated the mean of all connections is at
+    z = 0.
     """
     free = [j.name for j in linkage.joints if j.name not in stated]
     bodies = [b.name for b in linkage.bodies]
     rows, sides = list[Floats](), list[float]()
-    for joint, connection in linkage.connections:
-        if connection.body == GROUND:
-            continue
+    meetings = _meetings(linkage, middles, roots or {})
+    for body, joint, height in meetings:
         row = np.zeros(len(free) + len(bodies))
-        if joint.name in stated:
-            sides.append(-stated[joint.name] - middles.get(connection.name, 0.0))
+        if joint in stated:
+            sides.append(-stated[joint] - height)
         else:
-            row[free.index(joint.name)] = 1.0
-            sides.append(-middles.get(connection.name, 0.0))
-        row[len(free) + bodies.index(connection.body)] = -1.0
+            row[free.index(joint)] = 1.0
+            sides.append(-height)
+        row[len(free) + bodies.index(body)] = -1.0
         rows.append(row)
     for slider in linkage.sliders:  # one body slides along the other at the same height
         if GROUND not in (slider.base, slider.moving):
@@ -50,10 +55,20 @@ def straight(
     if not stated:
         mean = sum(at.values()) / len(at)
         at = {name: z - mean for name, z in at.items()}
-    return at, {body: _spread(linkage, body, at) for body in bodies}
+    askew = {}
+    for body in bodies:
+        z = [start[joint] + height for b, joint, height in meetings if b == body]
+        askew[body] = 0.5 * (max(z) - min(z)) if z else 0.0
+    return at, askew
 
 
-def _spread(linkage: Linkage, body: str, at: Mapping[str, float]) -> float:
-    """Largest distance of a body's connections from their middle plane, m."""
-    z = [at[c.name] for _, c in linkage.connections if c.body == body]
-    return 0.5 * (max(z) - min(z)) if z else 0.0
+def _meetings(
+    linkage: Linkage, middles: Mapping[str, float], roots: Mapping[str, float]
+) -> list[tuple[str, str, float]]:
+    """Every body on a joint but the ground, the joint, and the body's height on its pin, m."""
+    out = [(c.body, j.name, middles.get(c.name, 0.0)) for j, c in linkage.connections]
+    for joint in linkage.joints:
+        if joint.fixed_in is not None:
+            mean = float(np.mean([middles.get(c.name, 0.0) for c in joint.connections]))
+            out.append((joint.fixed_in, joint.name, roots.get(joint.name, mean)))
+    return [meeting for meeting in out if meeting[0] != GROUND]

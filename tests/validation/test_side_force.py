@@ -111,6 +111,28 @@ def test_landings_of_part_25_reach_the_aircraft_with_all_six_components() -> Non
         _in_equilibrium(others[0], one)
 
 
+PART_23 = ROOT / "studies" / "light_gear_part23.toml"
+
+
+def test_side_loads_of_part_23_to_the_left_and_right_mirror_each_other() -> None:
+    """Every leg lies in a plane of its own, whatever the heights of bands on its pins: forces in
+    the plane do not turn it out of it, and the other leg feels nothing of a side load.
+    """
+    loads = loads_of(load_study(PART_23))
+    left, right = (loads[f"nose 23.499-side-{side}"].reactions for side in ("left", "right"))
+    side = 2.25 * 0.7 * 350.0 * POUND
+    aside = np.abs(np.concatenate([left.moments[0, :, 0], left.forces[0, :, 2] * INCH])).max()
+    assert np.abs(left.force("V")[0, 2]) == pytest.approx(side, rel=1e-12)
+    assert left.moments == pytest.approx(-right.moments, abs=1e-9 * aside)
+    assert left.forces[..., 2] == pytest.approx(-right.forces[..., 2], abs=1e-9 * side)
+    main = [left.connections.index(name) for name in ("A", "D", "E", "W")]
+    assert np.abs(left.moments[0, main]).max() < 1e-9 * aside
+    # The side load at the ground, 32 in beneath F, is carried by F and G alone.
+    f, g = (left.connections.index(name) for name in "FG")
+    about_x = left.moments[0, [f, g], 0].sum() + 2.0 * INCH * left.forces[0, g, 2]
+    assert abs(about_x) == pytest.approx(32.0 * INCH * side, rel=1e-12)
+
+
 def _in_equilibrium(one: CaseLoads, other: CaseLoads) -> None:
     """What A, D and H pass on, less the forces on the wheel, between two cases."""
     force, moment = np.zeros((2, 3))

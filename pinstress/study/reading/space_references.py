@@ -92,7 +92,7 @@ def cases_in_space(table: StudyTable) -> Iterator[Wrong]:
             )
             yield Wrong(text, code="wrong-dimension")
         if isinstance(case, StaticCase) and case.hold is not None:
-            text = f"case.{name}.hold: in space all drives hold; remove it"
+            text = f"case.{name}.hold: in space all drives hold; remove it, or drive what holds"
             yield Wrong(text, code="wrong-dimension")
     if table.motion_check is not None:
         text = "motion_check: it needs a linkage in a plane; remove it"

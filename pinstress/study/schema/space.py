@@ -3,8 +3,10 @@
 import math
 from typing import Annotated, Any, ClassVar, Literal
 
+import numpy as np
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
+from loads.space.conditions import directions
 from loads.space.kinds import KINDS, Kind
 from loads.space.linkage import RIGHT_ANGLE_TOLERANCE
 from pinbase.errors import ArgumentError
@@ -34,19 +36,25 @@ JointOrPoint3 = Annotated[
     Discriminator(lambda value: "<joint>" if isinstance(value, str) else "<point>"),
 ]
 
+# Nearer to each other, the axes of a universal joint do not say which second axis was meant.
+MAX_COSINE_OF_SKEW = math.cos(math.radians(1.0))
 PLANAR_PARTS = {  # of a mechanism, and what stands for them in space
     "slider": 'use a joint of kind = "prismatic" between its two bodies',
-    "stop": "a hold of a drive or lock is not known in space; drive the joint instead",
-    "gear": "gears are only known in a plane; drive both bodies",
-    "rack": "racks are only known in a plane; drive both bodies",
-    "point": "paths of points are only known in a plane",
+    "stop": "drives hold the linkage: drive the joint at which the stop acts",
+    "gear": "give each of the two bodies a drive, their laws in the ratio of the teeth",
+    "rack": "give each of the two bodies a drive, their laws in the ratio of the gear's radius",
+    "point": "remove it: bodies.csv has the motion of every body",
 }
 
 
 def _with_three(data: Any, *keys: str) -> None:
-    """Raise ArgumentError for a key that has two numbers instead of three."""
+    """Raise ArgumentError for a key that is text, or has two numbers instead of three."""
     for key in keys:
-        if isinstance(data, dict) and isinstance(value := data.get(key), list) and len(value) == 2:
+        value = data.get(key) if isinstance(data, dict) else None
+        if isinstance(value, str):
+            text = f"{key} is a vector, not {value!r}; give {key} = [x, y, z]"
+            raise ArgumentError(text, "not-a-list")
+        if isinstance(value, list) and len(value) == 2:
             text = f"{key} has two numbers; in space (dimension = 3) give {key} = [x, y, z]"
             raise ArgumentError(text, "wrong-dimension")
 
@@ -114,7 +122,8 @@ class SpaceJointTable(StrictTable):
             )
         for key in ("axis", "second_axis", "pin_axis"):
             if (value := getattr(self, key)) is not None and not any(value):
-                raise ArgumentError(f"{key} must not be zero", "no-direction")
+                text = f"{key} must not be zero; give its direction, {key} = [x, y, z]"
+                raise ArgumentError(text, "no-direction")
         _require_axes(self)
         return self
 
@@ -130,12 +139,18 @@ def _require_axes(joint: SpaceJointTable) -> None:
             raise ArgumentError(f"a {joint.kind} joint has no {key}; remove it", "no-direction")
     if joint.axis is not None and joint.second_axis is not None:
         product = sum(a * b for a, b in zip(joint.axis, joint.second_axis, strict=True))
-        cosine = product / (math.hypot(*joint.axis) * math.hypot(*joint.second_axis))
+        size = math.hypot(*joint.axis)
+        cosine = product / (size * math.hypot(*joint.second_axis))
         if abs(cosine) > RIGHT_ANGLE_TOLERANCE:
+            square = np.subtract(joint.second_axis, np.multiply(product / size**2, joint.axis))
+            if abs(cosine) > MAX_COSINE_OF_SKEW:
+                square = directions(joint.axis)["u"]
+            square = square / np.abs(square).max()
+            instead = ", ".join(f"{float(x):.9g}" for x in square + 0.0)
             raise ArgumentError(
                 f"axis and second_axis of a universal joint are those of its cross, at a right "
                 f"angle; they are {math.degrees(math.acos(max(-1.0, min(1.0, cosine)))):.4g} deg "
-                "apart",
+                f"apart; give for instance second_axis = [{instead}]",
                 "axes-not-square",
             )
 

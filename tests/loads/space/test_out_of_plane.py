@@ -26,6 +26,7 @@ from loads import (
 )
 from loads.space.out_of_plane import Links, Offsets, OutOfPlane, SideLoad, variations
 from loads.space.stiffness import LinkStiffness, flat_link, round_link
+from loads.space.straight import straight
 from tests.support.each import each
 
 Floats = NDArray[np.float64]
@@ -68,6 +69,18 @@ def test_links_beside_each_other_load_their_pins_by_their_weight() -> None:
     # W = 50 N along -y at z = 0.2: moment about x is -z fy = +10 N m.
     assert r.moments[0, 0] == pytest.approx([10.0, 0.0, 0.0], rel=1e-12, abs=1e-12)
     assert r.moments[0, 1] == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
+
+
+def test_links_lie_as_far_apart_as_the_pin_between_them_says() -> None:
+    """A pin that the boom carries: its link lies beside the boom by band less clamp, or else in the
+    boom's plane, however far along the pins the bands are.
+    """
+    bands = {"A1": 0.7, "B1": 0.3}
+    for roots, apart in (({"B": 0.1}, 0.2), ({}, 0.0)):
+        at, askew = straight(_boom(), bands, {"A": 0.0}, roots)
+        assert at["A1"] == pytest.approx(0.7)
+        assert at["B1"] - at["A1"] == pytest.approx(apart)
+        assert max(askew.values()) == pytest.approx(0.0, abs=1e-12)
 
 
 def _four_bar() -> Linkage:

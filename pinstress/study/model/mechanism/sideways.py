@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from geometry import GeometryError, PinLike
 from loads import Dynamics, Linkage
 from loads.space.out_of_plane import Links, Offsets, OutOfPlane, SideLoad, variations
 from loads.space.sharing import STIFFNESS_RATIO
@@ -83,10 +84,10 @@ def sideways(
 def _offsets(study: Study, mechanism: Linkage) -> tuple[Offsets, str]:
     """Return where links lie along z, and in words where nothing states that.
 
-    Links lie at the middles of their bands on the pins. Pins lie where their z says, others so that
-    links are straight.
+    Links lie at the middles of their bands on the pins, and a body at the clamps of a pin that it
+    carries. Pins lie where their z says, others so that links are straight.
     """
-    stated, middles = dict[str, float](), dict[str, float]()
+    stated, middles, roots = dict[str, float](), dict[str, float](), dict[str, float]()
     for name, joint in plane_of(study).joint.items():
         if joint.z is not None:
             stated[name] = joint.z
@@ -94,7 +95,9 @@ def _offsets(study: Study, mechanism: Linkage) -> tuple[Offsets, str]:
             shape = pin(study, name)
             on = set(joint.connections) & set(shape.connections)
             middles |= {c: shape.band(c).middle for c in on}
-    at, askew = straight(mechanism, middles, stated)
+            if clamps := _clamps(shape, study.table.pin[name].clamp):
+                roots[name] = sum(clamps) / len(clamps)
+    at, askew = straight(mechanism, middles, stated, roots)
     if len(stated) == len(mechanism.joints):
         return Offsets(at), ""
     factor, unit = study.system.factor("length"), study.system.length
@@ -108,6 +111,17 @@ def _offsets(study: Study, mechanism: Linkage) -> tuple[Offsets, str]:
     return Offsets(at), (
         f"Offsets of links along the pins count; {placed} placed so that links are straight{out}."
     )
+
+
+def _clamps(shape: PinLike, clamps: Sequence[str]) -> list[float]:
+    """Return the z of the clamped faces and bands, from the start of the pin, m."""
+    ends, out = dict(zip(("start", "end"), shape.ends, strict=True)), list[float]()
+    for clamp in clamps:
+        try:
+            out.append(ends[clamp] if clamp in ends else shape.band(clamp).middle)
+        except GeometryError:
+            continue  # a cut has no place along z
+    return out
 
 
 def _links(study: Study) -> Links:
