@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ from pinstress.explore.curve import curve
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.in_python import changed_study
 from reports.data.curve import CurvePoint, FactorCurve
+from reports.text.curve import reached_lines
 from tests.support.each import each
 from tests.support.programs.command_line import ONE_PIN
 
@@ -52,6 +54,57 @@ def test_the_case_that_counts_is_the_worst_or_one_of_which_nothing_is_known() ->
     worst = of(point(1.0, 3.0, case="a"), point(1.0, 2.0, case="b"), point(2.0, 4.0, case="a"),
                point(2.0, None, case="b"))  # fmt: skip
     assert [p.case for p in worst.least("P")] == ["b", "b"]
+
+
+def test_reached_throughout_is_no_more_than_the_results_say() -> None:
+    open_ = of(point(1.0, 10.1), replace(point(2.0, 10.2), outcome="not decided"))
+    (told,) = reached_lines(open_)
+    assert told.endswith("throughout as computed, but not every result is safe (not decided).")
+    assert reached_lines(of(point(1.0, 10.1), point(2.0, 10.2)))[0].endswith("throughout.")
+
+
+def test_a_row_is_of_the_case_that_fails_though_another_has_a_smaller_factor(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Twenty times the load has a smaller factor, of which less is required. A strength that
+    nothing uses moves nothing, which is said; a sweep counts designs by their own factors.
+    """
+    text = ONE_PIN.replace("[case.landing]", MORE_CASES)
+    (tmp_path / "two.toml").write_text(text, encoding="utf-8")
+    command = ["curve", str(tmp_path / "two.toml"), "material.unused.yield_strength"]
+    assert run_command_line([*command, "--points", "2", "--jobs", "1"]) == 0
+    told = capsys.readouterr().out
+    assert {line.split()[-2] for line in told.splitlines() if " B " in line} == {"fails"}
+    assert "unused.yield_strength changes nothing here" in " ".join(told.split())
+    assert "Required factors differ" in told
+    out = ["--out", str(tmp_path / "out"), "--jobs", "1"]
+    assert run_command_line(["sweep", str(tmp_path / "two.toml"), *out]) == 0
+    assert "designs below their required factors: B 2" in capsys.readouterr().out
+
+
+MORE_CASES = """
+[[require]]
+check = "yield"
+cases = ["landing"]
+factor = 1000
+[[require]]
+check = "yield"
+cases = ["hard"]
+factor = 1.5
+
+[vary.parameters]
+"material.unused.yield_strength" = { from = "200 ksi", to = "220 ksi", steps = 2 }
+
+[material.unused]
+youngs_modulus = "28400 ksi"
+poisson_ratio = 0.3
+yield_strength = "225 ksi"
+
+[case.hard]
+kind = "given"
+forces = { B = [0.0, -20000.0] }
+
+[case.landing]"""
 
 
 def test_points_are_those_of_runs(tmp_path: Path) -> None:
