@@ -229,10 +229,12 @@ def _forces(run: Mapping[str, Any], unit: float) -> dict[tuple[str, ...], float]
 
 
 def _margins(run: Mapping[str, Any]) -> dict[tuple[str, ...], tuple[float, str]]:
-    """Return the least margin of each pin and its check, to six digits against round-off."""
+    """Return the least margin of each pin that counts and its check, to six digits against
+    round-off.
+    """
     least: dict[tuple[str, ...], tuple[float, str]] = {}
     for row in run.get("margins", ()):
-        if row["margin"] is None:
+        if row["margin"] is None or not row["governs"]:
             continue
         here = float(f"{row['margin']:.6g}"), f"{row['method']}, {row['case']}"
         least[(row["pin"],)] = min(here, least.get((row["pin"],), here))

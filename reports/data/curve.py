@@ -6,9 +6,11 @@ import math
 from dataclasses import dataclass
 from itertools import pairwise
 
+from assess.judgement import OUTCOME_ORDER
 from pinbase.grouped import grouped
 
 CURVE_NAME = "curve"
+AS_DESCRIBED = "as described"  # after an outcome, where only a run finds the range over the joint
 
 
 @dataclass(frozen=True)
@@ -30,6 +32,12 @@ class CurvePoint:
     depends_on: str = ""
     verdict: str = ""
     reason: str = ""
+
+    @property
+    def rank(self) -> tuple[int, float]:
+        """The sort key of cases: the worst outcome, then the smallest factor, comes first."""
+        outcome = self.outcome.removesuffix(f" {AS_DESCRIBED}")
+        return OUTCOME_ORDER[outcome], self.safety_factor or 0.0
 
     @property
     def factor_ends(self) -> tuple[float, float] | None:
@@ -97,6 +105,20 @@ class FactorCurve:
         return tuple(
             min(points, key=lambda p: p.safety_factor or 0.0) for points in by_value.values()
         )
+
+    def worst(self, pin: str) -> tuple[CurvePoint, ...]:
+        """At every value the worst case of a pin: a smaller factor may be all that is required."""
+        by_value = grouped((point.value, point) for point in self.points if point.pin == pin)
+        return tuple(min(points, key=lambda p: p.rank) for points in by_value.values())
+
+    @property
+    def moves(self) -> bool:
+        """Whether any result differs between values."""
+        known = [p for p in self.points if p.max_von_mises is not None]
+        by_row = grouped(
+            ((p.pin, p.case), (p.max_von_mises, p.safety_factor, p.outcome)) for p in known
+        )
+        return len({p.value for p in known}) < 2 or any(len(set(x)) > 1 for x in by_row.values())
 
     @property
     def reached(self) -> tuple[Crossing, ...]:

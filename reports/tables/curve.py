@@ -1,4 +1,4 @@
-"""curve.csv: every pin and case at every value; and the smallest factors, as people read them."""
+"""curve.csv: every pin and case at every value; and the worst cases, as people read them."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ def curve_table(curve: FactorCurve) -> Table[CurvePoint]:
     return Table(CURVE_NAME, _columns(curve), curve.points)
 
 
-def least_table(curve: FactorCurve) -> Table[CurvePoint]:
-    """Return a row for each value and pin, with the case that has the smallest factor."""
-    least = [point for pin in curve.pins for point in curve.least(pin)]
-    by_value = sorted(least, key=lambda point: point.value)
+def worst_table(curve: FactorCurve) -> Table[CurvePoint]:
+    """Return a row for each value and pin, with its worst case."""
+    worst = [point for pin in curve.pins for point in curve.worst(pin)]
+    by_value = sorted(worst, key=lambda point: point.value)
     return Table(CURVE_NAME, _columns(curve), by_value)
 
 

@@ -340,13 +340,14 @@ def _peaks(results: Results, lines: Sequence[PinLine], shapes: dict[str, PinShap
 
 
 def _exceeded(lines: Sequence[PinLine]) -> Content:
-    """Return a sentence on each check by formula that a pin fails, with what it lacks."""
+    """Return a sentence on each check by formula that a pin fails, with what it lacks at worst."""
     checks = [x for x in lines if x.check.row is None and not x.check.lug]
     failing = [x for x in checks if x.outcome == FAILS and x.check.factor]
+    used = grouped(((x.pin, x.check.check), x.check.used) for x in failing)
     return [
-        f"{x.pin} needs {engineering(100.0 * (x.check.used - 1.0), 2)} % more strength, or less "
-        f"load ({x.check.check})."
-        for x in failing
+        f"{pin} needs {engineering(100.0 * (max(shares) - 1.0), 2)} % more strength, or less "
+        f"load ({check})."
+        for (pin, check), shares in used.items()
     ]
 
 

@@ -95,6 +95,7 @@ def test_every_array_has_a_dimension_or_is_known_to_need_none() -> None:
         "DropRecord.lift",
         "DropRecord.load_factor",
         "Margin.factor",
+        "Margin.over_joint",
         "Remedy.required",
         "Remedy.load_factor",
         "Remedy.diameter_factor",

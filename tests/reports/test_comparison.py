@@ -49,6 +49,20 @@ def test_the_same_run_has_no_change(run: dict[str, Any]) -> None:
     assert comparison_plot(found) is None
 
 
+def test_a_margin_for_comparison_hides_no_other(run: dict[str, Any]) -> None:
+    """Of the margins that count the least falls from 2 to 1; one that is smaller does not count."""
+    plain = {"pin": "P", "case": "c", "method": "bending"}
+
+    def margins(least: float) -> dict[str, Any]:
+        of_pin = [plain | {"margin": m, "governs": g} for m, g in ((least, True), (0.5, False))]
+        return run | {"margins": of_pin}
+
+    (pair,) = compare(margins(2.0), margins(1.0)).margins
+    assert pair.first is not None
+    assert pair.second is not None
+    assert (pair.first[0], pair.second[0]) == (2.0, 1.0)
+
+
 def test_a_change_is_beyond_the_errors_or_within(run: dict[str, Any]) -> None:
     """Ranges of 100 to 120 and of the other maximum with its error."""
     base = changed(run, max_von_mises=110.0, error_estimate=10.0, max_von_mises_interval=None)

@@ -142,7 +142,9 @@ def test_any_table_makes_a_page(table: pa.Table, tmp_path: Path) -> None:
     page = parse(write(table, tmp_path))
     designs = designs_of(table)
     assert f"{len(designs.numbers)} design" in page.text
-    assert len(data_of(tmp_path / "designs.html")["columns"]) == len(table.column_names) - 6
+    apart = {"design", "pin", "case", "verdict", "outcome", "reason", "code"}
+    drawn = [name for name in table.column_names if name not in apart]
+    assert len(data_of(tmp_path / "designs.html")["columns"]) == len(drawn)
     assert page.addresses == []
 
 

@@ -162,3 +162,11 @@ def test_a_thicker_lug_or_a_wider_eye_is_enough_of_a_stiff_pin(tmp_path: Path) -
     assert least(thicker, "EYE") == pytest.approx(6.0, rel=0.04)
     wider = clevis(tmp_path, 6.0, pin=40.0, eye=given["an eye of"])
     assert least(wider, "EYE") == pytest.approx(6.0, rel=0.04)
+
+
+def test_a_check_that_fails_in_two_cases_is_advised_once() -> None:
+    results, (line, *_) = failing(replace(STRESS, method="bending", at="L"))
+    worse = replace(line, check=replace(line.check, used=2.0 * line.check.used))
+    (told,) = (x for x in actions(results, [line, worse]).repairs if "more strength" in x)
+    share = 100.0 * (2.0 * line.check.used - 1.0)
+    assert told == f"A needs {share:.0f} % more strength, or less load (bending)."

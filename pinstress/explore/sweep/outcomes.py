@@ -17,11 +17,10 @@ from pinstress.analysis.gather.gather_landing import landing_range, sharing_rang
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.tasks import Task
 from pinstress.study.schema.units import UnitSystem
+from reports.data.curve import AS_DESCRIBED
 from reports.data.dependence import depends_on
 from reports.data.row import PinResult, Units
 from reports.format.words import depends_words
-
-AS_DESCRIBED = "as described"
 
 
 def bare_row(task: Task, solution: Solution, loads: Mapping[str, CaseLoads]) -> PinResult:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 from rich.table import Table as Grid
 
+from assess.judgement import FAILS
 from pinstress.explore.sweep.table import facts
 from reports.format.numbers import DASH, engineering
 from reports.format.words import not_judged
@@ -26,7 +27,7 @@ def summary(table: pa.Table, console: Console) -> None:
     """
     stated = facts(table)
     rows: list[dict[str, Any]] = table.select(
-        ["design", "pin", "max_von_mises", "safety_factor", "verdict", "reason", "code"]
+        ["design", "pin", "max_von_mises", "safety_factor", "outcome", "verdict", "reason", "code"]
     ).to_pylist()
     designs = {row["design"] for row in rows}
     failed = {row["design"] for row in rows if row["verdict"] == "failed"}
@@ -46,15 +47,18 @@ def summary(table: pa.Table, console: Console) -> None:
     for pin in dict.fromkeys(row["pin"] for row in rows):
         of_pin = [row for row in rows if row["pin"] == pin]
         grid.add_row(pin, *_range(of_pin))
-        if required is not None:
-            below = {r["design"] for r in of_pin if (r["safety_factor"] or required) < required}
+        if required is not None or any(r["outcome"] == FAILS for r in rows):
+            below = {r["design"] for r in of_pin if _below(r, required)}
             solved = len({r["design"] for r in of_pin if r["verdict"] not in UNSOLVED_VERDICTS})
             of = f" of {solved:,} solved" if solved < len(designs) else ""
             short.append(f"{pin} {len(below):,}{of}")
     console.print(grid)
     if short:
+        of = (
+            "their required factors" if required is None else f"the required factor of {required:g}"
+        )
         console.print(
-            f"designs below the required factor of {required:g}: {', '.join(short)}",
+            f"designs below {of}: {', '.join(short)}",
             highlight=False,
             markup=False,
         )
@@ -70,6 +74,13 @@ def summary(table: pa.Table, console: Console) -> None:
             highlight=False,
             markup=False,
         )
+
+
+def _below(row: dict[str, Any], required: float | None) -> bool:
+    """Return whether a row misses its factor, its own where `required` is None."""
+    if required is None:
+        return bool(row["outcome"] == FAILS)
+    return (row["safety_factor"] or required) < required
 
 
 def _reasons(rows: list[dict[str, Any]]) -> list[str]:

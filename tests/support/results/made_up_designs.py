@@ -34,7 +34,7 @@ def made_up_designs(
     for row in each:
         if failed[row["design"] - 1]:
             row |= dict.fromkeys(RESULTS) | {"reason": FAILING[0], "code": FAILING[1]}
-            row["verdict"] = "failed"
+            row |= {"verdict": "failed", "outcome": "not decided"}
         row |= dict(zip(keys, values[row["design"] - 1].tolist(), strict=True))
     laws = {key: {"unit": "mm", "law": "uniform 10 to 30"} for key in keys}
     return table_of(each, keys, laws, study)
@@ -56,6 +56,7 @@ def _row(d: int, values: Floats, pin: str, case: str, random: Any) -> dict[str, 
         "error_estimate": 0.01 * stress,
         "safety_factor": YIELD / stress,
         "verdict": verdict,
+        "outcome": "below yield" if stress < YIELD else "yields",
         "governing_time": float(random.integers(5)),
         "mass": 1e-3 * float((values**2).sum()),
         "reason": "" if verdict == "converged" else "made up",
@@ -72,7 +73,8 @@ def table_of(
 ) -> pa.Table:
     """Rows as a table with the units and the metadata of a sweep."""
     texts = ("pin", "case", "verdict", "reason", "code")
-    order = ["design", "pin", "case", *keys, *RESULTS, "reason", "code"]
+    outcome = ["outcome"] if rows and all("outcome" in row for row in rows) else []
+    order = ["design", "pin", "case", *keys, *RESULTS, *outcome, "reason", "code"]
     fields = []
     for name in order:
         kind = pa.string() if name in texts else pa.float64()
