@@ -185,3 +185,20 @@ def test_checks_by_formula_hold_over_the_range_of_a_landing() -> None:
         assert results["C", "landing"].outcome == "safe"
         (worst,) = worst_checks(results).values()
         assert worst.outcome == {"met": "safe", "missed": "fails"}.get(outcome, outcome)
+
+
+def test_fatigue_says_that_it_takes_a_landing_as_described() -> None:
+    curve = """
+[material.steel.fatigue]
+knee_stress = 400
+knee_cycles = 1e6
+slope = 5
+mean_stress_sensitivity = 0.2
+[fatigue]
+life = 1000
+occurrences = { landing = 1 }
+"""
+    results = run(study_from(LANDED + curve), tolerance=0.2)
+    assert results.fatigue is not None
+    (said,) = (x for x in results.fatigue.left_out if "Landings" in x)
+    assert "not over their ranges: pin C" in said

@@ -206,7 +206,9 @@ def _left_out(
     tight = dict.fromkeys(t.pin.name for t in plan.tasks if _pressed(t.lugs))
     left = dict.fromkeys(t.pin.name for t in plan.tasks if _pressed(t.given) and not t.lugs)
     shear = dict.fromkeys(p.pin for p in points if SIGNED_SHEAR_RULE in p.note)
+    landed = dict.fromkeys(r.pin for o in outcomes for r in o.rows if r.landing is not None)
     sentences = [
+        ("Landings count as described, not over their ranges: pin", landed),
         ("No fatigue data of the material: pin", _without_data(plan, table)),
         ("Shear that alternates is signed by its direction, as no principal stress is larger than "
          "the other: pin", shear),
