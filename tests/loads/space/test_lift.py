@@ -33,8 +33,8 @@ JAMS = ("slider_crank_jammed",)  # has no forces
 QUICK = "slider_crank", "planetary", "lifting_arm"
 SLOW = (
     "bowman2019", "bucket", "crane", "drop", "engine", "excavator", "grenier2008", "hood",
-    "landing_gear", "landing_gear_part25", "main_gear", "matrix_four_bar", "pump_jack",
-    "scissor_lift",
+    "landing_gear", "landing_gear_part25", "light_gear_part23", "main_gear", "matrix_four_bar",
+    "pump_jack", "scissor_lift",
 )  # fmt: skip
 
 
@@ -102,7 +102,9 @@ def _compare(name: str) -> None:
         toggle = planar.motion.condition > TOGGLE_CONDITION
         tolerance = np.where(toggle, TOGGLE_TOLERANCE, TOLERANCE) * largest
         for c, connection in enumerate(flat.connections):
-            error = np.abs(space.reactions.force(connection) - flat.forces[:, c]).max(axis=1)
+            # Side loads are apart from the motion in the plane (tests/loads/space/test_out_of_plane).
+            apart = space.reactions.force(connection) - flat.forces[:, c]
+            error = np.abs(apart[:, :2]).max(axis=1)
             assert np.all(error <= tolerance), (name, case, connection, error.max() / largest)
         scale = planar.motion.linkage.length_scale
         across = np.abs(space.reactions.moments[..., :2]).max(axis=(1, 2))
