@@ -102,7 +102,7 @@ def _compare(name: str) -> None:
         toggle = planar.motion.condition > TOGGLE_CONDITION
         tolerance = np.where(toggle, TOGGLE_TOLERANCE, TOLERANCE) * largest
         for c, connection in enumerate(flat.connections):
-            # Side loads are apart from the motion in the plane (tests/loads/space/test_out_of_plane).
+            # Side loads are apart from the motion in the plane (test_out_of_plane.py).
             apart = space.reactions.force(connection) - flat.forces[:, c]
             error = np.abs(apart[:, :2]).max(axis=1)
             assert np.all(error <= tolerance), (name, case, connection, error.max() / largest)
