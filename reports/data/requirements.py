@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from math import inf
+from math import inf, prod
 from typing import Literal
 
 from assess.judgement import (
@@ -277,8 +277,11 @@ def _of_stress(plain: RequirementRow, row: PinResult, strength: float) -> Requir
 
 
 def _most_load(row: PinResult | None) -> float:
-    """Return the largest load over the ranges of a landing, over that of the case."""
-    return max(row.landing.largest_load, 1.0) if row is not None and row.landing else 1.0
+    """Return the largest load over the ranges of a landing and of the stiffness of links, over that
+    of the case.
+    """
+    over = (row.landing, row.sharing) if row is not None else ()
+    return prod(max(x.largest_load, 1.0) for x in over if x is not None)
 
 
 def _of_margins(

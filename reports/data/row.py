@@ -118,11 +118,13 @@ class SharingRange:
     """The range of a maximum over the stiffness of links that share loads out of the plane.
 
     max_von_mises: its ends. lowest, highest: what is different there; empty where it is the row's.
+    largest_load: the largest ratio of a demand to that in the case, as of a landing's range.
     """
 
     max_von_mises: tuple[Stress, Stress]
     lowest: str
     highest: str
+    largest_load: float = 1.0
 
 
 @dataclass(frozen=True, repr=False)

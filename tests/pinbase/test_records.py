@@ -83,6 +83,7 @@ def test_every_array_has_a_dimension_or_is_known_to_need_none() -> None:
         "LandingRange.safety_factor",
         "LandingRange.error",
         "LandingRange.largest_load",
+        "SharingRange.largest_load",
         "Dependence.factor",
         "Judgement.required",
         "PointFatigue.damage",  # per unit of the spectrum, in which lives are counted

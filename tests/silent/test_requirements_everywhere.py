@@ -5,6 +5,7 @@ fatigue, designs and reliability.
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from pinstress.cli.commands import run_command_line
 from reports.data.decision import factor_ends
 from reports.data.headline import worst_checks
 from reports.data.requirements import RequirementRow, requirement_rows
+from reports.data.row import SharingRange
 from tests.conftest import ROOT
 from tests.pinstress.analysis.test_margins import STRENGTHS, study
 from tests.pinstress.explore.reliability.test_reliability import BAR
@@ -185,6 +187,18 @@ def test_checks_by_formula_hold_over_the_range_of_a_landing() -> None:
         assert results["C", "landing"].outcome == "safe"
         (worst,) = worst_checks(results).values()
         assert worst.outcome == {"met": "safe", "missed": "fails"}.get(outcome, outcome)
+
+
+def test_checks_by_formula_hold_over_the_stiffness_of_links() -> None:
+    """The range over links was of the row's stress alone."""
+    asked = require(check="bearing", factor=5.0)
+    landed = LANDED.replace("[0.05, 0.15]", "[0.15]")
+    results = run(study_from(landed + asked), tolerance=0.2)
+    for most, outcome in ((2.8, "met"), (2.9, "depends")):  # 14.4 / 5 = 2.88
+        shared = SharingRange((1.0, 2.0), "", "a stiffer", most)
+        changed = replace(results, pins=(replace(results.pins[0], sharing=shared),))
+        (bearing,) = (r for r in requirement_rows(changed) if r.check == "bearing" and r.stated)
+        assert bearing.outcome == outcome
 
 
 def test_fatigue_says_that_it_takes_a_landing_as_described() -> None:

@@ -53,6 +53,7 @@ def test_pins_carry_all_six_components(tmp_path: Path) -> None:
         assert row.sharing is not None
         low, high = row.sharing.max_von_mises
         assert low < row.max_von_mises < high
+        assert row.sharing.largest_load >= high / row.max_von_mises * (1.0 - 1e-12)
         needs = [margin.needs for margin in row.worst if margin.needs]
         assert "a check of lugs under forces along the pin and moments of their links" in needs
     assert "forces along the axis: that of A on its own band" in rows["A", "side"].note

@@ -34,16 +34,16 @@ def landing_range(
     maxima = _maxima(task, solution, task.ranges[case])
     strength = solution.peak.yield_strength(task.material.yield_strength)
     nominal = range_of(solution.peak, over, maxima, strength)
-    as_described = next(x for x in task.loads if x.case == case)
-    most = _largest_load(task.ranges[case], as_described)
+    most = _largest_load(task, case, task.ranges[case])
     return replace(nominal, spread=_spread(solution.peak), largest_load=most)
 
 
-def _largest_load(ranged: PinLoads, nominal: PinLoads) -> float:
+def _largest_load(task: Task, case: str, ranged: PinLoads) -> float:
     """Return the largest ratio of the force on a band over ranges to that of the case.
 
     Bands with next to no load are left out: a check of theirs governs nothing.
     """
+    nominal = next(x for x in task.loads if x.case == case)
     over, own = (
         np.linalg.norm(x.forces, axis=-1).max(axis=0, initial=0.0) for x in (ranged, nominal)
     )
@@ -65,8 +65,10 @@ def sharing_range(task: Task, solution: Solution) -> SharingRange | None:
         stress[what] = max(stress.get(what, 0.0), value)
     low, high = min(stress, key=stress.__getitem__), max(stress, key=stress.__getitem__)
     ends = min(peak, stress[low]), max(peak, stress[high])
+    # Links share moments, too, of which bands have many: the stress stands for them.
+    most = max(_largest_load(task, solution.peak.case, over.loads), ends[1] / peak if peak else 1.0)
     return SharingRange(
-        ends, low if stress[low] < peak else "", high if stress[high] > peak else ""
+        ends, low if stress[low] < peak else "", high if stress[high] > peak else "", most
     )
 
 
