@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from fea.core.material import Material
-from fea.lug.lug_stress import BoreStress, LugInPlane, LugLoad, bore_stresses
+from fea.lug.lug_stress import BoreStress, LugInPlane, LugLoad, at_walls, bore_stresses
 from fea.lug.slipping import SlippingBushing
 from fea.lug.through_thickness import EyeStress, eye_stress
 from fea.support.contact.pressed_cases import PressedCases
@@ -63,6 +63,10 @@ class _LoadedLug:
         around = 2.0 * math.pi * self.of[2] * self.length
         return np.asarray(0.5 * np.einsum("trp,r->tp", waves[1][:, self.rows], around))
 
+    def load(self, waves: Floats, angle: Floats, times: Floats | None) -> LugLoad:
+        """The load by pressures. angle: of the shank, (T,) rad. times: (T,) s, or None."""
+        return LugLoad(self.force(waves), waves[:, :, self.rows], self.length, angle, times)
+
     def largest(
         self, waves: Floats, angle: Floats, times: Floats | None
     ) -> dict[tuple[str, str], tuple[Lug, BoreStress]]:
@@ -71,7 +75,7 @@ class _LoadedLug:
 
         waves: as of `force`. angle: of the shank, (T,) rad. times: (T,) s, None for one instant.
         """
-        load = LugLoad(self.force(waves), waves[:, :, self.rows], self.length, angle, times)
+        load = self.load(waves, angle, times)
         largest: dict[tuple[str, str], tuple[Lug, BoreStress]] = {}
         for bushing in self.lug.pressed_bushings() or (None,):
             at = replace(self.lug, bushing=bushing)
@@ -140,9 +144,9 @@ def _over_joint(
     def sizes(joint: VariedPressures) -> dict[tuple[str, str], float]:
         # Lugs that are stiffer, as other links than theirs would make them, are of the same metal.
         (loose,) = (x.clearance for x in joint.lugs if x.connection == loaded.lug.connection)
-        lug = replace(loaded.lug, clearance=loose)
-        largest = replace(loaded, lug=lug).largest(joint.waves, angle, None)
-        return {place: x.von_mises for place, (_, x) in largest.items() if x.place == "free"}
+        plane = LugInPlane(replace(loaded.lug, clearance=loose), *loaded.of, memo=loaded.memo)
+        walls = at_walls(plane, loaded.eye, loaded.load(joint.waves, angle, None))
+        return {(x.wall, x.place): x.von_mises for x in walls if x.place == "free"}
 
     given, *varied = map(sizes, pressures)
     return {

@@ -172,9 +172,9 @@ def stresses_of(
     """The largest stress at the walls with one kind of bushing; as `bore_stresses`."""
     usual, coarse = (make(around=x) for x in (USUAL_AROUND, USUAL_AROUND // COARSER))
     out = []
-    for stress in _walls(usual, eye, load):
+    for stress in at_walls(usual, eye, load):
         here = load.at(stress.instant)
-        others = _walls(coarse, eye, here), _walls(usual, eye, _on_pairs(here))
+        others = at_walls(coarse, eye, here), at_walls(usual, eye, _on_pairs(here))
         mesh, rings = (abs(stress.von_mises - _same(x, stress).von_mises) for x in others)
         out.append(replace(stress, mesh=mesh, rings=rings))
     return tuple(out)
@@ -231,7 +231,9 @@ def _beyond(times: Floats, values: Floats) -> float:
     return float(-0.25 * slope * slope / bend) if bend < 0.0 else 0.0
 
 
-def _walls(plane: LugInPlane | SlippingBushing, eye: EyeStress, load: LugLoad) -> list[BoreStress]:
+def at_walls(
+    plane: LugInPlane | SlippingBushing, eye: EyeStress, load: LugLoad
+) -> list[BoreStress]:
     """The largest stress at each wall, without the parts of its error but that of sampling."""
     bushing, lug = plane.lug.bushing, plane.lug
     forces = _along_shank(load)

@@ -176,12 +176,14 @@ def checks(results: dict[str, Any]) -> Iterator[Check]:
         if not m["governs"] or m["not_made"] or m["method"] == "von Mises stress, yield":
             continue
         used = m["utilisation"]
-        state = "safe" if used <= 1.0 else "fails"
+        method, state = m["method"], "safe" if used <= 1.0 else "fails"
+        if state == "safe" and used * m["over_joint"] > 1.0:
+            method, state = f"{method} at {m['level']} load", "depends"
         row = rows.get((m["pin"], m["case"]))
         if m["method"] == "von Mises stress, rupture" and row and state == "fails":
             low, high = ends(row)
             state = "fails" if used * low / high > 1.0 else "not decided"
-        yield ORDER[state], -used, m["pin"], state, m["method"], m["case"] or ""
+        yield ORDER[state], -used, m["pin"], state, method, m["case"] or ""
     for pin in (results["fatigue"] or {}).get("not_decided") or ():
         yield 1, math.inf, pin, "not decided", "fatigue life", ""
 
