@@ -32,7 +32,7 @@ class JudgedCheck:
     required: the required factor.
     used: required over actual factor, the upper end of a range, by which checks are compared.
     row: the row of the model's maximum, None for a margin; margin: None for other checks.
-    reason: why a check other than the model's maximum is not decided.
+    reason: why a check other than the model's maximum is not decided, or over what it depends.
     stated: whether a requirement of the study states the factor, not those on loads.
     """
 
@@ -137,7 +137,7 @@ def _of_requirement(row: RequirementRow) -> JudgedCheck:
     """Return the check of a requirement; what was not checked is not decided."""
     state = {MET: SAFE, MISSED: FAILS, NOT_CHECKED: NOT_DECIDED}.get(row.outcome, row.outcome)
     used = row.required / row.reached if row.reached else -inf
-    reason = f"needs {row.needs}" if row.needs else ""
+    reason = f"needs {row.needs}" if row.needs else row.over
     return JudgedCheck(
         row.pin, row.case, row.title, state, row.reached, row.required, used, None, reason,
         stated=True,

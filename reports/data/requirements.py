@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from itertools import chain
 from math import inf, prod
 from typing import Literal
 
@@ -82,6 +83,7 @@ class RequirementRow:
     study where that is a number.
     stated: whether the study states it, by [[require]], required_safety_factor or fatigue.life;
     otherwise it follows from the factors on loads.
+    over: of a check by margins that depends, what is open: "joint", "landing", "links".
     """
 
     pin: str
@@ -93,6 +95,7 @@ class RequirementRow:
     outcome: Outcome
     needs: str = ""
     stated: bool = True
+    over: str = ""
 
     @property
     def title(self) -> str:
@@ -222,10 +225,10 @@ def _of_limit_load(plain: RequirementRow, row: PinResult, margins: list[Margin])
     if elastic.outcome == "met":
         return elastic
     if limit is not None and limit.lower is not None and limit.upper is not None:
-        outcome: Outcome = "met" if limit.lower >= plain.required else "not decided"
-        outcome = "missed" if limit.upper < plain.required else outcome
-        if outcome == "met" and limit.lower < plain.required * _most_load(row):
-            outcome = "depends"
+        if limit.lower >= plain.required:
+            over = _beyond(limit.lower / plain.required, _most_loads(row))
+            return _depending(plain, limit.lower, over)
+        outcome: Outcome = "missed" if limit.upper < plain.required else "not decided"
         return replace(plain, reached=limit.lower, outcome=outcome)
     if elastic.outcome == "depends":
         return elastic
@@ -251,10 +254,10 @@ def _assumed(
 def _judged(plain: RequirementRow, margins: list[Margin], row: PinResult | None) -> RequirementRow:
     """Return a requirement as its margins have it, or the row's stress if it is of that."""
     if plain.check not in ("yield", "rupture") or row is None:
-        return _of_margins(plain, margins, _most_load(row))
+        return _of_margins(plain, margins, _most_loads(row))
     hardened = row.places is not None and row.places.hardened
     if hardened and plain.check == "rupture":  # its largest stress need not be the row's
-        return _of_margins(plain, margins, _most_load(row))
+        return _of_margins(plain, margins, _most_loads(row))
     if row.max_von_mises is None:
         return replace(plain, outcome="not decided", needs=f"a maximum ({row.verdict})")
     strengths = [m.allowable for m in margins if m.allowable is not None]
@@ -276,16 +279,34 @@ def _of_stress(plain: RequirementRow, row: PinResult, strength: float) -> Requir
     return replace(plain, reached=row.safety_factor, outcome=outcome, needs="")
 
 
-def _most_load(row: PinResult | None) -> float:
+def _most_loads(row: PinResult | None) -> dict[str, float]:
     """Return the largest load over the ranges of a landing and of the stiffness of links, over that
     of the case.
     """
-    over = (row.landing, row.sharing) if row is not None else ()
-    return prod(max(x.largest_load, 1.0) for x in over if x is not None)
+    over = {} if row is None else {"landing": row.landing, "links": row.sharing}
+    return {what: max(x.largest_load, 1.0) for what, x in over.items() if x is not None}
+
+
+def _beyond(spare: float, growth: Mapping[str, float]) -> list[str]:
+    """Return what is open that takes a demand beyond what is allowed; nothing where all of it
+    together does not.
+
+    spare: allowable over demand and required factor. growth: how much more the demand may be.
+    """
+    if spare >= prod(growth.values()):
+        return []
+    alone = [what for what, factor in growth.items() if spare < factor]
+    return alone or [what for what, factor in growth.items() if factor > 1.0]
+
+
+def _depending(plain: RequirementRow, reached: float | None, over: Iterable[str]) -> RequirementRow:
+    """Return a requirement that is reached as described, but not over what is open, if anything."""
+    words = " and ".join(dict.fromkeys(over))
+    return replace(plain, reached=reached, outcome="depends" if words else "met", over=words)
 
 
 def _of_margins(
-    plain: RequirementRow, margins: list[Margin], most_load: float = 1.0
+    plain: RequirementRow, margins: list[Margin], most_loads: Mapping[str, float] | None = None
 ) -> RequirementRow:
     """Return a requirement with the least of what margins reach.
 
@@ -301,9 +322,11 @@ def _of_margins(
         return replace(plain, reached=known, outcome="missed")
     if needs := _needs(margins):
         return replace(plain, reached=known, needs=needs)
-    least = min(_reached(m) / m.over_joint for m in margins)
-    outcome: Outcome = "met" if least >= plain.required * most_load else "depends"
-    return replace(plain, reached=known, outcome=outcome)
+    over = (
+        _beyond(_reached(m) / plain.required, {"joint": m.over_joint, **(most_loads or {})})
+        for m in margins
+    )
+    return _depending(plain, known, chain.from_iterable(over))
 
 
 def _reached(margin: Margin) -> float:

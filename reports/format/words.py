@@ -272,8 +272,9 @@ def _of_margin(check: JudgedCheck) -> str:
     if check.outcome == FAILS:
         return f"Pin {check.pin} fails: {_margin_words(check)}."
     if check.outcome == DEPENDS:
+        over = f"range of the {check.reason}" if check.reason else "study's ranges"
         return (
-            f"Pin {check.pin} is safe as described, but within the study's ranges it may fail: "
+            f"Pin {check.pin} is safe as described, but within the {over} it may fail: "
             f"{_margin_words(check)}."
         )
     why = f"{check.check}: {check.reason}" if check.reason else _margin_words(check)

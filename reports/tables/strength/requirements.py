@@ -17,7 +17,7 @@ COLUMNS: list[Column[RequirementRow]] = [
            lambda row: engineering(row.reached)),
     *texts("outcome"),
     Column("needs", lambda row: row.needs, "", "needs", numeric=False, rank=1, drop_if_empty=True),
-    *fields("stated"),
+    *fields("stated over"),
 ]  # fmt: skip
 
 
