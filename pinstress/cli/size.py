@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from pinbase.grouped import grouped
 from pinbase.processes import interrupts
 from pinbase.processes.interrupts import Unfinished
 from pinbase.processes.pool import preload, processes
@@ -95,10 +96,7 @@ def size_and_write(study: Study, goal: SizingGoal, options: SizeOptions) -> int:
         print_sizes(rows, goal.written, units, console(), sizing.written)
     if not options.quiet:
         close(study, new, target if sizing.written else None)
-    missed: dict[tuple[str, str], list[str]] = {}
-    for row in rows:
-        if row.why:
-            missed.setdefault((row.result.capitalize(), row.why), []).append(row.pin)
+    missed = grouped(((row.result.capitalize(), row.why), row.pin) for row in rows if row.why)
     for (result, why), pins in missed.items():
         of = f"pin{'s' * (len(pins) > 1)} {', '.join(pins)}"
         click.echo(f"{result}: {of}: {why}.", err=True)

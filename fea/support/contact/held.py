@@ -40,7 +40,7 @@ from fea.support.contact.joint_result import contact_result
 from fea.support.contact.pressed_cases import Candidates, Compared, PressedCases
 from fea.support.contact.solve_joint import MAX_CELLS, ContactModel, JointContact, Resolution
 from fea.support.contact.unit_pressures import unit_model, unit_patterns
-from fea.support.contact.variations import ResolutionComparison, WhichVaried, compare, uncompared
+from fea.support.contact.variations import ResolutionComparison, compare, nowhere, uncompared
 from fea.support.hardened_row import PartSearch, hardened_row, in_core
 from fea.support.lugs.axial import seats_note
 from fea.support.lugs.fit import fitted, on_structure
@@ -355,7 +355,7 @@ class HeldContact:
         of = self.contact
         if self.alone:
             return uncompared
-        vary: WhichVaried = lambda _: (requirement.varied,)  # noqa: E731
+        vary = None if requirement.varied else nowhere
         return lambda contact: compare(of.model, [contact], requirement, of.patterns, vary)[0]
 
     def _section(self, case: PinLoads, cells: float, requirement: Requirement) -> FoundSection:
