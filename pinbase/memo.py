@@ -27,13 +27,10 @@ class Memo:
     A key holds everything that its value depends on, and a value is never changed. So an answer
     is the same to the last bit whatever was asked before.
     max_size: bytes of arrays and texts in all values; the latest value is kept however large.
-    parts: whether to make values from parts that serve other values, too, which takes longer at
-    first.
     made: number of values that were made by `get`.
     """
 
-    def __init__(self, max_size: int = MAX_MEMO_SIZE, parts: bool = True) -> None:
-        self.parts = parts
+    def __init__(self, max_size: int = MAX_MEMO_SIZE) -> None:
         self._max_size, self._total, self.made = max_size, 0, 0
         self._values: OrderedDict[Hashable, tuple[Any, int]] = OrderedDict()
         self._latest: Hashable = None  # the key of the value written last

@@ -113,11 +113,7 @@ def differences(one: Path, other: Path) -> list[str]:
         return [] if one.read_bytes() == other.read_bytes() else ["another text"]
     else:
         return []
-    return unequal(*read)
-
-
-def unequal(first: dict[str, object], second: dict[str, object]) -> list[str]:
-    """What differs between two sets of leaves by their paths."""
+    first, second = read
     told = [f"only before: {k}" for k in first if k not in second]
     told += [f"only after: {k}" for k in second if k not in first]
     largest: dict[str, float] = {}

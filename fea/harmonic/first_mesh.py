@@ -19,15 +19,14 @@ UnitFields = tuple[tuple[UnitLoad, ...], Floats, tuple[tuple[float, float], ...]
 class FirstMesh:
     """The first mesh of a pin while contact holds it.
 
-    With a memo that keeps parts, displacements under the pressure of each ring alone are solved
-    once, and remembered for other loads of the links; fields under patterns of pressures are
-    superposed from them. Otherwise patterns are solved as they come, which are a third as many.
-    Fields are read once, and belong to these loads alone: what was read together is the same to
-    the last bit only where the loads are.
+    Displacements under the pressure of each ring alone are solved once, and remembered for other
+    loads of the links; fields under patterns of pressures are superposed from them. They are read
+    once, and belong to these loads alone: what was read together is the same to the last bit
+    only where the loads are.
     """
 
     def __init__(self, memo: Memo | None = None) -> None:
-        self._memo = memo or Memo(parts=False)
+        self._memo = memo or Memo()
         self._moved: dict[Key, list[Moved]] = {}
         self._fields: dict[Key, MeridianFields] = {}
 
@@ -43,8 +42,7 @@ class FirstMesh:
         new = loads if known is None else tuple(x for x in loads if x not in known.loads)
         if known is None or new:
             model = self._memo.get(("model", *key), make)
-            moved = self._superposed(model, key, new) if self._memo.parts else model.moved(new)
-            fields = model.read(moved, read, ends)
+            fields = model.read(self._superposed(model, key, new), read, ends)
             known = self._fields[key] = fields if known is None else known.joined(fields)
         return known
 

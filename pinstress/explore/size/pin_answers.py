@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
 
 from assess.diameter_law import section_exponent
 from fea.core.peak import Maximum
@@ -75,7 +74,7 @@ class SizedStudy:
     required: float
     others: Mapping[str, float]
     standard: StandardDiameters | None = None
-    memo: Memo = field(default_factory=partial(Memo, parts=False))  # every trial is a shape
+    memo: Memo = field(default_factory=Memo)
     more: Mapping[str, float] = field(default_factory=dict)
 
     def at(self, scale: float, rounded: bool = False) -> Study:

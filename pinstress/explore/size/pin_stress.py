@@ -129,7 +129,7 @@ class PinStress:
         self.in_contact = False
         self.watched: frozenset[str] = frozenset()
         self._singular = SingularPlaces(shape)
-        self._memo = Memo(parts=False)  # every design is a shape
+        self._memo = Memo()
         self._cases: tuple[str, ...] = ()  # that may govern near the dimensions `_about`
         self._about: Floats | None = None
         self.count = 0  # of designs
