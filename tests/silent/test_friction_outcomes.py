@@ -8,7 +8,8 @@ from dataclasses import replace
 
 import pytest
 
-from fea.support.contact.variations import NOWHERE, ResolutionComparison
+from fea.support.contact.cell_error import NOWHERE
+from fea.support.contact.variations import ResolutionComparison
 from fea.support.records import FRICTION, JointRange, Variation
 from reports.data.dependence import depends_on
 from reports.data.row import PinResult

@@ -21,6 +21,7 @@ from fea.harmonic.field import HarmonicField
 from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.section.section_stress import SectionField
 from fea.singular.singularities import singularities_of
+from fea.support.contact.cell_error import CELL_ERROR_SHARE
 from fea.support.contact.contact_state import ContactState
 from fea.support.contact.pressure_loads import (
     MODE_TOLERANCE,
@@ -31,7 +32,6 @@ from fea.support.contact.pressure_loads import (
 )
 from fea.support.contact.solve_joint import ContactModel, JointContact
 from fea.support.contact.variations import (
-    CELL_ERROR_SHARE,
     ResolutionComparison,
     compare,
     uncompared,

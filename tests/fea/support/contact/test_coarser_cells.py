@@ -10,9 +10,10 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
+from fea.support.contact.cell_error import MIN_CELL_ERROR
 from fea.support.contact.coarser_cells import on_coarser_cells
 from fea.support.contact.solve_joint import ContactModel, Resolution
-from fea.support.contact.variations import MIN_CELL_ERROR, compare
+from fea.support.contact.variations import compare
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 

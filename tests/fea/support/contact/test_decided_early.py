@@ -16,8 +16,9 @@ from fea.core.verdict import evidence_of, judge
 from fea.core.zone import Zone
 from fea.harmonic.evaluate import SECTION_MESHES
 from fea.solve.refine import met
+from fea.support.contact.cell_error import AtPlaces
 from fea.support.contact.pressed_cases import Compared
-from fea.support.contact.variations import AtPlaces, ResolutionComparison
+from fea.support.contact.variations import ResolutionComparison
 from tests.support.each import each
 
 STEEL = Material("steel", 210e9, 0.3, yield_strength=400e6)

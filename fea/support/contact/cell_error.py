@@ -1,0 +1,82 @@
+"""The error of contact's cells, from the stress on them and on cells twice as large."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fea.support.lugs.rings import USUAL_RING_COUNT
+
+# Of the tolerance: the part that the cells may use. Chosen by judgement; the rest is for meshes and
+# instants (MIN_TOLERANCE_SHARE of fea.core.requirement).
+CELL_ERROR_SHARE = 0.6
+# Orders of the error in the length of cells, on the surface and beneath, and in sections. They are
+# tuned on the random pins of benchmarks/joints/cells.py: the error there is 0.52, 0.66 and 0.25 at
+# most of the change by cells twice as large, where that is noticed.
+SURFACE_CELL_ORDER, SECTION_CELL_ORDER = 1.4, 2.0
+# Half angle of contact times the harmonics, below which these do not follow the pressure around the
+# pin: the error of a surface that notices them, by more than the third number, is then at least the
+# second one over the square of that product. Below the fourth the change by cells twice as large is
+# itself the error. Tuned on the clevis of benchmarks/joints/narrow_arcs.py, whose surface is 126,
+# 58, 23 and 10 % off where the product is 1, 1.6, 2.3 and 2.9.
+MIN_HARMONICS_PER_ARC, UNRESOLVED_ARC_ERROR, NOTICED_CHANGE = 6.0, 1.5, 0.01
+MIN_HARMONICS_OF_ORDER = 2.5
+# Relative, of the usual number of rings, and less of more: the stress beside the edges of lugs
+# scatters by this much with where rings happen to end, whatever two sets of cells show. With it the
+# estimate covers the error of all 24 pins of benchmarks/joints/cells.py (docs/measured/cells.md).
+RING_SCATTER = 0.01
+# Relative, the least error of cells larger than the usual ones. Two such sets can agree by chance:
+# on pin D of the landing gear to 2 %, while both are 4 to 5 % off.
+MIN_CELL_ERROR = 0.06
+
+
+@dataclass(frozen=True)
+class AtPlaces:
+    """Stress of the surface, of sections and beneath the contact, Pa; or their errors, relative."""
+
+    surface: float
+    section: float
+    beneath: float
+
+    @property
+    def row(self) -> float:
+        """The larger of surface and section."""
+        return max(self.surface, self.section)
+
+
+NOWHERE = AtPlaces(0.0, 0.0, 0.0)
+
+
+def by_cells(stress: AtPlaces, coarse: AtPlaces, rings: int, per_arc: float) -> AtPlaces:
+    """The relative error of the cells, from the stress on them and on cells twice as large.
+
+    per_arc: harmonics that they follow, times the half angle of contact in rad.
+    """
+    # Richardson's estimate: the error is the change over (2^q - 1), q being its order in the length
+    # of cells. It has floors, since two sets of cells can agree by chance.
+    agreement_floor = MIN_CELL_ERROR * (rings < USUAL_RING_COUNT)
+    surface_floor = max(RING_SCATTER * USUAL_RING_COUNT / rings, agreement_floor)
+
+    def error(name: str, order: float, least: float) -> float:
+        x, y = getattr(stress, name), getattr(coarse, name)
+        if not (x and y):
+            return 0.0
+        change = float(abs(y / x - 1.0))
+        if name != "section" and per_arc < MIN_HARMONICS_OF_ORDER:
+            order = 1.0
+        at_arc = name == "surface" and change > NOTICED_CHANGE
+        least = max(least, unresolved(per_arc) if at_arc else 0.0)
+        return float(max(change / (2.0**order - 1.0), least))
+
+    return AtPlaces(
+        error("surface", SURFACE_CELL_ORDER, surface_floor),
+        error("section", SECTION_CELL_ORDER, agreement_floor),
+        error("beneath", SURFACE_CELL_ORDER, surface_floor),
+    )
+
+
+def unresolved(per_arc: float) -> float:
+    """The least relative error of a surface that an arc of contact governs, 0 where it is followed.
+
+    per_arc: harmonics that the cells follow, times the half angle of contact in rad.
+    """
+    return UNRESOLVED_ARC_ERROR / per_arc**2 if per_arc < MIN_HARMONICS_PER_ARC else 0.0
