@@ -130,12 +130,14 @@ class SolvedRow:
     """The solution of a pin in a case, as far as checks read it.
 
     peak: the maximum von Mises stress. limit_load: None where it was not requested. required: the
-    safety factor against yield that the study asks for.
+    safety factor against yield that the study asks for. joint_growth: the most by which the stress
+    or a force across the pin grows over the range of the joint.
     """
 
     peak: Maximum
     limit_load: LimitLoad | None = None
     required: float | None = None
+    joint_growth: float = 1.0
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,9 @@ The first and the last take one course of stress with a sign. Where none stands 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from math import inf, isfinite
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from math import inf, isfinite, prod
 from typing import Literal
 
 import numpy as np
@@ -30,6 +30,10 @@ Method = Literal["signed-von-mises", "critical-plane", "fkm-p-ram"]
 SHOWN_PROBABILITIES = (0.1, 0.5, 0.9)  # of failure, at which lives are reported
 TRESCA_RATIO = 2.0 / 3.0**0.5  # largest ratio of Tresca's stress to von Mises stress
 MIN_SHOWN_AMPLITUDE = 0.01  # of the largest amplitude: smaller ones are not shown
+
+
+# By what is open of the stress and by case: the largest stress over that of the case.
+Growth = Mapping[str, Mapping[str, float]]
 
 
 @dataclass(frozen=True)
@@ -112,6 +116,38 @@ def assess(
         note="; ".join(filter(None, (history.chosen, note))),
         normal=None if result.normal is None else history.in_pin_axes(result.normal),
     )
+
+
+def assess_over(
+    history: PointHistory, spectrum: Spectrum, material: FatigueMaterial, growth: Growth
+) -> PointFatigue | None:
+    """`assess` with the largest damage over what is open of the stress.
+
+    All components of the stress of a case are taken to grow alike, at all instants.
+
+    Raises: ArgumentError, as `assess`.
+    """
+    point = assess(history, spectrum, material)
+    if point is None or not growth:
+        return point
+
+    def damage(*what: str) -> float:
+        grown = assess(_grown(history, [growth[x] for x in what]), spectrum, material)
+        return max(point.damage, grown.damage if grown else 0.0)
+
+    return replace(
+        point, largest_damage=damage(*growth), damage_over={what: damage(what) for what in growth}
+    )
+
+
+def _grown(history: PointHistory, growth: Iterable[Mapping[str, float]]) -> PointHistory:
+    """A history in which the stress of every case is as many times as large."""
+    cases = []
+    for case in history.cases:
+        times = prod(by_case.get(case.case, 1.0) for by_case in growth)
+        stress, plain, signed = (times * x for x in (case.stress, case.von_mises, case.signed))
+        cases.append(replace(case, stress=stress, von_mises=plain, signed=signed))
+    return replace(history, cases=tuple(cases))
 
 
 def _method(

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from pinbase.dimensions import Floats, Point, Stress, Stresses, Times
+
+ERROR_OF_STRESS = "error"  # the numerical error of the stress, among what is open of it
 
 
 @dataclass(frozen=True)
@@ -65,6 +68,8 @@ class PointFatigue:
     note: remarks on the assessment.
     normal: of the critical plane, in the pin's axes; amplitude and mean are then those of its shear
     stress.
+    largest_damage: over the error of the stress and all ranges that the study leaves open; None
+    where there are none. damage_over: over each of them.
     """
 
     pin: str
@@ -82,3 +87,12 @@ class PointFatigue:
     counts: Floats
     note: str = ""
     normal: tuple[float, float, float] | None = None
+    largest_damage: float | None = None
+    damage_over: Mapping[str, float] = field(default_factory=dict)
+
+    def open_beyond(self, damage: float) -> tuple[str, ...]:
+        """What is open that takes the damage beyond one that it does not reach as described."""
+        if not self.damage <= damage < (self.largest_damage or 0.0):
+            return ()
+        alone = tuple(what for what, over in self.damage_over.items() if over > damage)
+        return alone or tuple(self.damage_over)

@@ -3,10 +3,15 @@
 The allowable is the lower end of the bracket of the load factor (assess.plastic), the demand one:
 all loads of the case at its governing instant.
 
+Over the range of the joint the demand is taken to grow as the elastic stress, which grows more than
+the limit load falls: pressure at the edge of a lug does not make the whole section yield.
+
 Source: 14 CFR 25.305(b) (no failure at ultimate load).
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 from assess.check import CheckText, WorstPlace, check
 from assess.margin import RATIO_DIMENSION, Margin
@@ -27,4 +32,5 @@ def collapse(text: CheckText, s: Situation) -> list[Margin]:
         return [text.lacks(s, needs)]
     bracket = f"{limit.lower:.4g} to {limit.upper:.4g}"
     basis = f"collapse at {bracket} times the loads, by a {limit.method}"
-    return [text.margin(s, 1.0, limit.lower, WorstPlace(time=s.row.peak.time), basis=basis)]
+    margin = text.margin(s, 1.0, limit.lower, WorstPlace(time=s.row.peak.time), basis=basis)
+    return [replace(margin, over_joint=s.row.joint_growth)]

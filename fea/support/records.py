@@ -84,6 +84,13 @@ class JointRange:
         """The largest shear force or moment across the pin, over that of the joint as given."""
         return max((x.across for x in self.variations), default=1.0)
 
+    def growth(self, stress: float | None) -> float:
+        """The most by which the stress of the pin or a force across it grows.
+
+        stress: the maximum von Mises stress with the joint as given.
+        """
+        return max(self.across, self.max_von_mises[1] / stress if stress else 1.0, 1.0)
+
 
 @dataclass(frozen=True)
 class LugStress:

@@ -13,6 +13,7 @@ from itertools import chain
 from math import inf, prod
 from typing import Literal
 
+from assess.fatigue.records import ERROR_OF_STRESS
 from assess.judgement import (
     BELOW_YIELD,
     DEPENDS,
@@ -207,7 +208,13 @@ def _of_fatigue(plain: RequirementRow, results: Results, margins: list[Margin]) 
         return replace(plain, needs=f"a case of the spectrum that loads pin {plain.pin}")
     if plain.pin in fatigue.not_decided:
         return replace(plain, outcome="not decided", needs=_needs(margins))
-    return _of_margins(plain, margins)
+    of_life, most = _of_margins(plain, margins), 1.0 / (plain.required * fatigue.life)
+    over = {x: None for p in fatigue.points if p.pin == plain.pin for x in p.open_beyond(most)}
+    if of_life.outcome != "met" or not over:
+        return of_life
+    if ERROR_OF_STRESS in over:
+        return replace(of_life, outcome="not decided", needs="a smaller error of the stress")
+    return _depending(plain, of_life.reached, over)
 
 
 def _of_limit_load(plain: RequirementRow, row: PinResult, margins: list[Margin]) -> RequirementRow:
@@ -226,7 +233,9 @@ def _of_limit_load(plain: RequirementRow, row: PinResult, margins: list[Margin])
         return elastic
     if limit is not None and limit.lower is not None and limit.upper is not None:
         if limit.lower >= plain.required:
-            over = _beyond(limit.lower / plain.required, _most_loads(row))
+            over = _beyond(
+                limit.lower / plain.required, {"joint": row.joint_growth, **row.most_loads}
+            )
             return _depending(plain, limit.lower, over)
         outcome: Outcome = "missed" if limit.upper < plain.required else "not decided"
         return replace(plain, reached=limit.lower, outcome=outcome)
@@ -254,10 +263,10 @@ def _assumed(
 def _judged(plain: RequirementRow, margins: list[Margin], row: PinResult | None) -> RequirementRow:
     """Return a requirement as its margins have it, or the row's stress if it is of that."""
     if plain.check not in ("yield", "rupture") or row is None:
-        return _of_margins(plain, margins, _most_loads(row))
+        return _of_margins(plain, margins, row.most_loads if row else None)
     hardened = row.places is not None and row.places.hardened
     if hardened and plain.check == "rupture":  # its largest stress need not be the row's
-        return _of_margins(plain, margins, _most_loads(row))
+        return _of_margins(plain, margins, row.most_loads)
     if row.max_von_mises is None:
         return replace(plain, outcome="not decided", needs=f"a maximum ({row.verdict})")
     strengths = [m.allowable for m in margins if m.allowable is not None]
@@ -277,14 +286,6 @@ def _of_stress(plain: RequirementRow, row: PinResult, strength: float) -> Requir
         row = replace(row, depends_on=depends_on(row))
     outcome = OUTCOME_OF_ROW[row.outcome]
     return replace(plain, reached=row.safety_factor, outcome=outcome, needs="")
-
-
-def _most_loads(row: PinResult | None) -> dict[str, float]:
-    """Return the largest load over the ranges of a landing and of the stiffness of links, over that
-    of the case.
-    """
-    over = {} if row is None else {"landing": row.landing, "links": row.sharing}
-    return {what: max(x.largest_load, 1.0) for what, x in over.items() if x is not None}
 
 
 def _beyond(spare: float, growth: Mapping[str, float]) -> list[str]:

@@ -180,6 +180,20 @@ class PinResult:
     published_safety_factor: float | None = None
     units: Units = field(default=SI, compare=False)
 
+    @property
+    def joint_growth(self) -> float:
+        """The most by which the stress of the pin grows over the range of the joint."""
+        over = self.joint.range if self.joint else None
+        return 1.0 if over is None else over.growth(self.max_von_mises)
+
+    @property
+    def most_loads(self) -> dict[str, float]:
+        """The largest load over the ranges of a landing and of the stiffness of links, over that of
+        the case.
+        """
+        over = {"landing": self.landing, "links": self.sharing}
+        return {what: max(x.largest_load, 1.0) for what, x in over.items() if x is not None}
+
     def __repr__(self) -> str:
         """The row in brief: <E landing: fails, factor 1.15 ± 1.8 %, 195,000 psi at z = 6.26 in>."""
         parts = [self.outcome if self.max_von_mises else f"{self.outcome}, {self.verdict}"]

@@ -87,6 +87,7 @@ def test_every_array_has_a_dimension_or_is_known_to_need_none() -> None:
         "Dependence.factor",
         "Judgement.required",
         "PointFatigue.damage",  # per unit of the spectrum, in which lives are counted
+        "PointFatigue.largest_damage",
         "PointFatigue.life",
         "PointFatigue.utilisation",
         "PointFatigue.counts",

@@ -199,20 +199,3 @@ def test_checks_by_formula_hold_over_the_stiffness_of_links() -> None:
         changed = replace(results, pins=(replace(results.pins[0], sharing=shared),))
         (bearing,) = (r for r in requirement_rows(changed) if r.check == "bearing" and r.stated)
         assert (bearing.outcome, bearing.over) == (outcome, "links" * (outcome == "depends"))
-
-
-def test_fatigue_says_that_it_takes_a_landing_as_described() -> None:
-    curve = """
-[material.steel.fatigue]
-knee_stress = 400
-knee_cycles = 1e6
-slope = 5
-mean_stress_sensitivity = 0.2
-[fatigue]
-life = 1000
-occurrences = { landing = 1 }
-"""
-    results = run(study_from(LANDED + curve), tolerance=0.2)
-    assert results.fatigue is not None
-    (said,) = (x for x in results.fatigue.left_out if "Landings" in x)
-    assert "not over their ranges: pin C" in said

@@ -55,7 +55,7 @@ def assessed(study: Study, task: Task, row: PinResult) -> PinResult:
     loads = next(x for x in task.loads if x.case == row.case)
     required = required_factor(study, row.pin, row.case)
     s, why = _situation(study, task, loads, row.joint)
-    solved = SolvedRow(row.maximum, row.limit_load, required)
+    solved = SolvedRow(row.maximum, row.limit_load, required, row.joint_growth)
     s = replace(s, row=solved, lug_collapses=row.lug_collapses)
     rigid = row.verdict == "rigid"
     if s.complete and rigid and not why:

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from math import inf
 
 from assess.checks import margins_of
-from assess.fatigue.assess import FatigueMaterial, Spectrum, assess
+from assess.fatigue.assess import FatigueMaterial, Growth, Spectrum, assess_over
 from assess.fatigue.fkm import FkmMaterial
 from assess.fatigue.proportional import SIGNED_SHEAR_RULE
-from assess.fatigue.records import PointFatigue, PointHistory
+from assess.fatigue.records import ERROR_OF_STRESS, PointFatigue, PointHistory
 from assess.fatigue.sn_curve import SnCurve
 from assess.margin import PinMargin, material_key, worst_places
 from assess.situation import PinFatigue, Situation
@@ -23,6 +23,7 @@ from pinstress.analysis.stored import PinOutcome
 from pinstress.study.schema.fatigue import FatigueTable, SnTable
 from pinstress.study.schema.materials import MaterialTable
 from reports.data.results import Fatigue
+from reports.data.row import PinResult
 
 FACTORS_NOT_APPLIED_NOTE = (
     "Factors for surface, size, temperature, corrosion and surface treatment are not applied: the "
@@ -57,9 +58,10 @@ def fatigue_of(plan: Plan, outcomes: list[PinOutcome]) -> tuple[Fatigue | None, 
     for pin in dict.fromkeys(task.pin.name for task in plan.tasks):
         if pin in without:
             continue
-        pin_points, failed = _points(
-            plan, [h for m in outcomes for h in m.histories if h.pin == pin], table
-        )
+        of_pin = [m for t, m in zip(plan.tasks, outcomes, strict=True) if t.pin.name == pin]
+        histories = [h for outcome in of_pin for h in outcome.histories]
+        rows = [row for outcome in of_pin for row in outcome.rows]
+        pin_points, failed = _points(plan, histories, table, _growth(plan, rows))
         points += pin_points
         if (missing := _missing(plan, outcomes, pin, table) or failed) is not None:
             opens[pin] = missing
@@ -118,15 +120,42 @@ def _without_data(plan: Plan, table: FatigueTable) -> list[str]:
     return [p for p, m in data.items() if (m.fkm if needs_fkm else m.curve) is None]
 
 
+def _growth(plan: Plan, rows: Iterable[PinResult]) -> Growth:
+    """Return what the stress of one pin may grow by, in cases and in sequences of cases.
+
+    A sequence grows by the most that any of its cases does.
+    """
+    growth: dict[str, dict[str, float]] = {}
+    for row in rows:
+        for what, ratio in _growth_of(row).items():
+            growth.setdefault(what, {})[row.case] = ratio
+    for by_case in growth.values():
+        for name, sequence in plan.study.table.sequence.items():
+            by_case[name] = max(by_case.get(step.case, 1.0) for step in sequence.steps)
+    return {what: by_case for what, by_case in growth.items() if max(by_case.values()) > 1.0}
+
+
+def _growth_of(row: PinResult) -> dict[str, float]:
+    """Return the largest stress over that of a row, by what is open of it."""
+    stress = row.max_von_mises
+    if not stress:
+        return {}
+    growth = {"joint": row.joint_growth, **row.most_loads}
+    if row.max_von_mises_interval is None:
+        growth[ERROR_OF_STRESS] = 1.0 + (row.error_estimate or 0.0) / stress
+    return growth
+
+
 def _points(
-    plan: Plan, histories: list[PointHistory], table: FatigueTable
+    plan: Plan, histories: list[PointHistory], table: FatigueTable, growth: Growth
 ) -> tuple[list[PointFatigue], _Open | None]:
     """Return the fatigue of the points of one pin, and what is not decided at any of them."""
     points, failed = [], None
+    spectrum = _spectrum(table)
     for history in histories:
         at = f"at point {history.point}"
         try:
-            point = assess(history, _spectrum(table), _material(plan, history.pin))
+            point = assess_over(history, spectrum, _material(plan, history.pin), growth)
         except ArgumentError as error:
             failed = failed or _Open(
                 f"{at}, {error}", 'fatigue.method = "critical-plane" with its data'
@@ -206,9 +235,7 @@ def _left_out(
     tight = dict.fromkeys(t.pin.name for t in plan.tasks if _pressed(t.lugs))
     left = dict.fromkeys(t.pin.name for t in plan.tasks if _pressed(t.given) and not t.lugs)
     shear = dict.fromkeys(p.pin for p in points if SIGNED_SHEAR_RULE in p.note)
-    landed = dict.fromkeys(r.pin for o in outcomes for r in o.rows if r.landing is not None)
     sentences = [
-        ("Landings count as described, not over their ranges: pin", landed),
         ("No fatigue data of the material: pin", _without_data(plan, table)),
         ("Shear that alternates is signed by its direction, as no principal stress is larger than "
          "the other: pin", shear),

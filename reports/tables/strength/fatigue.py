@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import inf
 from typing import Any
 
-from assess.fatigue.records import CaseHistory, PointFatigue, PointHistory
+from assess.fatigue.records import ERROR_OF_STRESS, CaseHistory, PointFatigue, PointHistory
 from reports.data.results import Fatigue, Results
 from reports.format.numbers import DASH, engineering
 from reports.tables.column import ArrayTable, Column, Table, fields, json_of, read_only, texts
@@ -17,6 +17,13 @@ METHOD_NAMES = {
     "signed-von-mises": "signed von Mises stress",
     "critical-plane": "Findley's critical plane",
     "fkm-p-ram": "P_RAM of the FKM guideline for local strains",
+}
+
+OPEN_WORDS = {
+    ERROR_OF_STRESS: "the numerical error of its stress",
+    "joint": "the range of its joint",
+    "landing": "the range of the landing",
+    "links": "the stiffness of the links",
 }
 
 
@@ -48,7 +55,7 @@ COLUMNS: list[Column[FatigueRow]] = [
     *fields("x=point?.location?.0 y=point?.location?.1 z=point?.location?.2", "length"),
     *fields("point?.method point?.damage point?.life"),
     *fields("life_10=point?.lives?.0 life_50=point?.lives?.1 life_90=point?.lives?.2"),
-    *fields("point?.utilisation"),
+    *fields("point?.utilisation point?.largest_damage"),
     *fields("point?.amplitude mean_stress=point?.mean", "stress"),
     *fields("point?.note"),
     *fields("normal_x=point?.normal?.0 normal_y=point?.normal?.1 normal_z=point?.normal?.2"),
@@ -111,6 +118,7 @@ def shown_fatigue(results: Results) -> Table[PointFatigue] | None:
         *[read_only(f"at {at}", life_at(k)) for k, at in enumerate(LIFE_PROBABILITIES)] * scattered,
         *[read_only("utilisation", lambda p: least(p) + _per_cent(p.utilisation))]
         * (fatigue.life is not None),
+        read_only(f"largest damage per {unit}", _largest_damage, drop_if_empty=True),
         read_only("amplitude", lambda p: engineering(p.amplitude, 3), "stress"),
         read_only("mean", lambda p: engineering(p.mean, 3), "stress"),
         *[read_only("method", lambda p: p.method)] * any(p.method != fatigue.method for p in worst),
@@ -121,6 +129,12 @@ def shown_fatigue(results: Results) -> Table[PointFatigue] | None:
 
 def _normal(p: PointFatigue) -> str:
     return ", ".join(f"{x:.2f}" for x in p.normal) if p.normal else DASH
+
+
+def _largest_damage(p: PointFatigue) -> str:
+    if p.largest_damage is None:
+        return DASH
+    return _or_infinite(p.largest_damage) if p.largest_damage else "none"
 
 
 def life_words(life: float | None) -> str:
@@ -148,6 +162,7 @@ def fatigue_sentence(fatigue: Fatigue) -> str:
         f"Fatigue of pin {pin} is not decided: {reason}{_so_far(pin, fatigue)}."
         for pin, reason in fatigue.not_decided.items()
     ]
+    sentences += _not_everywhere(fatigue)
     sentences += [
         f"Pin {p.pin}, point {p.point}: {p.note.partition('; ')[2]}."
         for p in worst_points(fatigue)
@@ -167,6 +182,18 @@ def _worst(worst: PointFatigue, fatigue: Fatigue) -> str:
     if worst.utilisation is not None:
         text += f"; the design life uses {_per_cent(worst.utilisation)} of it"
     return f"{text} ({method})."
+
+
+def _not_everywhere(fatigue: Fatigue) -> Iterator[str]:
+    """Yield a sentence on each point whose life is reached as described, but not over what is open
+    of its stress.
+    """
+    for p in fatigue.points if fatigue.life else ():
+        assert fatigue.life
+        if open_ := p.open_beyond(1.0 / fatigue.life):
+            over, life = " and ".join(OPEN_WORDS[x] for x in open_), 1.0 / (p.largest_damage or inf)
+            text = f"Pin {p.pin}, point {p.point}, may reach damage 1 after {life_words(life)}"
+            yield f"{text} {fatigue.unit}s, by {over}."
 
 
 def _elsewhere(fatigue: Fatigue) -> str:
@@ -189,7 +216,7 @@ FATIGUE = fields(
 )
 POINT: list[Column[PointFatigue]] = [
     *fields("pin point location cases method damage life utilisation amplitude mean note"),
-    *fields("plane_normal=normal"),
+    *fields("largest_damage damage_over plane_normal=normal"),
     Column("life_at_probability", lambda p: dict(zip(("10", "50", "90"), p.lives, strict=False))),
 ]
 
