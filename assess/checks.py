@@ -148,6 +148,9 @@ def _together(checks: list[Check], situations: Iterable[Situation]) -> Iterator[
             margins = _with_code(check, s)
             if s.section_forces is not None and s.section_forces.kind == "joint":
                 margins = [replace(m, over_joint=s.over_joint) for m in margins]
+            elif check.takes in ("loads", "statics") and s.lug_growth:
+                grown = ((m, s.lug_growth.get(m.at, m.over_joint)) for m in margins)
+                margins = [replace(m, over_joint=ratio) for m, ratio in grown]
             yield from margins if s.governs else map(for_comparison, margins)
 
 

@@ -169,7 +169,8 @@ class Situation:
     joint: section forces by the joint model, if one supports the pin. even_governs: whether checks
     of bending and shear take the even loads of the formulas all the same. simple: the loads by the
     statics of formulas, where those of the joint differ. over_joint: the largest section forces of
-    the joint model over the uncertain properties of the joint, over its own.
+    the joint model over the uncertain properties of the joint, over its own. lug_growth: the same
+    of the forces on lugs that share what statics does not decide.
 
     section_forces: with which the check is made now (assess.checks). chosen: whether these are the
     ones that the study chooses; others are beside them. governs: whether margins with them count.
@@ -193,6 +194,7 @@ class Situation:
     even_governs: bool = False
     simple: PinLoads | None = None
     over_joint: float = 1.0
+    lug_growth: Mapping[str, float] = field(default_factory=dict)
     sized: tuple[Lug, ...] = ()
     complete: bool = True
     section_forces: SectionForces | None = None

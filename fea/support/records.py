@@ -52,7 +52,7 @@ class Variation:
     beneath: the largest stress beneath the contact then (fea.core.places), None where only the
     maximum is known.
     across: the largest shear force or moment across the pin then, over that of the joint as given,
-    whichever grows more.
+    whichever grows more. lugs: the same of the force on each lug whose force grows.
     """
 
     what: str
@@ -62,6 +62,7 @@ class Variation:
     interval: tuple[Stress, Stress] | None = None
     beneath: Stress | None = None
     across: float = 1.0
+    lugs: tuple[tuple[str, float], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -83,6 +84,11 @@ class JointRange:
     def across(self) -> float:
         """The largest shear force or moment across the pin, over that of the joint as given."""
         return max((x.across for x in self.variations), default=1.0)
+
+    @property
+    def lugs(self) -> dict[str, float]:
+        """The largest force on each lug whose force grows, over that of the joint as given."""
+        return dict(sorted(pair for x in self.variations for pair in x.lugs))  # the last counts
 
     def growth(self, stress: float | None) -> float:
         """The most by which the stress of the pin or a force across it grows.

@@ -87,3 +87,42 @@ def test_a_formula_takes_the_largest_clearance() -> None:
     tight, loose, ranged = (worst(solved(x, 20e3), NET) for x in (TIGHT, LOOSE, RANGED))
     assert ranged.demand == loose.demand
     assert ranged.used > 1.03 * tight.used
+
+
+def test_lugs_that_share_what_statics_does_not_decide_take_more_in_a_loose_joint() -> None:
+    """Three cheeks of the structure about two eyes, beside a run with all lugs loose."""
+    cheeks = (
+        TEXT[: TEXT.index("profile")]
+        + """profile = [
+  { length = 10, diameter = 20, name = "LEFT" },
+  { length = 1, diameter = 20 },
+  { length = 20, diameter = 20, connection = "ONE" },
+  { length = 1, diameter = 20 },
+  { length = 10, diameter = 20, name = "AMID" },
+  { length = 1, diameter = 20 },
+  { length = 20, diameter = 20, connection = "OTHER" },
+  { length = 1, diameter = 20 },
+  { length = 10, diameter = 20, name = "RIGHT" },
+]
+lug = { LEFT = {}, AMID = {}, RIGHT = {} }
+[lug_defaults]
+outer_diameter = 50
+edge_radius = 0.5
+CLEARANCE
+[case.pull]
+kind = "given"
+forces = { ONE = [20000, 0], OTHER = [20000, 0] }
+"""
+    )
+    found = {}
+    for clearance in (TIGHT, LOOSE, RANGED):
+        study = study_from(cheeks.replace("CLEARANCE", clearance))
+        (row,) = pinstress.run(study, tolerance=0.5).pins
+        found[clearance] = {m.at: m for m in row.margins if m.method == "bearing"}
+    given, there, ours = (found[x]["LEFT"] for x in (TIGHT, LOOSE, RANGED))
+    assert given.demand is not None
+    assert there.demand is not None
+    assert ours.demand == given.demand
+    assert there.demand > 1.05 * given.demand
+    assert 0.99 * there.demand < ours.over_joint * given.demand < 1.1 * there.demand
+    assert found[RANGED]["ONE"].over_joint == 1.0

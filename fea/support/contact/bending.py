@@ -15,6 +15,7 @@ from geometry import Pin
 
 Parts = tuple[Floats, Floats]  # (Z, R): of loads per length that are even, and that rise
 STATION_COUNT = 61  # along the pin, besides the ends of rings and segments
+SAME_FORCE = 1e-6  # of a lug's force: what contact is solved to
 
 
 def stations(pin: Pin) -> Floats:
@@ -74,6 +75,11 @@ class LoadedJoint:
         across = self.shear_force(z), self.bending_moment(z)
         return np.array([np.linalg.norm(x, axis=2).max(initial=0.0) for x in across])
 
+    def largest_of_lugs(self) -> Floats:
+        """The largest force across the pin on each lug at any instant, (L,) N."""
+        forces = np.linalg.norm(self.section_forces().forces, axis=2)
+        return np.asarray(forces.max(axis=0, initial=0.0))
+
     def _summed(self, z: Floats, parts: Callable[[Floats, Floats], Parts]) -> Floats:
         bands, loads, ends = self.bands, self.loads, np.array(self.pin.stations)
         forces, moments = (x[:, : len(bands.z)] for x in (loads.forces, loads.moments))
@@ -91,9 +97,21 @@ def growth_across(varied: LoadedJoint, own: LoadedJoint) -> float:
     """The largest shear force or moment across a pin over that of another joint, whichever grows
     more.
     """
-    before = own.largest_across()
-    ratios = np.divide(varied.largest_across(), before, out=np.ones(2), where=before > 0.0)
-    return float(ratios.max())
+    return float(_ratios(varied.largest_across(), own.largest_across()).max())
+
+
+def growth_of_lugs(varied: LoadedJoint, own: LoadedJoint) -> tuple[tuple[str, float], ...]:
+    """The largest force on each lug over that of another joint, of those that grow: these share
+    what statics does not decide.
+    """
+    ratios = _ratios(varied.largest_of_lugs(), own.largest_of_lugs()).tolist()
+    pairs = zip(own.lugs, ratios, strict=True)
+    return tuple((lug.connection, ratio) for lug, ratio in pairs if ratio > 1.0 + SAME_FORCE)
+
+
+def _ratios(now: Floats, before: Floats) -> Floats:
+    """Largest values over those before, 1 where there were none."""
+    return np.divide(now, before, out=np.ones_like(now), where=before > 0.0)
 
 
 def _moments(way: Floats, lengths: Floats) -> Parts:

@@ -22,7 +22,7 @@ from fea.harmonic.field import HarmonicField
 from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.section.section_stress import SectionField
 from fea.singular.singularities import singularities_of
-from fea.support.contact.bending import LoadedJoint, growth_across
+from fea.support.contact.bending import LoadedJoint, growth_across, growth_of_lugs
 from fea.support.contact.cell_error import (
     MIN_HARMONICS_PER_ARC,
     NOWHERE,
@@ -217,14 +217,16 @@ def _over_joint(
     of_contacts = zip(at, likes, over, varied, missing, by_friction, strict=True)
     for contact, (like, given), names, joints, why, more in of_contacts:
         own = _loaded(model, given, contact)
+        every_loaded = [_loaded(model, x, contact) for x in joints]
         ratios = [
             replace(
                 _ratio(
                     x, [stress.pop(0) for _ in y.with_rougher], like, model.cells.rings, y.per_arc
                 ),
-                across=growth_across(_loaded(model, y, contact), own),
+                across=growth_across(loaded, own),
+                lugs=growth_of_lugs(loaded, own),
             )
-            for x, y in zip(names, joints, strict=True)
+            for x, y, loaded in zip(names, joints, every_loaded, strict=True)
         ]
         left_out = f"not included: {'; '.join(why)}" if why else ""
         pressures = tuple(VariedPressures(x.lugs or model.lugs, x.waves) for x in (given, *joints))

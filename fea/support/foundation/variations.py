@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.support.contact.bending import growth_across
+from fea.support.contact.bending import growth_across, growth_of_lugs
 from fea.support.foundation.bounds import stress_bounds
 from fea.support.foundation.foundation_model import FoundationModel
 from fea.support.foundation.stress import FoundationStress
@@ -77,10 +77,15 @@ class FoundationRange:
                 left_out.append(f"{joint.what} {joint.value}")
                 continue
             size = varied_bounds.maximum
-            across = growth_across(varied, own)
             over.append(
                 Variation(
-                    joint.what, joint.value, size, joint.length, varied_bounds.bounds, across=across
+                    joint.what,
+                    joint.value,
+                    size,
+                    joint.length,
+                    varied_bounds.bounds,
+                    across=growth_across(varied, own),
+                    lugs=growth_of_lugs(varied, own),
                 )
             )
         bounds = [given.bounds, *(v.interval for v in over if v.interval)]

@@ -184,8 +184,11 @@ def _situation(
         return replace(s, complete=False), why
     pin = on_structure(profile, task.lugs) if structure else profile
     simple = None if simple is whole else simple
-    over = joint.range.across if joint and joint.range else 1.0
-    return replace(s, profile=pin, loads=whole, joint=along, simple=simple, over_joint=over), ""
+    s = replace(s, profile=pin, loads=whole, joint=along, simple=simple)
+    if joint is None or joint.range is None:
+        return s, ""
+    shared = {x: ratio for x, ratio in joint.range.lugs.items() if x in structure}
+    return replace(s, over_joint=joint.range.across, lug_growth=shared), ""
 
 
 def _not_made(s: Situation, why: str) -> Iterable[Margin]:
