@@ -77,9 +77,9 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "linkage": linkage,
         "drawing": "" if linkage else drawing,
         "caption": _caption(results, lines) if linkage else "",
-        "case": lines[0].row.case if lines else "",
-        "same_case": len({line.row.case for line in lines}) == 1,
-        "long_names": any(len(x) > LONG_NAME for x in (*pins, *(line.row.case for line in lines))),
+        "case": lines[0].case if lines else "",
+        "same_case": len({line.case for line in lines}) == 1,
+        "long_names": any(len(x) > LONG_NAME for x in (*pins, *(line.case for line in lines))),
         "long_pins": any(len(pin) > LONG_NAME for pin in pins),
         "axis": _ticks(axis) if axis else None,
         "lines": [_line(line, results, axis, anchors) for line in lines],
@@ -126,6 +126,11 @@ def _caption(results: Results, lines: Sequence[PinLine]) -> str:
 def _legend(lines: Sequence[PinLine], axis: FactorAxis, open_values: bool) -> str:
     """Return what the signs in the lines of the pins mean."""
     parts = ["Mark: factor and error."]
+    if any(check_words(line) != DASH for line in lines):
+        parts = [
+            "Mark: factor on yield and its error.",
+            "Governing check: its factor of the required.",
+        ]
     parts += ["Bar: range over all that is open (last card)."] * open_values
     parts += [f"Line: {_required(axis)}."] * (axis.required is not None)
     sized = [line.diameter for line in lines if line.diameter]
@@ -202,7 +207,7 @@ def _line(
     return {
         "pin": line.pin,
         "anchor": anchors.get(line.pin, ""),
-        "case": line.row.case,
+        "case": line.case,
         "mark": MARKS[line.outcome],
         "css": _css(line.outcome),
         "outcome": outcome_words(line),

@@ -138,7 +138,7 @@ def certainty(lines: Sequence[PinLine]) -> Content:
 
 def skipped_checks(results: Results, lines: Sequence[PinLine]) -> Content:
     """Return a sentence on the checks that lack a number; nothing if all were made."""
-    without = [x.pin for x in lines if without_range(x.row)]
+    without = list(dict.fromkeys(x.pin for x in lines if without_range(x.row)))
     parts = [f"joint range of {names(without)}"] if without else []
     parts += ["fatigue"] * (results.fatigue is None)
     parts += [text] if (text := not_made_briefly(results)) else []

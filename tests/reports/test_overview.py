@@ -19,10 +19,17 @@ from reports.data.results import Results
 from reports.data.row import PinResult
 from reports.format.place_words import along_words
 from reports.page.overview import overview_part
-from reports.tables.strength.overview import FactorAxis, bar, diameter_words, factor_axis
+from reports.tables.strength.overview import (
+    FactorAxis,
+    bar,
+    check_words,
+    diameter_words,
+    factor_axis,
+)
 from reports.text.load_path import names
-from reports.text.overview import accuracy, decisions
+from reports.text.overview import accuracy, decisions, skipped_checks
 from reports.text.safety_factors import print_safety_factors
+from tests.support.results.made_up_joint import make_joint
 from tests.support.results.rows import with_values
 
 
@@ -91,6 +98,18 @@ def test_a_check_over_all_cases_has_one_line(few: Results) -> None:
     lines = pin_lines(replace(few, pins=alone, spectrum_margins=twice))
     (line,) = (line for line in lines if line.check.check == "fatigue life")
     assert line.check.used == pytest.approx(6.0)
+    assert line.case == "all cases"  # "hard" has a line of its own, with another result
+    assert check_words(line) == "fatigue life: 0.500 of 3"
+
+
+def test_a_pin_without_a_range_of_its_joint_is_named_once(few: Results) -> None:
+    joint = replace(make_joint(), bands=(), range=None, remark="its lugs are not described")
+    pins = tuple(with_values(p, joint=joint) for p in few.pins if p.pin == "A")
+    alone = replace(few, pins=pins)
+    lines = pin_lines(alone)
+    assert len(lines) == 2
+    (text,) = skipped_checks(alone, lines)
+    assert text.startswith("Skipped: joint range of A;")
 
 
 def test_a_single_pin_that_is_not_decided_is_told_once(few: Results) -> None:
