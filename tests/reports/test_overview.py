@@ -11,9 +11,10 @@ from rich.console import Console
 
 from assess.diameter_law import BEARING_EXPONENT, estimated_scale
 from assess.margin import Margin, PinMargin
+from assess.strength.model_stress import YIELD_METHOD
 from fea.core.places import ContactPlace, Places, SurfacePlace
 from reports.data.overview import factor_at, pin_lines, quiet_cases
-from reports.data.requirement_matrix import matrix_rows
+from reports.data.requirement_matrix import MatrixRow, matrix_rows, worst_cell
 from reports.data.requirements import RequirementRow, keys_in
 from reports.data.results import Results
 from reports.data.row import PinResult
@@ -232,6 +233,23 @@ def test_the_matrix_hides_nothing_that_is_not_met() -> None:
     assert shown == worst
     (one,) = matrix_rows([requirement(pin, f"c{k}", "met") for pin in "AB" for k in range(9)])
     assert one.case == "all 9 cases"
+
+
+def test_the_matrix_of_many_pins_hides_none_that_is_not_met(few: Results) -> None:
+    """Above 14 pins it was left out, with all that [[require]] states."""
+    margin = Margin(YIELD_METHOD, "", "model", "limit", 1.5, 1.0, 9.0)
+    plain = replace(few.pins[2], worst=(margin,), margins=(margin,))
+    names = [f"P{k}" for k in range(30)]
+    rows = [with_values(plain, pin=pin, safety_factor=100.0 - k) for k, pin in enumerate(names)]
+    rows[4] = with_values(rows[4], safety_factor=1.0, decided=False)
+    screen = overview_part(replace(few, pins=tuple(rows), stated=()), {}, "")
+    assert screen["pins"][0] == "P4"
+    assert screen["pins"][-1] == "17 more"
+    (yield_,) = (row for row in screen["matrix"] if row["check"] == "yield")
+    states = [state for *_, state in yield_["cells"]]
+    assert states == ["missed"] + 13 * ["met"]
+    row = MatrixRow("yield", "limit", "", 1.5, {"A": "met", "B": "missed", "C": "met"})
+    assert [worst_cell(row, pins) for pins in ("A", "ABC", "X")] == ["met", "missed", ""]
 
 
 def test_a_comma_in_the_name_of_a_material_does_not_split_what_is_needed() -> None:
