@@ -181,7 +181,7 @@ def range_words(unknown: Unknown, units: Units) -> str:
         dimension = unknown.rows[0][1].dimension
         ends = dict.fromkeys(short(float(f"{end:.6g}")) for end in unknown.ends)
         parts.insert(0, f"{' to '.join(ends)} {unit_name(dimension, units)}")
-    return ", ".join(parts)
+    return ("; " if any("," in part for part in parts) else ", ").join(parts)
 
 
 def given_words(unknown: Unknown) -> str:
