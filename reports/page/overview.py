@@ -170,6 +170,8 @@ def _nothing(lines: Sequence[PinLine]) -> str:
     """Return the sentence of the card without any change."""
     if lines and lines[0].outcome in GOOD:
         return "Nothing: every pin meets its requirements."
+    if any(line.row.max_von_mises is None for line in lines):
+        return "First let the pin be solved: the card beside this one says what it lacks."
     return "No change is known; the table of each pin has what was found."
 
 

@@ -60,16 +60,24 @@ def why(results: Results, lines: Sequence[PinLine], most: int) -> Content:
 
     most: number of pins with their stress.
     """
+    unsolved = _unsolved(lines)
     solved = [line for line in lines if line.row.max_von_mises]
     if not solved:
-        return []
+        return unsolved
     bad = [line for line in solved if line.outcome not in GOOD] or solved[:1]
     shapes = {shape.pin: shape for shape in results.shapes}
     failing = [line for line in bad if line.outcome in (FAILS, YIELDS)] or bad
     path = load_path(results, [line.row for line in solved])
     parts = [path, _dominating(failing), _peaks(results, bad[:most], shapes)]
     parts.append(lug_peaks(lines, results.units))
-    return [part for part in parts if part]
+    return [part for part in (*unsolved, *parts) if part]
+
+
+def _unsolved(lines: Sequence[PinLine]) -> Content:
+    """Return the reason and the remedy of the pins without a solution, each once."""
+    notes = grouped((x.row.note, x.pin) for x in lines if x.row.max_von_mises is None)
+    told = ((names(list(dict.fromkeys(pins))), note) for note, pins in notes.items() if note)
+    return [f"{which}: {note.removesuffix('.')}." for which, note in told]
 
 
 @dataclass(frozen=True)

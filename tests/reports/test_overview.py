@@ -127,6 +127,17 @@ def test_a_single_pin_that_is_not_decided_is_told_once(few: Results) -> None:
     assert text == "Not decided in other (singular). Safe in easy."
 
 
+def test_a_pin_without_a_solution_says_what_it_lacks(few: Results) -> None:
+    """The cards were empty; only the last line on stderr had the remedy."""
+    note = "only one connection bears on it; name its clamped surfaces in pin.A.clamp"
+    row = with_values(few.pins[0], verdict="rigid", decided=None, max_von_mises=None,
+                      safety_factor=None, error_estimate=None, note=note)  # fmt: skip
+    screen = overview_part(replace(few, pins=(row,)), {}, "")
+    assert screen["why"] == [f"A: {note}."]
+    assert not screen["actions"]
+    assert screen["nothing"].startswith("First let the pin be solved")
+
+
 def test_the_diameter_by_the_law_of_the_section(few: Results) -> None:
     """Bending: the cube root; shear: the square root; twice the stress beneath: power 1.5."""
     assert estimated_scale(1.2, math.inf, 3.0, 9.6) == pytest.approx(2.0)
