@@ -60,17 +60,16 @@ def why(results: Results, lines: Sequence[PinLine], most: int) -> Content:
 
     most: number of pins with their stress.
     """
-    unsolved = _unsolved(lines)
     solved = [line for line in lines if line.row.max_von_mises]
     if not solved:
-        return unsolved
+        return _unsolved(lines)
     bad = [line for line in solved if line.outcome not in GOOD] or solved[:1]
     shapes = {shape.pin: shape for shape in results.shapes}
     failing = [line for line in bad if line.outcome in (FAILS, YIELDS)] or bad
     path = load_path(results, [line.row for line in solved])
     parts = [path, _dominating(failing), _peaks(results, bad[:most], shapes)]
     parts.append(lug_peaks(lines, results.units))
-    return [part for part in (*unsolved, *parts) if part]
+    return [part for part in (*_unsolved(lines), *parts) if part]
 
 
 def _unsolved(lines: Sequence[PinLine]) -> Content:
