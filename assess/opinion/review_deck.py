@@ -46,6 +46,8 @@ class ReviewDeck:
     node, at: number and coordinates (3,), m, of the node at which stress is compared, in the deck's
     axes.
     von_mises: of pinstress there, Pa. same_mesh: whether it is that of this mesh.
+    under: the lug on whose band the node lies, so that the stress is without that of its pressure
+    (fea.harmonic.free_surface); empty elsewhere.
     unknowns: of the model.
     angle: by which its axes are turned from the pin's about z, rad.
     half: whether it is the half in y > 0.
@@ -59,6 +61,7 @@ class ReviewDeck:
     unknowns: int
     angle: float = 0.0
     half: bool = False
+    under: str = ""
 
 
 def prescribed_deck(
@@ -112,8 +115,12 @@ def contact_deck(
     at[1] = abs(at[1]) if deck.half else at[1]
     nodes = deck.pin.mesh.nodes
     node = int(np.linalg.norm(nodes - at, axis=1).argmin())
+    bands = {lug.connection: seated.pin.band(lug.connection) for lug in seated.lugs}
+    under = next((name for name, b in bands.items() if b.z0 < place[2] < b.z1), "")
     lines = replace(_joint_in_units(deck, units), dialect=dialect).lines()
-    return ReviewDeck(lines, node + 1, nodes[node], stress, False, deck.unknowns, angle, deck.half)
+    return ReviewDeck(
+        lines, node + 1, nodes[node], stress, False, deck.unknowns, angle, deck.half, under
+    )
 
 
 def _in_units(material: Material, units: DeckUnits) -> Material:

@@ -41,6 +41,11 @@ CONTACT_NOTE = (
     "surface is an auxiliary node (*EQUATION) with its force; the first lug stands still, and "
     "springs of 1e-7 of the pin's stiffness hold what nothing else does."
 )
+UNDER_LUG_NOTE = (
+    "The node lies under lug {}: node_von_mises is of the stress without that of the pressure "
+    "itself. With p = -s_rr at the node, add p to s_rr and s_zz and 2 nu p to s_tt there (r, t "
+    "about z) before comparing; where nothing presses, p is 0."
+)
 DIALECT_NOTES = {
     "calculix": "Run: ccx -i NAME, with NAME.inp; the stress at the nodes is in NAME.frd.",
     "abaqus": "Run: abaqus job=NAME. Written from its manual, not run: only keywords that those of "
@@ -151,6 +156,8 @@ def _head(study: Study, numbers: ExpectedNumbers, dialect: Dialect) -> Iterator[
     yield "** Expected numbers:"
     for key, value in numbers.lines():
         yield f"**   {key} = {value}"
+    if deck.under:
+        yield from _comment(UNDER_LUG_NOTE.format(deck.under))
     yield from _comment(SAME_MESH_NOTE if deck.same_mesh else CONTACT_NOTE)
 
 

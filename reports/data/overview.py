@@ -46,11 +46,13 @@ class PinLine:
     """A pin in the overview.
 
     row: its worst row. check: its worst check, which is of that row or another.
+    case: that of the check; "all cases" of one over several.
     error: ends of the factor by the error of the maximum. spread: ends over all that is open.
     """
 
     row: PinResult
     check: JudgedCheck
+    case: str
     error: Ends | None
     spread: Ends | None
     diameter: Diameter | None
@@ -116,7 +118,8 @@ def _line(results: Results, check: JudgedCheck, shape: PinShape | None) -> PinLi
     diameter = _diameter(row, shape) if check.row or check.outcome in GOOD else None
     if diameter and check.pin in (change.pin for change in unsized(results.changes)):
         diameter = replace(diameter, needed=None, whatever=None)
-    return PinLine(row, check, error, factor_spread(row), diameter)
+    case = check.case or (row.case if len(rows) == 1 else "all cases")
+    return PinLine(row, check, case, error, factor_spread(row), diameter)
 
 
 def _used(row: PinResult, required: float) -> float:

@@ -54,6 +54,11 @@ def matrix_rows(rows: Sequence[RequirementRow]) -> list[MatrixRow]:
     return [*stated, *unmet, *others, *open_]
 
 
+def worst_cell(row: MatrixRow, pins: Iterable[str]) -> str:
+    """Return the worst outcome of some pins; empty where none has the requirement."""
+    return min((row.cells[pin] for pin in pins if pin in row.cells), key=_rank, default="")
+
+
 def _case(rows: Sequence[RequirementRow]) -> str:
     """Return the only case in which a check is not met; empty where there are several."""
     cases = {row.case for row in rows if row.outcome != MET}

@@ -254,17 +254,16 @@ def _all_safe(results: Results, least: JudgedCheck, pins: int) -> str:
     row = worst_first(results)[0]
     factor, needed = _factor_words(row)
     safe = row.outcome == SAFE
+    every = "Both pins" if pins == 2 else f"All {pins} pins"
     other = "" if least.row else f"; {_margin_words(least)}, pin {least.pin}"
     if row.max_von_mises == 0.0:
-        who = f"Pin {row.pin} is" if pins == 1 else f"All {pins} pins are"
+        who = f"Pin {row.pin} is" if pins == 1 else f"{every} are"
         return f"{who} safe: no load stresses {'it' if pins == 1 else 'them'}{other}."
     if pins == 1:
         state = "is safe" if safe else "stays below yield"
         return f"Pin {row.pin} {state}: {factor} ≥ {needed} ({row.case}){other}."
     state = "are safe" if safe else "stay below yield"
-    return (
-        f"All {pins} pins {state}: lowest {factor} ≥ {needed} (pin {row.pin}, {row.case}){other}."
-    )
+    return f"{every} {state}: lowest {factor} ≥ {needed} (pin {row.pin}, {row.case}){other}."
 
 
 def _of_margin(check: JudgedCheck) -> str:

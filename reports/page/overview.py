@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
 from reports.data.decision import common_factor, limit
 from reports.data.overview import GOOD, PinLine, pin_lines
-from reports.data.requirement_matrix import MatrixRow, matrix_rows
+from reports.data.requirement_matrix import MatrixRow, matrix_rows, worst_cell
 from reports.data.requirements import requirement_rows
 from reports.data.results import Results
 from reports.data.unknowns import Unknown, unknowns
@@ -47,7 +47,7 @@ MAX_UNKNOWNS = 6  # rows of the table of what is open
 LABEL_AT_END = 12.0  # per cent of the axis: nearer to its left end, the label begins at its line
 LABEL_WIDTH = 20.0  # of "1.5 required", per cent of the axis: no tick is written so near to it
 MAX_CHECKS = 3  # of a row of the matrix by name
-MAX_MATRIX_PINS = 14  # columns of the matrix of requirements; of more pins it is left out here
+MAX_MATRIX_PINS = 14  # columns of the matrix of requirements; of more pins the best share the last
 LONG_NAME = 16  # characters: longer names wrap, or stand upright above a column
 MARKS = {
     FAILS: "✕", YIELDS: "✕", SAFE: "✓", BELOW_YIELD: "✓", DEPENDS: "◐", NOT_DECIDED: "?",
@@ -65,7 +65,7 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
     pins = list(dict.fromkeys(line.pin for line in lines))
     unknown = unknowns(line.row for line in lines)
     axis = factor_axis(lines)
-    matrix = matrix_rows(requirement_rows(results)) if len(pins) <= MAX_MATRIX_PINS else []
+    columns = _columns(pins)
     steps = actions(results, lines)
     linkage = _linkage(results, lines, anchors)
     return {
@@ -73,13 +73,13 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "state": _css(lines[0].outcome) if lines else "",
         "decisions": decisions(results, lines),
         "about": _about(results, pins),
-        "pins": pins,
+        "pins": list(columns),
         "linkage": linkage,
         "drawing": "" if linkage else drawing,
         "caption": _caption(results, lines) if linkage else "",
-        "case": lines[0].row.case if lines else "",
-        "same_case": len({line.row.case for line in lines}) == 1,
-        "long_names": any(len(x) > LONG_NAME for x in (*pins, *(line.row.case for line in lines))),
+        "case": lines[0].case if lines else "",
+        "same_case": len({line.case for line in lines}) == 1,
+        "long_names": any(len(x) > LONG_NAME for x in (*pins, *(line.case for line in lines))),
         "long_pins": any(len(pin) > LONG_NAME for pin in pins),
         "axis": _ticks(axis) if axis else None,
         "lines": [_line(line, results, axis, anchors) for line in lines],
@@ -89,7 +89,9 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "whatever": any(line.spread and whatever_words(line) != DASH for line in lines),
         "legend": _legend(lines, axis, bool(unknown)) if axis else "",
         "checks": any(check_words(line) != DASH for line in lines),
-        "matrix": [_matrix_row(row, pins) for row in matrix],
+        "matrix": [
+            _matrix_row(row, columns.values()) for row in matrix_rows(requirement_rows(results))
+        ],
         "why": why(results, lines, MAX_PEAKS),
         "why_title": "Why they fail" if _fails(lines) else "Why",
         "actions": [*steps.repairs, *steps.remarks],
@@ -126,6 +128,11 @@ def _caption(results: Results, lines: Sequence[PinLine]) -> str:
 def _legend(lines: Sequence[PinLine], axis: FactorAxis, open_values: bool) -> str:
     """Return what the signs in the lines of the pins mean."""
     parts = ["Mark: factor and error."]
+    if any(check_words(line) != DASH for line in lines):
+        parts = [
+            "Mark: factor on yield and its error.",
+            "Governing check: its factor of the required.",
+        ]
     parts += ["Bar: range over all that is open (last card)."] * open_values
     parts += [f"Line: {_required(axis)}."] * (axis.required is not None)
     sized = [line.diameter for line in lines if line.diameter]
@@ -163,6 +170,8 @@ def _nothing(lines: Sequence[PinLine]) -> str:
     """Return the sentence of the card without any change."""
     if lines and lines[0].outcome in GOOD:
         return "Nothing: every pin meets its requirements."
+    if any(line.row.max_von_mises is None for line in lines):
+        return "First let the pin be solved: the card beside this one says what it lacks."
     return "No change is known; the table of each pin has what was found."
 
 
@@ -202,7 +211,7 @@ def _line(
     return {
         "pin": line.pin,
         "anchor": anchors.get(line.pin, ""),
-        "case": line.row.case,
+        "case": line.case,
         "mark": MARKS[line.outcome],
         "css": _css(line.outcome),
         "outcome": outcome_words(line),
@@ -222,7 +231,17 @@ def _fails(lines: Sequence[PinLine]) -> bool:
     return any(line.outcome in (FAILS, YIELDS) for line in lines)
 
 
-def _matrix_row(row: MatrixRow, pins: Sequence[str]) -> dict[str, Any]:
+def _columns(pins: Sequence[str]) -> dict[str, Sequence[str]]:
+    """Return the pins of each column of the matrix by its head.
+
+    pins: the worst first.
+    """
+    few = pins if len(pins) <= MAX_MATRIX_PINS else pins[: MAX_MATRIX_PINS - 1]
+    rest = pins[len(few) :]
+    return {pin: [pin] for pin in few} | ({f"{len(rest)} more": rest} if rest else {})
+
+
+def _matrix_row(row: MatrixRow, columns: Iterable[Sequence[str]]) -> dict[str, Any]:
     needs = [need.rpartition(".")[2] for need in row.needs]
     return {
         "check": _few(row.check.split(", ")) if needs else row.check,
@@ -233,7 +252,7 @@ def _matrix_row(row: MatrixRow, pins: Sequence[str]) -> dict[str, Any]:
         "title": row.check,
         "cells": [
             (MARKS.get(state, ""), _css(CLASSES.get(state, state)), state)
-            for state in (row.cells.get(pin, "") for pin in pins)
+            for state in (worst_cell(row, pins) for pins in columns)
         ],
     }
 

@@ -62,14 +62,21 @@ def why(results: Results, lines: Sequence[PinLine], most: int) -> Content:
     """
     solved = [line for line in lines if line.row.max_von_mises]
     if not solved:
-        return []
+        return _unsolved(lines)
     bad = [line for line in solved if line.outcome not in GOOD] or solved[:1]
     shapes = {shape.pin: shape for shape in results.shapes}
     failing = [line for line in bad if line.outcome in (FAILS, YIELDS)] or bad
     path = load_path(results, [line.row for line in solved])
     parts = [path, _dominating(failing), _peaks(results, bad[:most], shapes)]
     parts.append(lug_peaks(lines, results.units))
-    return [part for part in parts if part]
+    return [part for part in (*_unsolved(lines), *parts) if part]
+
+
+def _unsolved(lines: Sequence[PinLine]) -> Content:
+    """Return the reason and the remedy of the pins without a solution, each once."""
+    notes = grouped((x.row.note, x.pin) for x in lines if x.row.max_von_mises is None)
+    told = ((names(list(dict.fromkeys(pins))), note) for note, pins in notes.items() if note)
+    return [f"{which}: {note.removesuffix('.')}." for which, note in told]
 
 
 @dataclass(frozen=True)
@@ -138,7 +145,7 @@ def certainty(lines: Sequence[PinLine]) -> Content:
 
 def skipped_checks(results: Results, lines: Sequence[PinLine]) -> Content:
     """Return a sentence on the checks that lack a number; nothing if all were made."""
-    without = [x.pin for x in lines if without_range(x.row)]
+    without = list(dict.fromkeys(x.pin for x in lines if without_range(x.row)))
     parts = [f"joint range of {names(without)}"] if without else []
     parts += ["fatigue"] * (results.fatigue is None)
     parts += [text] if (text := not_made_briefly(results)) else []
@@ -181,7 +188,7 @@ def range_words(unknown: Unknown, units: Units) -> str:
         dimension = unknown.rows[0][1].dimension
         ends = dict.fromkeys(short(float(f"{end:.6g}")) for end in unknown.ends)
         parts.insert(0, f"{' to '.join(ends)} {unit_name(dimension, units)}")
-    return ", ".join(parts)
+    return ("; " if any("," in part for part in parts) else ", ").join(parts)
 
 
 def given_words(unknown: Unknown) -> str:

@@ -10,8 +10,10 @@ from urllib.parse import quote
 import pytest
 
 from benchmarks.runs.page import many_pins
+from reports.page.overview import MAX_MATRIX_PINS
 from reports.page.page import MAX_PINS_AT_ONCE
 from tests.browser.conftest import run
+from tests.browser.test_pins import WIDER, screen
 from tests.support.results.browser_page import errors, opened, view, wait
 
 pytestmark = pytest.mark.browser
@@ -43,6 +45,17 @@ def test_folded_parts_are_text_at_first(page: Any) -> None:
     assert page.execute_script(FIGURES) == page.execute_script(VIEWS) == 0
     assert page.execute_script("return typeof window.vega;") == "undefined"
     assert errors(page) == []
+
+
+def test_requirements_of_many_pins_fit_the_screen(page: Any) -> None:
+    for width in (1400, 1024, 390):
+        with screen(page, width):
+            assert page.execute_script(WIDER) == [], width
+            assert page.execute_script(
+                "return document.documentElement.scrollWidth <= innerWidth"
+            ), width
+    heads = page.find_elements("css selector", ".matrix thead th")
+    assert len(heads) == 2 + MAX_MATRIX_PINS
 
 
 def test_a_pin_that_is_opened_is_made_alone(page: Any) -> None:

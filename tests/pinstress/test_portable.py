@@ -130,7 +130,7 @@ def test_where_nothing_else_is_there_every_command_works(tmp_path: Path) -> None
     study = str(STUDIES / "excavator.toml")
     for _ in range(2):  # the second replaces the first
         pinstress(tmp_path, "loads", study, **bare_python)
-    assert "All 2 pins are safe" in pinstress(tmp_path, "run", study, *TWO_PINS, **bare_python)
+    assert "Both pins are safe" in pinstress(tmp_path, "run", study, *TWO_PINS, **bare_python)
 
 
 @pytest.mark.slow

@@ -46,7 +46,7 @@ def test_pins_without_load_have_no_factor_to_name(results: Results) -> None:
     )
     other = with_values(idle, pin="B")
     both = replace(results, pins=(idle, other))
-    assert headline(both) == "All 2 pins are safe: no load stresses them."
+    assert headline(both) == "Both pins are safe: no load stresses them."
     assert headline(replace(results, pins=(idle,))) == "Pin A is safe: no load stresses it."
 
 
@@ -82,7 +82,7 @@ def test_the_worst_row_in_a_sentence(
         assert summary(some).endswith("All maxima have converged to 2 %.")
         other = with_values(pin, pin="B", safety_factor=5.0)
         text = headline(replace(some, pins=(other, pin)))
-        assert text.startswith("All 2 pins ")
+        assert text.startswith("Both pins ")
         assert "(pin A, retract)" in text
     assert headline(replace(some, pins=())) == ""
 

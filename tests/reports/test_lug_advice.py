@@ -94,7 +94,7 @@ def test_a_clause_gives_the_dimension_that_passes() -> None:
 
 def test_first_screen_names_the_lug() -> None:
     results, lines = failing(STRESS)
-    assert check_words(lines[0]) == "lug L, bore: 1.60"
+    assert check_words(lines[0]) == "lug L, bore: 1.60 of 2"
     assert not any("more strength" in text for text in actions(results, lines).repairs)
     second = with_values(results.pins[0], pin="B")
     both = replace(results, pins=(results.pins[0], second))

@@ -11,18 +11,26 @@ from rich.console import Console
 
 from assess.diameter_law import BEARING_EXPONENT, estimated_scale
 from assess.margin import Margin, PinMargin
+from assess.strength.model_stress import YIELD_METHOD
 from fea.core.places import ContactPlace, Places, SurfacePlace
 from reports.data.overview import factor_at, pin_lines, quiet_cases
-from reports.data.requirement_matrix import matrix_rows
+from reports.data.requirement_matrix import MatrixRow, matrix_rows, worst_cell
 from reports.data.requirements import RequirementRow, keys_in
 from reports.data.results import Results
 from reports.data.row import PinResult
 from reports.format.place_words import along_words
 from reports.page.overview import overview_part
-from reports.tables.strength.overview import FactorAxis, bar, diameter_words, factor_axis
+from reports.tables.strength.overview import (
+    FactorAxis,
+    bar,
+    check_words,
+    diameter_words,
+    factor_axis,
+)
 from reports.text.load_path import names
-from reports.text.overview import accuracy, decisions
+from reports.text.overview import accuracy, decisions, skipped_checks
 from reports.text.safety_factors import print_safety_factors
+from tests.support.results.made_up_joint import make_joint
 from tests.support.results.rows import with_values
 
 
@@ -91,6 +99,18 @@ def test_a_check_over_all_cases_has_one_line(few: Results) -> None:
     lines = pin_lines(replace(few, pins=alone, spectrum_margins=twice))
     (line,) = (line for line in lines if line.check.check == "fatigue life")
     assert line.check.used == pytest.approx(6.0)
+    assert line.case == "all cases"  # "hard" has a line of its own, with another result
+    assert check_words(line) == "fatigue life: 0.500 of 3"
+
+
+def test_a_pin_without_a_range_of_its_joint_is_named_once(few: Results) -> None:
+    joint = replace(make_joint(), bands=(), range=None, remark="its lugs are not described")
+    pins = tuple(with_values(p, joint=joint) for p in few.pins if p.pin == "A")
+    alone = replace(few, pins=pins)
+    lines = pin_lines(alone)
+    assert len(lines) == 2
+    (text,) = skipped_checks(alone, lines)
+    assert text.startswith("Skipped: joint range of A;")
 
 
 def test_a_single_pin_that_is_not_decided_is_told_once(few: Results) -> None:
@@ -105,6 +125,17 @@ def test_a_single_pin_that_is_not_decided_is_told_once(few: Results) -> None:
     several = replace(few, pins=cases)
     text = decisions(several, pin_lines(several))
     assert text == "Not decided in other (singular). Safe in easy."
+
+
+def test_a_pin_without_a_solution_says_what_it_lacks(few: Results) -> None:
+    """The cards were empty; only the last line on stderr had the remedy."""
+    note = "only one connection bears on it; name its clamped surfaces in pin.A.clamp"
+    row = with_values(few.pins[0], verdict="rigid", decided=None, max_von_mises=None,
+                      safety_factor=None, error_estimate=None, note=note)  # fmt: skip
+    screen = overview_part(replace(few, pins=(row,)), {}, "")
+    assert screen["why"] == [f"A: {note}."]
+    assert not screen["actions"]
+    assert screen["nothing"].startswith("First let the pin be solved")
 
 
 def test_the_diameter_by_the_law_of_the_section(few: Results) -> None:
@@ -213,6 +244,23 @@ def test_the_matrix_hides_nothing_that_is_not_met() -> None:
     assert shown == worst
     (one,) = matrix_rows([requirement(pin, f"c{k}", "met") for pin in "AB" for k in range(9)])
     assert one.case == "all 9 cases"
+
+
+def test_the_matrix_of_many_pins_hides_none_that_is_not_met(few: Results) -> None:
+    """Above 14 pins it was left out, with all that [[require]] states."""
+    margin = Margin(YIELD_METHOD, "", "model", "limit", 1.5, 1.0, 9.0)
+    plain = replace(few.pins[2], worst=(margin,), margins=(margin,))
+    names = [f"P{k}" for k in range(30)]
+    rows = [with_values(plain, pin=pin, safety_factor=100.0 - k) for k, pin in enumerate(names)]
+    rows[4] = with_values(rows[4], safety_factor=1.0, decided=False)
+    screen = overview_part(replace(few, pins=tuple(rows), stated=()), {}, "")
+    assert screen["pins"][0] == "P4"
+    assert screen["pins"][-1] == "17 more"
+    (yield_,) = (row for row in screen["matrix"] if row["check"] == "yield")
+    states = [state for *_, state in yield_["cells"]]
+    assert states == ["missed"] + 13 * ["met"]
+    row = MatrixRow("yield", "limit", "", 1.5, {"A": "met", "B": "missed", "C": "met"})
+    assert [worst_cell(row, pins) for pins in ("A", "ABC", "X")] == ["met", "missed", ""]
 
 
 def test_a_comma_in_the_name_of_a_material_does_not_split_what_is_needed() -> None:

@@ -59,7 +59,7 @@ def assessed(study: Study, task: Task, row: PinResult) -> PinResult:
     s = replace(s, row=solved, lug_collapses=row.lug_collapses)
     rigid = row.verdict == "rigid"
     if s.complete and rigid and not why:
-        why = "supports of the pin, or loads in equilibrium"
+        why = "supports of the pin or loads in equilibrium"
     margins = [_of_core(s, margin) for margin in _with_ranges(s, margins_of(s))]
     counted = margins
     if s.complete and (rigid or not s.across.any()):

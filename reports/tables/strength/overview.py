@@ -14,7 +14,7 @@ from reports.data.overview import Diameter, PinLine
 from reports.data.results import Results
 from reports.format.numbers import DASH, engineering, short
 from reports.format.place_words import place_words
-from reports.format.ranges import END_DIGITS, factor_range
+from reports.format.ranges import END_DIGITS, factor_range, factor_text
 from reports.format.words import result_words
 from reports.tables.column import Column, Table
 from reports.tables.strength import safety_factors
@@ -89,10 +89,10 @@ def overview_table(results: Results, lines: Sequence[PinLine]) -> Table[PinLine]
     """Return a row for each pin, for people."""
     shapes = {shape.pin: shape for shape in results.shapes}
     axis = factor_axis(lines)
-    cases = {line.row.case for line in lines}
+    cases = {line.case for line in lines}
     columns: list[Column[PinLine]] = [
         Column("pin", lambda x: x.pin, heading="pin", numeric=False),
-        Column("case", lambda x: x.row.case, heading="case", numeric=False,
+        Column("case", lambda x: x.case, heading="case", numeric=False,
                rank=0 if len(cases) > 1 else 5),
         Column("outcome", outcome_words, heading="result", numeric=False),
         Column("safety_factor", lambda x: x.row.safety_factor,
@@ -176,12 +176,19 @@ def error_words(line: PinLine) -> str:
 
 
 def check_words(line: PinLine) -> str:
-    """Return the worst check where it is another than the maximum against yield."""
+    """Return the worst check where it is another than the maximum against yield, with its factor
+    and the required one: "lug L, bore: 1.85 of 1.5".
+    """
     check = line.check
-    if check.lug and check.factor:
+    if check.check == YIELD_METHOD:
+        return DASH
+    name = check.check
+    if check.lug:
         where = "bore" if lug_mode(check.check) == BORE_STRESS else check.check
-        return f"lug {check.lug}, {where}: {engineering(check.factor, 3)}"
-    return DASH if check.check == YIELD_METHOD else check.check
+        name = f"lug {check.lug}, {where}"
+    if not check.factor:
+        return name
+    return f"{name}: {factor_text(check.factor, check.required)} of {short(check.required)}"
 
 
 def _heading(axis: FactorAxis | None) -> str:

@@ -68,6 +68,32 @@ FILLETED = (
     .replace("[case.pull]", "[lug_defaults]\nouter_diameter = 60\nedge_radius = 0.5\n[case.pull]")
     .replace("tolerance = 0.2", "tolerance = 0.05")
 )
+SINGLE_SHEAR = """
+title = "Single shear"
+units = "mm-N-s"
+[material.steel]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+yield_strength = "500 MPa"
+[pin.P]
+material = "steel"
+profile = [
+  { length = 5, diameter = 20 },
+  { length = 20, diameter = 20, connection = "one" },
+  { length = 0.6, diameter = 20 },
+  { length = 20, diameter = 20, connection = "other" },
+  { length = 5, diameter = 20 },
+]
+[lug_defaults]
+outer_diameter = 50
+edge_radius = 0.3
+[case.pull]
+kind = "given"
+forces = { one = [10000, 0], other = [-10000, 0] }
+[analysis]
+tolerance = 0.05
+joints = "contact"
+"""
 NOTHING_HOLDS = QUICK.replace('clamp = ["start"]', "").replace("clamp", "# clamp")
 
 
@@ -233,6 +259,40 @@ def test_calculix_finds_the_expected_stress_and_moment_of_a_pin_in_lugs(tmp_path
     moment = 2.0 * abs(sum(z * f[0] - f[4] for f in before))  # the deck is a half
     limit = MAX_MOMENT_DIFFERENCE + error
     assert moment == pytest.approx(float(numbers["section_moment"]), rel=limit)
+
+
+def test_a_node_under_a_lug_says_how_its_stress_is_compared(tmp_path: Path) -> None:
+    """Of pin F of the landing gear, CalculiX has 4,280 psi there and the run 11,956:
+    without the pressure's it is 11,540.
+    """
+    assert exported(tmp_path, SINGLE_SHEAR, "--deck", "calculix", pin="P", case="pull") == 0
+    head = " ".join((tmp_path / "deck.inp").read_text("ascii").replace("**", "").split())
+    z = float(expected(tmp_path / "deck.inp")["node_at"].split(", ")[2])
+    name = "one" if 5.0 < z < 25.0 else "other"
+    assert not 25.0 <= z <= 25.6
+    assert f"The node lies under lug {name}:" in head
+    assert exported(tmp_path, FILLETED, "--deck", "calculix", "--force", pin="P", case="pull") == 0
+    assert "lies under lug" not in (tmp_path / "deck.inp").read_text("ascii")
+
+
+@pytest.mark.peers
+def test_calculix_finds_the_stress_under_a_lug(tmp_path: Path) -> None:
+    """By the rule that the head of the deck states, from nothing of ours but the deck."""
+    assert exported(tmp_path, SINGLE_SHEAR, "--deck", "calculix", pin="P", case="pull") == 0
+    subprocess.run(["ccx", "-i", "deck"], cwd=tmp_path, check=True, capture_output=True)
+    numbers = expected(tmp_path / "deck.inp")
+    x, y, _ = (float(value) for value in numbers["node_at"].split(", "))
+    c, s = x / np.hypot(x, y), y / np.hypot(x, y)
+    turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    xx, yy, zz, yz, zx, xy = stresses(tmp_path / "deck.frd")[int(numbers["node"]) - 1]
+    polar = turn @ np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]]) @ turn.T
+    p = -polar[0, 0]
+    relieved = polar + np.diag([p, 0.6 * p, p])
+    deviator = relieved - np.eye(3) * np.trace(relieved) / 3.0
+    at_node = np.sqrt(1.5 * (deviator**2).sum())
+    error = float(numbers["error_estimate"]) / float(numbers["max_von_mises"])
+    limit = MAX_MAXIMUM_DIFFERENCE + error
+    assert at_node == pytest.approx(float(numbers["node_von_mises"]), rel=limit)
 
 
 @pytest.mark.peers
