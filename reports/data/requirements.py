@@ -83,7 +83,8 @@ class RequirementRow:
     study where that is a number.
     stated: whether the study states it, by [[require]], required_safety_factor or fatigue.life;
     otherwise it follows from the factors on loads.
-    over: of a check by margins that depends, what is open: "joint", "landing", "links".
+    over: of a check by margins that depends, what is open: "joint", "landing", "links", and of a
+    limit load "strength".
     """
 
     pin: str
@@ -226,8 +227,9 @@ def _of_limit_load(plain: RequirementRow, row: PinResult, margins: list[Margin])
         return elastic
     if limit is not None and limit.lower is not None and limit.upper is not None:
         if limit.lower >= plain.required:
-            over = _beyond(limit.lower / plain.required, _most_loads(row))
-            return _depending(plain, limit.lower, over)
+            weakest = min((_reached(m) for m in margins if not m.needs), default=limit.lower)
+            growth = {"strength": limit.lower / weakest, **_most_loads(row)}
+            return _depending(plain, limit.lower, _beyond(limit.lower / plain.required, growth))
         outcome: Outcome = "missed" if limit.upper < plain.required else "not decided"
         return replace(plain, reached=limit.lower, outcome=outcome)
     if elastic.outcome == "depends":
@@ -257,7 +259,7 @@ def _judged(plain: RequirementRow, margins: list[Margin], row: PinResult | None)
         return _of_margins(plain, margins, _most_loads(row))
     hardened = row.places is not None and row.places.hardened
     if hardened and plain.check == "rupture":  # its largest stress need not be the row's
-        return _of_margins(plain, margins, _most_loads(row))
+        return _of_margins(plain, margins, {**_most_loads(row), "joint": _over_joint(row)})
     if row.max_von_mises is None:
         return replace(plain, outcome="not decided", needs=f"a maximum ({row.verdict})")
     strengths = [m.allowable for m in margins if m.allowable is not None]
@@ -274,6 +276,8 @@ def _of_stress(plain: RequirementRow, row: PinResult, strength: float) -> Requir
     if plain.check != "yield" or plain.required != (row.required or 1.0):
         judgement = against_yield(row.maximum, strength, plain.required)
         row = replace(row, judgement=judgement, depends_on=())
+        if plain.check == "rupture":  # by a strength without a range
+            row = replace(row, strength_range=None)
         row = replace(row, depends_on=depends_on(row))
     outcome = OUTCOME_OF_ROW[row.outcome]
     return replace(plain, reached=row.safety_factor, outcome=outcome, needs="")
@@ -285,6 +289,14 @@ def _most_loads(row: PinResult | None) -> dict[str, float]:
     """
     over = {} if row is None else {"landing": row.landing, "links": row.sharing}
     return {what: max(x.largest_load, 1.0) for what, x in over.items() if x is not None}
+
+
+def _over_joint(row: PinResult) -> float:
+    """Return the largest stress of a row over its joint, over the row's."""
+    over = row.joint.range if row.joint else None
+    if over is None or not row.max_von_mises:
+        return 1.0
+    return max(over.max_von_mises[1] / row.max_von_mises, 1.0)
 
 
 def _beyond(spare: float, growth: Mapping[str, float]) -> list[str]:
