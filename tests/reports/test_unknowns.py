@@ -81,6 +81,14 @@ def test_the_spread_is_the_product_of_the_ratios() -> None:
     assert factor_spread(pin(4.0, (1.0, 1.0))) == (4.0, 4.0)
 
 
+def test_a_joint_that_may_take_all_stress_off_leaves_no_upper_end() -> None:
+    """The error of a beam on foundations reaches zero on a stub; a run ended in a division by it."""
+    no_stress = pin(4.0, (0.0, 1.25))
+    assert factor_spread(no_stress) == (pytest.approx(3.2), math.inf)
+    first = unknowns([no_stress])[0]
+    assert (first.what, first.rows[0][1].high) == ("tilt", math.inf)
+
+
 def test_each_open_value_alone() -> None:
     values = {v.what: v for v in open_values(pin(4.0, (0.9, 1.3), BOTH))}
     assert list(values) == ["impulse time", "velocity change", "pulse", "tilt"]
