@@ -201,7 +201,7 @@ def _factors(row: PinResult, stresses: Sequence[float]) -> Ends:
 
 
 def _divided(factor: float, least: float) -> float:
-    """Return a factor over the least stress, infinite without any, as of a pin that others carry."""
+    """Return a factor over the least stress, infinite where that is zero."""
     return float(factor / least) if least > 0.0 else math.inf
 
 
