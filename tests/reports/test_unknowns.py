@@ -84,7 +84,7 @@ def test_the_spread_is_the_product_of_the_ratios() -> None:
 def test_a_joint_that_may_take_all_stress_off_leaves_no_upper_end() -> None:
     """The error of a beam on foundations reaches zero on a stub, which ended a run."""
     no_stress = pin(4.0, (0.0, 1.25))
-    assert factor_spread(no_stress) == (pytest.approx(3.2), math.inf)
+    assert factor_spread(no_stress) == pytest.approx((3.2, math.inf))
     first = unknowns([no_stress])[0]
     assert (first.what, first.rows[0][1].high) == ("tilt", math.inf)
 
