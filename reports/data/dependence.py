@@ -15,24 +15,11 @@ from fea.support.records import FRICTION, JointResult, Variation
 from pinbase.arrays import Mask
 from pinbase.dimensions import Floats
 from reports.data.decision import factor_ends
-from reports.data.row import Dependence, LandingRange, PinResult
+from reports.data.row import Dependence, LandingRange, PinResult, SharingRange
 
-OverStrength = Literal[
-    "strength and joint",
-    "strength and landing",
-    "strength and links",
-    "strength, joint and landing",
-]
 BENEATH_CONTACT: Literal["beneath"] = "beneath"
 WITH_ERROR = "with its error"  # of what lies beneath, which exceeds what is permitted only with it
 IMPULSE_RANGES_TOGETHER = "impulse time, velocity change and pulse together"
-JOINT_AND_LANDING: Literal["joint and landing"] = "joint and landing"
-WITH_STRENGTH: dict[str, OverStrength] = {
-    "joint": "strength and joint",
-    "landing": "strength and landing",
-    "links": "strength and links",
-    JOINT_AND_LANDING: "strength, joint and landing",
-}
 LOST_FIT = "press fit lost in"  # a pin that is loose at the temperature of the case
 YIELD_STRENGTH = "yield strength"
 TOGETHER = "together"  # what only several ranges together change
@@ -113,7 +100,7 @@ def _over_strength(
         there = replace(judged, strength=end, permitted=permitted)
         others = _over_loads_and_joint(pin, there, contact, joint)
         if others:
-            over = WITH_STRENGTH[others[0].over]
+            over = joined(["strength", *others[0].over.replace(" and ", ", ").split(", ")])
             factors = [d.factor for d in others]
             factor = min(factors) if judged.safe else max(factors)
             yield Dependence(TOGETHER, "", over, factor)
@@ -130,17 +117,32 @@ def _over_loads_and_joint(
         ranges += [Dependence(LOST_FIT, lost, "joint", strength / judged.maximum)] if lost else []
     if pin.landing is not None:
         ranges += _with_beneath(judged, contact, pin.landing)
-        if not ranges:
-            ranges += _over_both(judged, contact, joint, pin.landing)
     if pin.sharing is not None:
-        low, high = pin.sharing.max_von_mises
-        ends = ((pin.sharing.lowest, low), (pin.sharing.highest, high))
-        ranges += [
-            Dependence(what, "", "links", strength / stress)
-            for what, stress in ends
-            if what and judged.turns(stress)
-        ]
-    return ranges
+        ranges += _over_links(judged, contact, pin.sharing)
+    return ranges or list(_together(judged, contact, joint, pin))
+
+
+def joined(names: Sequence[str]) -> str:
+    """Return names as a list in words: "strength, joint and landing"."""
+    return f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def _over_links(
+    judged: JudgedStress, contact: ContactPlace | None, shared: SharingRange
+) -> Iterator[Dependence]:
+    """Yield the stiffness of the links that changes the outcome, with stress beneath contact, which
+    scales too.
+    """
+    deep = contact.upper_end if contact else 0.0
+    low, high = shared.max_von_mises
+    for what, stress in ((shared.lowest, low), (shared.highest, high)):
+        beneath = deep * stress / judged.maximum
+        if not what:
+            continue
+        if judged.turns(stress) and (judged.safe or beneath <= judged.permitted):
+            yield Dependence(what, "", "links", judged.strength / stress)
+        elif judged.safe and deep <= judged.permitted < beneath:
+            yield Dependence(BENEATH_CONTACT, what, "links", judged.strength / beneath)
 
 
 def _as_of_row(
@@ -165,30 +167,34 @@ def _as_of_row(
     return contact, replace(joint, range=replace(joint.range, variations=over))
 
 
-def _over_both(
-    judged: JudgedStress, contact: ContactPlace | None, joint: JointResult | None, r: LandingRange
+def _together(
+    judged: JudgedStress, contact: ContactPlace | None, joint: JointResult | None, pin: PinResult
 ) -> Iterator[Dependence]:
-    """Yield the ranges of joint and landing together if neither alone changes the outcome.
+    """Yield the ranges of joint, landing and links together if none alone changes the outcome.
 
-    Each multiplies the stress by the ratio that it has alone, since the two were not solved
-    together: exact where stress is proportional to the loads.
+    Each multiplies the stress by the ratio that it has alone, since they were not solved together:
+    exact where stress is proportional to the loads.
     """
-    over = joint.range if joint else None
-    if over is None:
-        return
     extreme = max if judged.safe else min
-    of_landing = float(extreme(r.max_von_mises)) / judged.maximum
-    of_joint = extreme(judged.maximum, *over.max_von_mises) / judged.maximum
+    over = {"joint": joint.range if joint else None, "landing": pin.landing, "links": pin.sharing}
+    ratios = {
+        what: float(extreme(judged.maximum, *each.max_von_mises)) / judged.maximum
+        for what, each in over.items()
+        if each is not None
+    }
+    if len(ratios) < 2:
+        return
     beneath = [contact.upper_end if contact else 0.0]
-    counted = (v for v in over.variations if judged.safe or v.what != FRICTION)
+    variations = joint.range.variations if joint and joint.range else ()
+    counted = (v for v in variations if judged.safe or v.what != FRICTION)
     beneath += [_upper_end(contact, v) for v in counted]
-    deep = of_landing * extreme(beneath)
-    stress = judged.maximum * of_landing * of_joint
+    deep = extreme(beneath) * ratios.get("landing", 1.0) * ratios.get("links", 1.0)
+    stress = judged.maximum * math.prod(ratios.values())
     fails_beneath = deep > judged.permitted
     turned = judged.turns(stress)
     if (turned or fails_beneath) if judged.safe else (turned and not fails_beneath):
         factor = judged.strength / (max(stress, deep) if judged.safe else stress)
-        yield Dependence(TOGETHER, "", JOINT_AND_LANDING, factor)
+        yield Dependence(TOGETHER, "", joined([*ratios]), factor)
 
 
 def _beneath(judged: JudgedStress, contact: ContactPlace | None) -> Iterator[Dependence]:

@@ -84,7 +84,8 @@ class RequirementRow:
     study where that is a number.
     stated: whether the study states it, by [[require]], required_safety_factor or fatigue.life;
     otherwise it follows from the factors on loads.
-    over: of a check by margins that depends, what is open: "joint", "landing", "links".
+    over: of a check by margins that depends, what is open: "joint", "landing", "links", and of a
+    limit load "strength".
     """
 
     pin: str
@@ -233,10 +234,9 @@ def _of_limit_load(plain: RequirementRow, row: PinResult, margins: list[Margin])
         return elastic
     if limit is not None and limit.lower is not None and limit.upper is not None:
         if limit.lower >= plain.required:
-            over = _beyond(
-                limit.lower / plain.required, {"joint": row.joint_growth, **row.most_loads}
-            )
-            return _depending(plain, limit.lower, over)
+            weakest = min((_reached(m) for m in margins if not m.needs), default=limit.lower)
+            growth = {"strength": limit.lower / weakest, "joint": row.joint_growth, **row.most_loads}
+            return _depending(plain, limit.lower, _beyond(limit.lower / plain.required, growth))
         outcome: Outcome = "missed" if limit.upper < plain.required else "not decided"
         return replace(plain, reached=limit.lower, outcome=outcome)
     if elastic.outcome == "depends":
@@ -266,7 +266,7 @@ def _judged(plain: RequirementRow, margins: list[Margin], row: PinResult | None)
         return _of_margins(plain, margins, row.most_loads if row else None)
     hardened = row.places is not None and row.places.hardened
     if hardened and plain.check == "rupture":  # its largest stress need not be the row's
-        return _of_margins(plain, margins, row.most_loads)
+        return _of_margins(plain, margins, {**row.most_loads, "joint": row.joint_growth})
     if row.max_von_mises is None:
         return replace(plain, outcome="not decided", needs=f"a maximum ({row.verdict})")
     strengths = [m.allowable for m in margins if m.allowable is not None]
@@ -283,6 +283,8 @@ def _of_stress(plain: RequirementRow, row: PinResult, strength: float) -> Requir
     if plain.check != "yield" or plain.required != (row.required or 1.0):
         judgement = against_yield(row.maximum, strength, plain.required)
         row = replace(row, judgement=judgement, depends_on=())
+        if plain.check == "rupture":  # by a strength without a range
+            row = replace(row, strength_range=None)
         row = replace(row, depends_on=depends_on(row))
     outcome = OUTCOME_OF_ROW[row.outcome]
     return replace(plain, reached=row.safety_factor, outcome=outcome, needs="")

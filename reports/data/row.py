@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
-from typing import Annotated, Literal
+from typing import Annotated
 
 from assess.diameter_law import BENDING_EXPONENT
 from assess.judgement import BELOW_YIELD, DEPENDS, SAFE, Judgement
@@ -61,9 +61,9 @@ class Dependence:
 
     what: "clearance", "impulse time", "beneath". value: in words where it is not a number
     ("guided").
-    over: the owner of the range ("links": their stiffness, "strength": of yield), or of the ranges
-    that only together change the outcome, or "beneath" for the stress beneath contact as the study
-    has it;
+    over: the owner of the range, "joint", "landing", "links" (their stiffness), "strength" (of
+    yield), or those of ranges that only together change the outcome ("joint and links"), or
+    "beneath" for the stress beneath contact as the study has it;
     for that stress over a range, `value` is what changes ("clearance").
     factor: of safety at that value.
     given, at, flips_at: the study's value, one at which the outcome differs, and the interpolated
@@ -73,11 +73,7 @@ class Dependence:
 
     what: str
     value: str
-    over: Literal[
-        "joint", "landing", "joint and landing", "beneath", "links", "strength",
-        "strength and joint", "strength and landing", "strength and links",
-        "strength, joint and landing",
-    ]  # fmt: skip
+    over: str
     factor: float
     given: Annotated[float, "own"] | None = None
     at: Annotated[float, "own"] | None = None

@@ -135,13 +135,13 @@ def factor_spread(row: PinResult) -> Ends | None:
     over = row.joint.range if row.joint else None
     if over is not None:
         least, most = over.max_von_mises
-        low, high = low * stress / max(most, stress), high * stress / min(least, stress)
+        low, high = low * stress / max(most, stress), _divided(high * stress, min(least, stress))
     if row.landing is not None:
         ratios = row.landing.max_von_mises / stress
-        low, high = low / max(float(ratios.max()), 1.0), high / min(float(ratios.min()), 1.0)
+        low, high = low / max(float(ratios.max()), 1.0), _divided(high, min(ratios.min(), 1.0))
     if row.sharing is not None:
         least, most = row.sharing.max_von_mises
-        low, high = low * stress / most, high * stress / least
+        low, high = low * stress / most, _divided(high * stress, least)
     if row.strength_range is not None:
         least, most = row.strength_range
         low, high = low * least / (factor * stress), high * most / (factor * stress)
@@ -197,7 +197,12 @@ def _factors(row: PinResult, stresses: Sequence[float]) -> Ends:
     """Return the ends of the factor over some maxima and that of the row."""
     every = [*stresses, row.max_von_mises or 0.0]
     strength = row.yield_strength or 0.0
-    return strength / max(every), strength / min(every) if min(every) > 0.0 else math.inf
+    return strength / max(every), _divided(strength, min(every))
+
+
+def _divided(factor: float, least: float) -> float:
+    """Return a factor over the least stress, infinite where that is zero."""
+    return float(factor / least) if least > 0.0 else math.inf
 
 
 def _flip(row: PinResult, owner: Owner, what: str) -> Dependence | None:

@@ -200,7 +200,7 @@ def given_words(unknown: Unknown) -> str:
 
 def _flip(row: PinResult, d: Dependence, units: Units) -> str:
     state = "may fail" if row.as_described in GOOD else "is safe"
-    at = f"with {d.what}" if d.over == "links" else _at(d, units)
+    at = f"with {d.value or d.what}" if d.over == "links" else _at(d, units)
     return f"{row.pin} {state} {'with ' if at and at == d.value else ''}{at}".strip()
 
 

@@ -12,9 +12,12 @@ import pytest
 
 import pinstress
 from assess.judgement import DEPENDS, FAILS, SAFE
+from assess.requirement import StatedRequirement
 from assess.strength.model_stress import YIELD_METHOD
 from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.in_python import study_from
 from reports.data.dependence import TOGETHER, YIELD_STRENGTH, depends_on
+from reports.data.requirements import requirement_rows
 from reports.data.row import PinResult, Units
 from reports.data.unknowns import factor_spread, unknowns
 from reports.text.overview import flips, flips_words, measure_first, range_words
@@ -130,3 +133,26 @@ def test_checks_by_formula_hold_at_the_lower_end(tmp_path: Path) -> None:
     for name in differ:
         expected = given if name == YIELD_METHOD else low
         assert ranged[name] == pytest.approx(expected[name])
+
+
+def test_requirements_on_collapse_know_the_range_and_those_on_rupture_do_not() -> None:
+    """A factor on the limit load that the lower end of the strength misses, which a run at that
+    end shows, was met. Rupture, by another strength, depended on it.
+    """
+    text = STUDY.replace("= 2.3", "= 1.0").replace("50000", "150000")
+    text = text.replace("[analysis]", 'ultimate_strength = "1900 MPa"\n[analysis]')
+    weak = text.replace('range = { yield_strength = ["LOW MPa", "1000 MPa"] }', "")
+    weak = weak.replace('"900 MPa"', '"600 MPa"')
+    ranged, weakest = (pinstress.run(study_from(x.replace("LOW", "600"))) for x in (text, weak))
+    strong, weak_limit = (x.pins[0].limit_load for x in (ranged, weakest))
+    assert strong is not None and weak_limit is not None  # noqa: PT018
+    assert strong.lower is not None and weak_limit.lower is not None  # noqa: PT018
+    between = (strong.lower * weak_limit.lower) ** 0.5
+    collapse = StatedRequirement("P", "pull", "ultimate", "limit load", between)
+    rupture = StatedRequirement("P", "pull", "ultimate", "rupture", 1.5)
+    outcomes = []
+    for results in (ranged, weakest):
+        rows = requirement_rows(replace(results, stated=(collapse, rupture)))
+        outcomes.append({r.check: (r.outcome, r.over) for r in rows if r.stated})
+    assert [x["rupture"] for x in outcomes] == [("met", "")] * 2
+    assert [x["limit load"] for x in outcomes] == [("depends", "strength"), ("not decided", "")]

@@ -13,7 +13,7 @@ import pytest
 
 from assess.judgement import DEPENDS, FAILS, SAFE
 from fea.support.records import JointRange, Variation
-from reports.data.dependence import JOINT_AND_LANDING, TOGETHER, depends_on
+from reports.data.dependence import TOGETHER, depends_on
 from reports.data.row import PinResult, Units
 from reports.data.unknowns import factor_spread, open_values, unknowns
 from reports.format.words import over_words
@@ -56,7 +56,7 @@ def test_two_ranges_that_change_an_outcome_only_together() -> None:
     assert both.outcome == DEPENDS
     assert both.meets_required is False
     (over,) = both.depends_on
-    assert (over.over, over.what) == (JOINT_AND_LANDING, TOGETHER)
+    assert (over.over, over.what) == ("joint and landing", TOGETHER)
     assert over.factor == pytest.approx(2.6 / 1.5 / 1.3, rel=1e-9)
     assert over_words(both.depends_on) == "joint and landing"
     assert flips(both, UNITS) == "the open joint and landing values"
@@ -67,7 +67,7 @@ def test_a_pin_that_fails_may_be_safe_only_with_both() -> None:
     """0.55: 1.375 at 10 ft/s, 0.611 at 0.9 of the stress; 1.83 at 0.2 s and 10 ft/s alone."""
     failing = pin(0.4, (0.6, 1.1), ("rectangular",))  # 0.4 * 2.5 * 4/3 = 1.333; / 0.6 = 2.22
     assert failing.outcome == FAILS
-    assert [d.over for d in failing.depends_on] == [JOINT_AND_LANDING]
+    assert [d.over for d in failing.depends_on] == ["joint and landing"]
     assert pin(0.2, (0.6, 1.1), ("rectangular",)).depends_on == ()  # 1.11: fails whatever
 
 
@@ -79,6 +79,14 @@ def test_the_spread_is_the_product_of_the_ratios() -> None:
     assert spread[1] == pytest.approx(4.0 * 2.5 * (4.0 / 3.0) / 0.9)
     assert factor_spread(pin(4.0, None)) is None
     assert factor_spread(pin(4.0, (1.0, 1.0))) == (4.0, 4.0)
+
+
+def test_a_joint_that_may_take_all_stress_off_leaves_no_upper_end() -> None:
+    """The error of a beam on foundations reaches zero on a stub, which ended a run."""
+    no_stress = pin(4.0, (0.0, 1.25))
+    assert factor_spread(no_stress) == pytest.approx((3.2, math.inf))
+    first = unknowns([no_stress])[0]
+    assert (first.what, first.rows[0][1].high) == ("tilt", math.inf)
 
 
 def test_each_open_value_alone() -> None:

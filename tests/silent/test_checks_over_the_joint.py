@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
+import pytest
+
 import pinstress
+from assess.judgement import DEPENDS
 from assess.margin import Margin
+from assess.requirement import StatedRequirement
+from assess.strength.model_stress import RUPTURE_METHOD
+from pinstress.explore.size.judged_pin import judged_pin
 from pinstress.study.reading.in_python import study_from
+from reports.data.headline import worst_checks
 from reports.data.requirements import requirement_rows
 
 # In double shear; the clearance may be anything up to 0.3 mm.
@@ -43,12 +51,20 @@ forces = { LEFT = [-HALF, 0], EYE = [WHOLE, 0], RIGHT = [-HALF, 0] }
 """
 TIGHT, LOOSE = "clearance = 0.0", "clearance = 0.3"
 RANGED = "clearance = 0.0\nrange = { clearance = [0.0, 0.3] }"
+RUBBING = "clearance = 0.02\nfriction = 0.2"
+CASE = (
+    'yield_strength = "700 MPa"',
+    'hardened = { surface = "1100 MPa", core = "700 MPa", depth = "1.5 mm" }',
+)
+REPLACEABLE = "EN 1993 bending, replaceable"
 BORE, BENDING, NET = "lug, von Mises stress at the bore", "bending, joint model", "lug, net section"
 
 
 @cache
-def solved(clearance: str, half: float) -> pinstress.RunResults:
+def solved(clearance: str, half: float, *swaps: tuple[str, str]) -> pinstress.RunResults:
     text = TEXT.replace("CLEARANCE", clearance)
+    for old, new in swaps:
+        text = text.replace(old, new)
     text = text.replace("HALF", f"{half}").replace("WHOLE", f"{2.0 * half}")
     return pinstress.run(study_from(text))
 
@@ -80,6 +96,53 @@ def test_a_check_that_a_loose_joint_misses_depends() -> None:
             if row.level == "limit"
         }
         assert outcomes[method] == ("depends", "joint")
+
+
+def test_a_size_that_meets_a_check_with_the_joint_as_given_alone_depends() -> None:
+    """It was safe; the run of the study that it wrote depends."""
+    swaps = (
+        ("[analysis]", "[analysis]\nultimate_factor = 1.0"),
+        ("[lug_defaults.shank]\nwidth = 50", ""),
+        ("[pin.P]", "[pin.P]\nreplaceable = true"),
+    )
+    tight, loose = (worst(solved(x, 20e3, *swaps), REPLACEABLE) for x in (TIGHT, LOOSE))
+    results = solved(RANGED, 20e3 / (tight.used * loose.used) ** 0.5, *swaps)
+    assert worst_checks(results)["P"].outcome == DEPENDS
+    judged = judged_pin(results, "P")
+    assert judged.depends
+    assert judged.why.startswith(REPLACEABLE)
+    assert judged.why.endswith("is met as described, but not over the joint (pull)")
+
+
+def test_bending_knows_that_friction_adds_to_it_when_the_load_falls() -> None:
+    """On each side of the middle of the eye friction along the bores adds two couples of mu R F, of
+    the outer lug and of half the eye. It changed the stress of the row alone.
+    """
+    half, radius, coefficient = 20e3, 10.0, 0.2
+    margin = worst(solved(RUBBING, half), BENDING)
+    assert margin.demand is not None
+    moment = margin.demand * 3.14159265 * radius**3 / 4.0
+    assert margin.over_joint == pytest.approx(
+        1.0 + 2.0 * coefficient * radius * half / moment, rel=1e-3
+    )
+    smooth = worst(solved(RUBBING.replace("0.2", "0.0"), half), BENDING)
+    assert margin.demand == smooth.demand
+    assert smooth.over_joint < margin.over_joint
+
+
+def test_rupture_of_a_hardened_pin_that_a_loose_joint_misses_depends() -> None:
+    """It was met by the joint as given. The truth is a run with the largest clearance."""
+    runs = [solved(x, 20e3, CASE).pins[0] for x in (TIGHT, LOOSE)]
+    rupture = [m.safety_factor for x in runs for m in x.worst if m.method == RUPTURE_METHOD]
+    ends = [x for x in rupture if x is not None]
+    assert ends[1] < 0.97 * ends[0]
+    between = (ends[0] * ends[1]) ** 0.5
+    results = replace(
+        solved(RANGED, 20e3, CASE),
+        stated=(StatedRequirement("P", "pull", "ultimate", "rupture", between),),
+    )
+    (row,) = (r for r in requirement_rows(results) if r.check == "rupture" and r.stated)
+    assert (row.outcome, row.over) == ("depends", "joint")
 
 
 def test_a_formula_takes_the_largest_clearance() -> None:

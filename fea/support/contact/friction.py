@@ -16,13 +16,14 @@ friction bounds it: on every ring as it changes the moment of a section most, in
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from fea.core.pin_loads import UnitLoad
 from fea.support.bands import Bands
+from fea.support.contact.bending import LoadedJoint, stations
 from fea.support.contact.contact_state import ContactState
 from fea.support.contact.pressure_loads import (
     MODE_TOLERANCE,
@@ -32,6 +33,7 @@ from fea.support.contact.pressure_loads import (
 )
 from fea.support.contact.solve_joint import ContactModel, JointContact
 from fea.support.lugs.lug import Lug
+from fea.support.records import FRICTION, Variation
 from pinbase.arrays import Floats
 
 SLIDING, TURNING = "pin sliding as it bends", "links turning on the pin"
@@ -115,6 +117,18 @@ def along_axis(model: ContactModel, contact: JointContact) -> Floats:
     return share
 
 
+def rubbed_across(model: ContactModel, contact: JointContact, own: LoadedJoint) -> float:
+    """The largest bending moment of a pin whose friction along the axis adds to it, over that
+    without friction.
+    """
+    bands, z = model.bands, stations(model.pin)
+    couples = (along_axis(model, contact) * bands.radius)[:, None] * own.line_load[0]
+    before = np.clip(z[:, None] - (bands.z - bands.length / 2.0), 0.0, bands.length)
+    moment, by_friction = own.bending_moment(z)[0], before @ couples
+    largest = [np.linalg.norm(moment + way * by_friction, axis=1).max() for way in (0.0, *SENSES)]
+    return float(max(largest) / largest[0]) if largest[0] > 0.0 else 1.0
+
+
 def rubbed(
     model: ContactModel, contact: JointContact, known: PressureModes | None
 ) -> tuple[PressureLoads, dict[str, list[PressureLoads]]]:
@@ -134,6 +148,23 @@ def rubbed(
         return with_torques(replace(plain, acting=acting), around * torque)
 
     return plain, {name: [loads(*share) for share in every] for name, every in SHARES.items()}
+
+
+def friction_variations(
+    lugs: Sequence[Lug], ratios: dict[str, list[tuple[float, float]]], across: float
+) -> Iterator[Variation]:
+    """Yield the bounds by friction of the row and of what lies beneath, relative to those without.
+
+    ratios: of stress, by the kind of sliding. across: of the moment where friction adds to it.
+    """
+    words = coefficient_words(lugs)
+    for name, which, kind, growth in (
+        ("load growing", min, SLIDING, 1.0),
+        ("load falling after a larger one", max, SLIDING, across),
+        (TURNING, max, TURNING, 1.0),
+    ):
+        row, deep = (which(each) for each in zip(*ratios[kind], strict=True))
+        yield Variation(FRICTION, f"{words}, {name}", row, beneath=deep, across=growth)
 
 
 def _areas(bands: Bands) -> Floats:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -32,7 +32,7 @@ from fea.support.contact.cell_error import (
 from fea.support.contact.coarser_cells import on_coarser_cells
 from fea.support.contact.contact import ContactProblem
 from fea.support.contact.contact_state import ContactState
-from fea.support.contact.friction import SLIDING, TURNING, coefficient_words, rubbed, rubs
+from fea.support.contact.friction import friction_variations, rubbed, rubbed_across, rubs
 from fea.support.contact.pressure_loads import (
     MODE_TOLERANCE,
     PressureLoads,
@@ -294,24 +294,10 @@ def _by_friction(
         plain, *stress = _at_places(model, requirement, [[without], *changed.values()])
         pairs = [(x.row / (plain.row or 1.0), x.beneath / (plain.beneath or 1.0)) for x in stress]
         ratios = {name: [pairs.pop(0) for _ in loads] for name, loads in changed.items()}
-        out.append(tuple(_friction_variations(coefficient_words(model.lugs), ratios)))
+        own = _Joint(model.waves(contact.contact), list(contact.contact))
+        across = rubbed_across(model, contact, _loaded(model, own, contact))
+        out.append(tuple(friction_variations(model.lugs, ratios, across)))
     return out
-
-
-def _friction_variations(
-    words: str, ratios: dict[str, list[tuple[float, float]]]
-) -> Iterator[Variation]:
-    """Yield the bounds by friction of the row and of what lies beneath, relative to those without.
-
-    words: the coefficient. ratios: of stress, by the kind of sliding.
-    """
-    for name, which, kind in (
-        ("load growing", min, SLIDING),
-        ("load falling after a larger one", max, SLIDING),
-        (TURNING, max, TURNING),
-    ):
-        row, deep = (which(each) for each in zip(*ratios[kind], strict=True))
-        yield Variation(FRICTION, f"{words}, {name}", row, beneath=deep)
 
 
 def uncompared(contact: JointContact) -> ResolutionComparison:

@@ -115,6 +115,9 @@ def why_missed(results: Results, pin: str) -> str:
         places += [f"within the range of the {ranges}"] * bool(ranges)
         cases = ", ".join(depends)
         return f"the factor is reached as described, but not {' and not '.join(places)} ({cases})"
+    if worst.outcome == DEPENDS:
+        case = f" ({worst.case})" if worst.case else ""
+        return f"{worst.check} is met as described, but not over the {worst.reason}{case}"
     return ""
 
 
