@@ -101,9 +101,9 @@ def test_a_turned_body_of_spline_surfaces_is_its_profile(name: str, tmp_path: Pa
 def test_its_axis_may_lie_anyhow(name: str, tmp_path: Path) -> None:
     """Either end may be the start, as nothing in the file says which."""
     file = step(PROFILES[name], tmp_path / "pin.step", _turn)
-    with raises(NotTurnedError, "not-turned", "not the file's z-axis"):
-        recognised_profile(file)
-    found = recognised_profile(file, upright=False).pin("P")
+    profile = recognised_profile(file)
+    assert not profile.upright
+    found = profile.pin("P")
     assert found.volume == pytest.approx(PROFILES[name].volume * MM**3, rel=1e-8)
     lengths = sorted(s.length / MM for s in found.segments)
     assert lengths == pytest.approx(sorted(s.length for s in PROFILES[name].segments))
@@ -188,7 +188,7 @@ def test_cuts_of_several_kinds_of_a_body_that_lies_anyhow(tmp_path: Path) -> Non
         Slot(30.0, 45.0, 4.0, 3.0, 2.8, 0.4), Passage(0.0, 60.0, 2.0, 7.0, -1.5),
     )  # fmt: skip
     file = step(CutPin.of(tube, cuts), tmp_path / "pin.step", _turn)
-    found = recognised_profile(file, upright=False)
+    found = recognised_profile(file)
     assert sorted(cut.what for cut in found.cuts) == ["flat", "hole", "hole", "passage", "slot"]
 
 
@@ -222,7 +222,7 @@ def test_a_dome_may_have_its_poles_aside(tmp_path: Path) -> None:
         occ.fuse([(3, bar)], [(3, ball)])
         occ.synchronize()
         gmsh.write(str(tmp_path / "dome.brep"))
-    found = recognised_profile(BodyFile("P", tmp_path / "dome.brep", MM, ()), upright=False)
+    found = recognised_profile(BodyFile("P", tmp_path / "dome.brep", MM, ()))
     (segment,) = found.pin("P").segments
     assert (segment.length, segment.diameter) == pytest.approx((0.035, 0.01))
     assert segment.edge_radii == pytest.approx((0.0, 0.005))
