@@ -150,6 +150,10 @@ CUTS: dict[str, Cut] = {
     "tip": Hole(40.0, 4.0, 3.0, 8.0, Bottom(math.radians(118.0))),
     "rounded bottom": Hole(40.0, 4.0, -2.0, 8.0, Bottom(radius=0.5)),
     "rounded tip": Hole(40.0, 4.0, -2.0, 12.0, Bottom(math.radians(118.0), 0.5)),
+    "beside": Hole(40.0, 4.0, 0.5, offset=-3.0),
+    "oblique": Hole(40.0, 4.0, 0.5, tilt=-0.4),
+    "oblique beside": Hole(40.0, 4.0, -0.5, offset=2.0, tilt=0.3),
+    "rounded mouths": Hole(40.0, 4.0, 0.3, mouth_radius=0.6),
     "countersunk": Hole(40.0, 4.0, 0.3, chamfer=0.6),
     "keyway": Slot(30.0, 45.0, 5.0, 3.0, 0.3),
     "rounded keyway": Slot(30.0, 45.0, 5.0, 3.0, 0.3, 0.6),
@@ -178,6 +182,17 @@ def test_a_cut_is_recognised(name: str, tmp_path: Path) -> None:
     turn = 1.0 if cut.half_turn else 0.5
     assert math.sin(turn * (plain.angle - cut.angle)) == pytest.approx(0.0, abs=1e-6)
     assert plain.turned(cut.angle).like(cut, 1e-5), plain
+
+
+def test_a_splined_end_is_its_slots(tmp_path: Path) -> None:
+    """Walls and floors of opposite slots face each other, and are not those of one."""
+    slots = [Slot(45.0, 60.0, 3.0, 2.0, k * math.pi / 4.0, 0.0, False) for k in range(8)]
+    file = step(CutPin.of(PROFILES["sharp"], slots), tmp_path / "pin.step")
+    found = recognised_profile(file)
+    same(found, PROFILES["sharp"])
+    assert len(found.cuts) == 8
+    for made in found.cuts:
+        assert sum(made.scaled(1e3).like(slot, 1e-5) for slot in slots) == 1
 
 
 def test_cuts_of_several_kinds_of_a_body_that_lies_anyhow(tmp_path: Path) -> None:
@@ -243,17 +258,17 @@ def _box(gmsh: Any, solid: int) -> None:
     gmsh.model.occ.fuse([(3, solid)], [(3, box)])
 
 
-def _beside_axis(gmsh: Any, solid: int) -> None:
-    drill = gmsh.model.occ.addCylinder(-20, 3, 40, 40, 0, 0, 2)
-    gmsh.model.occ.cut([(3, solid)], [(3, drill)])
+def _drill(x: float, y: float, dz: float) -> Change:
+    """A blind hole from outside to z = 30 + dz, as deep as the axis is, beside the axis by y."""
+
+    def change(gmsh: Any, solid: int) -> None:
+        drill = gmsh.model.occ.addCylinder(-20, y, 30, x, 0, dz, 2)
+        gmsh.model.occ.cut([(3, solid)], [(3, drill)])
+
+    return change
 
 
-def _oblique(gmsh: Any, solid: int) -> None:
-    drill = gmsh.model.occ.addCylinder(-20, 0, 30, 40, 0, 20, 2)
-    gmsh.model.occ.cut([(3, solid)], [(3, drill)])
-
-
-@pytest.mark.parametrize("change", [_box, _beside_axis, _oblique])
+@pytest.mark.parametrize("change", [_box, _drill(20, 3, 0), _drill(20, 0, 10)])
 def test_other_bodies_are_not_turned(change: Change, tmp_path: Path) -> None:
     with raises(NotTurnedError, "not-turned", "pin.step"):
         recognised_profile(step(PROFILES["sharp"], tmp_path / "pin.step", change))

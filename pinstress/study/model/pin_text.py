@@ -127,6 +127,9 @@ def _cut(cut: Cut, one: float, unit: str) -> Iterator[str]:
             yield 'ends = "square"'
     elif isinstance(cut, Hole):
         yield from given(z=cut.z, diameter=cut.diameter, depth=cut.depth, chamfer=cut.chamfer)
+        yield from given(mouth_radius=cut.mouth_radius, offset=cut.offset)
+        if cut.tilt:
+            yield f"tilt = {_angle(cut.tilt)}"
         yield from _bottom(cut.bottom, one, unit)
     elif isinstance(cut, Passage):
         if cut.mouth != "both":
