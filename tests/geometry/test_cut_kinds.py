@@ -152,6 +152,16 @@ def test_a_rounded_mouth_takes_what_lies_outside_of_its_circles() -> None:
     assert floor[1] - floor[0] == pytest.approx(straight + ring(RHO, 0.0025), rel=1e-4)
 
 
+def test_a_countersink_is_cut_at_any_angle() -> None:
+    """OpenCASCADE lost it at the last three, where the edge of its tool just touched the pin."""
+    pin = Pin("P", (Segment(0.012936, 0.0077), Segment(0.01463, 0.0077, connection="B")))
+    taken = [
+        pin.volume - CutPin.of(pin, [Hole(0.009086, 0.001001, angle, chamfer=0.00015015)]).volume
+        for angle in (0.3, 0.8, 1.68511056923227, 2.27)
+    ]
+    assert taken == pytest.approx([taken[0]] * 4, rel=1e-4)
+
+
 @each("name", ["tip", "flat", "keyway", "blind passage"])
 def test_surfaces_of_a_cut_are_one_boundary(name: str) -> None:
     """Only the ends of flats have a name of their own; everything has one, also in another unit."""
