@@ -54,6 +54,8 @@ def _reached(
     at = answer.maxima(loads, max(0.0, largest - rise))
     ends = np.maximum(at[1:], at[:-1])
     near = np.flatnonzero(ends + rise > largest)
+    if not len(near):  # of loads on their chords, such as those that stay as they are
+        return near, np.zeros(0)
     return near, ends[near] + CHORD_FACTOR * answer.maxima(off.at(near))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,7 +12,7 @@ from typing import TypeVar
 from fea.core.peak import Reason
 from fea.core.zone import Zone
 from fea.cut.inside import crosses_end, is_inside
-from geometry import Cut, CutPin, Pin, PinLike
+from geometry import Cut, CutPin, Hole, Pin, PinLike
 from geometry.mesh.cut_piece import Piece, clipped
 
 # All are parts of the diameter. The reach was found on shafts, where ends at that distance change
@@ -208,6 +209,8 @@ def _about(pin: Pin, cuts: list[Cut]) -> tuple[float, tuple[str, ...]]:
     """
     angles = [cut.angle for cut in cuts]
     angles += [0.5 * (a.angle + b.angle) for a, b in combinations(cuts, 2)]
+    # A hole beside the axis is its own image across its direction.
+    angles += [cut.angle + 0.5 * math.pi for cut in cuts if isinstance(cut, Hole) and cut.offset]
     best: tuple[float, tuple[str, ...]] = (angles[0], ())
     for angle in angles:
         turned = [cut.moved(0.0, angle) for cut in cuts]

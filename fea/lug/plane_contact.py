@@ -81,7 +81,7 @@ class PlaneContact:
             state = self.problem.solve(-force[None], start=start)
             start = state.active if state.pressure.any() else None
             out.append(state.pressure[0])
-        return np.array(out)
+        return np.array(out).reshape(len(forces), self.sectors)
 
 
 def unit_waves(sectors: int, highest: int) -> Floats:

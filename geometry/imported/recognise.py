@@ -63,15 +63,18 @@ class RecognisedProfile:
     x: tuple[float, float, float]
     surfaces: dict[str, tuple[float, float]]
 
+    @property
+    def upright(self) -> bool:
+        """Whether its axis is along the file's z-axis."""
+        return self.along == (0.0, 0.0, 1.0)
+
     def pin(self, name: str) -> Pin:
         """Its profile, without cuts. Raises: GeometryError."""
         return pin_of_polyline(name, self.outside, self.bore)
 
 
-def recognised_profile(file: BodyFile, upright: bool = True) -> RecognisedProfile:
-    """The profile and cuts of the body in a file.
-
-    upright: whether its axis must be the file's z-axis.
+def recognised_profile(file: BodyFile) -> RecognisedProfile:
+    """The profile and cuts of the body in a file, about whatever axis it has.
 
     Raises: NotTurnedError; GeometryError, MeshError as cad_mesh.
     """
@@ -84,7 +87,7 @@ def recognised_profile(file: BodyFile, upright: bool = True) -> RecognisedProfil
         x0, y0, z0, x1, y1, z1 = gmsh.model.getBoundingBox(-1, -1)
         centre = np.array([x0 + x1, y0 + y1, z0 + z1]) / 2.0
         size = float(math.dist((x0, y0, z0), (x1, y1, z1)))
-        axis = _axis(file, faces, centre, size, upright)
+        axis = _axis(file, faces, centre, size)
         inside = _reaches_axis(gmsh, faces, axis)
         volume = solid_volume(gmsh, solids[0]) * file.unit**3
     profile = _recognised(file, faces, axis, inside, size)
@@ -97,9 +100,7 @@ def _not_turned(file: BodyFile, why: str) -> NotTurnedError:
     return NotTurnedError(file.name, file.path.name, why)
 
 
-def _axis(
-    file: BodyFile, faces: Sequence[SampledFace], centre: Floats, size: float, upright: bool
-) -> Axis:
+def _axis(file: BodyFile, faces: Sequence[SampledFace], centre: Floats, size: float) -> Axis:
     """The axis about which most of the surface is of revolution."""
     z_axis = Axis(np.zeros(3), np.array([0.0, 0.0, 1.0]))
     candidates = [z_axis, *(a for face in faces if (a := face.axis(centre, size)) is not None)]
@@ -114,10 +115,6 @@ def _axis(
     best = int(np.argmax(np.array(areas) * preference))
     if not areas[best]:
         raise _not_turned(file, "none of its faces is of revolution")
-    if best and upright:
-        raise _not_turned(
-            file, "its axis is not the file's z-axis; `pinstress import` writes it as a profile"
-        )
     axis = candidates[best]
     along = axis.along * math.copysign(1.0, axis.along[int(np.argmax(np.abs(axis.along)))])
     along = np.where(np.abs(along) < FACE_TOLERANCE, 0.0, along)

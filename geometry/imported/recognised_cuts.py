@@ -2,17 +2,27 @@
 
 Cylinders across the axis are holes, or ends of slots where planes continue beside them; cylinders
 along it are passages. Cones, tori and planes belong to the cylinder about whose axis they are of
-revolution. All other planes are flats.
+revolution. All other planes are flats. Of the faces that remain, some round the mouths of holes,
+and cylinders are holes that are oblique or beside the axis.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
+from geometry.imported.drilled_faces import (
+    DrilledFaces,
+    cylinder,
+    holes_aslant,
+    join,
+    near,
+    rounds_mouth,
+)
 from geometry.imported.sampled_face import FACE_TOLERANCE, Axis, SampledFace
 from geometry.shape.drill import FLAT_TIP_ANGLE, Bottom
 from geometry.shape.features import Cut, outer_radius, radii
@@ -20,31 +30,8 @@ from geometry.shape.hole import Hole
 from geometry.shape.milled import Flat, Slot
 from geometry.shape.passage import Passage
 from geometry.shape.pin import Pin
-from pinbase.arrays import Floats
 
 Z_AXIS = np.array([0.0, 0.0, 1.0])
-
-
-@dataclass
-class _Drilled:
-    """A cylinder that a drill left, and the other faces of its hole.
-
-    axis: of the cylinder, from its point nearest to the pin's axis.
-    low, high: its ends along the axis, from that point.
-    faces: those of revolution about its axis.
-    """
-
-    axis: Axis
-    radius: float
-    low: float
-    high: float
-    faces: list[SampledFace] = field(default_factory=list)
-
-    def local(self, x: Floats) -> tuple[Floats, Floats]:
-        """Distance from the axis and position along it, (P,) each, of points x (P, 3)."""
-        arm = x - self.axis.point
-        t = arm @ self.axis.along
-        return np.linalg.norm(arm - t[:, None] * self.axis.along, axis=1), t
 
 
 @dataclass(frozen=True)
@@ -74,23 +61,22 @@ class CutFaces:
                 used.add(face.tag)
         flats, rounded = self._flats([f for f in planes if f.tag not in used], bent)
         used |= rounded
-        if left := [f for f in bent if f.tag not in used]:
-            raise ValueError(left[0].name)
         holes = [self._hole(pin, c) for c in across]
+        left = [f for f in bent if f.tag not in used and not rounds_mouth(pin, f, holes)]
         passages = [self._passage(pin, c) for c in along]
-        return _once([*holes, *flats, *slots, *passages])
+        return _once([*holes, *holes_aslant(left, self.size), *flats, *slots, *passages])
 
     @property
     def near(self) -> float:
         """Distance within which two points are one."""
-        return 10.0 * FACE_TOLERANCE * self.size
+        return near(self.size)
 
     def _cylinders(
         self, faces: Sequence[SampledFace]
-    ) -> tuple[list[_Drilled], list[_Drilled], list[SampledFace]]:
+    ) -> tuple[list[DrilledFaces], list[DrilledFaces], list[SampledFace]]:
         """Cylinders across the pin's axis and through it, those along it, and all other faces."""
-        across: list[_Drilled] = []
-        along: list[_Drilled] = []
+        across: list[DrilledFaces] = []
+        along: list[DrilledFaces] = []
         bent = []
         for face in faces:
             axis = face.axis(np.zeros(3), self.size)
@@ -98,16 +84,11 @@ class CutFaces:
             if place is None:
                 bent.append(face)
                 continue
-            line, group = place, across if abs(place.along[2]) < 0.5 else along
-            drilled = _Drilled(line, 0.0, 0.0, 0.0, [face])
-            s, _ = drilled.local(face.points)
-            if np.ptp(s) > FACE_TOLERANCE * self.size:
+            drilled = cylinder(face, place, self.size)
+            if drilled is None:
                 bent.append(face)
                 continue
-            t = drilled.local(face.rim)[1]
-            drilled.radius = float(s.mean())
-            drilled.low, drilled.high = float(t.min()), float(t.max())
-            self._join(group, drilled)
+            join(across if abs(place.along[2]) < 0.5 else along, drilled, self.near)
         return across, along, bent
 
     def _placed(self, axis: Axis) -> Axis | None:
@@ -129,18 +110,7 @@ class CutFaces:
         )
         return Axis(axis.point * [0.0, 0.0, 1.0], along)
 
-    def _join(self, group: list[_Drilled], drilled: _Drilled) -> None:
-        """Add a cylinder to a group, or to another part of the same cylinder in it."""
-        for other in group:
-            same = np.abs(other.axis.point - drilled.axis.point).max() < self.near
-            same &= np.abs(other.axis.along - drilled.axis.along).max() < FACE_TOLERANCE
-            if same and abs(other.radius - drilled.radius) < self.near:
-                other.low, other.high = min(other.low, drilled.low), max(other.high, drilled.high)
-                other.faces += drilled.faces
-                return
-        group.append(drilled)
-
-    def _owner(self, face: SampledFace, drilled: Sequence[_Drilled]) -> _Drilled | None:
+    def _owner(self, face: SampledFace, drilled: Sequence[DrilledFaces]) -> DrilledFaces | None:
         """The cylinder near a face about whose axis the face is of revolution, or None."""
         for c in drilled:
             s, _ = c.local(face.rim)
@@ -158,24 +128,36 @@ class CutFaces:
         self,
         pin: Pin,
         planes: Sequence[SampledFace],
-        across: Sequence[_Drilled],
-        along: Sequence[_Drilled],
+        across: Sequence[DrilledFaces],
+        along: Sequence[DrilledFaces],
     ) -> tuple[list[Slot], set[int]]:
         """Slots, between parallel planes on both sides of the axis, and the tags of their faces."""
-        out, used = [], set()
-        for i, one in enumerate(planes):
-            for other in planes[i + 1 :]:
-                m = one.normals[0]
-                h = float(one.points[0] @ m)
-                if abs(abs(m @ other.normals[0]) - 1.0) > FACE_TOLERANCE or abs(h) < self.near:
-                    continue
-                if abs(float(other.points[0] @ m) + h) > self.near:
-                    continue
-                slot = self._slot(pin, (one, other), abs(h), planes, across)
+        out, used = [], set[int]()
+        # The narrowest first: floors of slots opposite each other face each other, too.
+        for h, one, other in sorted(self._facing(planes), key=lambda pair: pair[0]):
+            if not {one.tag, other.tag} & used:
+                slot = self._slot(pin, (one, other), h, planes, across)
                 if slot is not None:
                     out.append(slot[0])
                     used |= slot[1]
         return out, used
+
+    def _facing(
+        self, planes: Sequence[SampledFace]
+    ) -> Iterator[tuple[float, SampledFace, SampledFace]]:
+        """Pairs of planes at one distance on both sides of the axis, after that distance, that are
+        not on opposite sides along themselves, as walls of two slots are.
+        """
+        for one, other in combinations(planes, 2):
+            m = one.normals[0]
+            h = float(one.points[0] @ m)
+            if abs(abs(m @ other.normals[0]) - 1.0) > FACE_TOLERANCE or abs(h) < self.near:
+                continue
+            if abs(float(other.points[0] @ m) + h) > self.near:
+                continue
+            sides = [float((f.rim @ np.cross(m, Z_AXIS)).mean()) for f in (one, other)]
+            if min(sides) > -self.near or max(sides) < self.near:
+                yield abs(h), one, other
 
     def _slot(
         self,
@@ -183,7 +165,7 @@ class CutFaces:
         walls: tuple[SampledFace, SampledFace],
         h: float,
         planes: Sequence[SampledFace],
-        across: Sequence[_Drilled],
+        across: Sequence[DrilledFaces],
     ) -> tuple[Slot, set[int]] | None:
         """The slot between two walls, with the tags of its faces; None without ends or a floor.
 
@@ -216,6 +198,7 @@ class CutFaces:
         for c in ends:
             low = abs(c.axis.point[2] - z0) < self.near
             z0, z1 = (z0 - h, z1) if low else (z0, z1 + h)
+        floors = sorted(floors, key=lambda f: -float((f.points @ k).mean()))[:1]
         tags = {f.tag for f in (*walls, *floors)} | {f.tag for c in ends for f in c.faces}
         angle, depth, radius = math.atan2(k[1], k[0]), None, 0.0
         if floors:
@@ -267,12 +250,12 @@ class CutFaces:
             out.append(Flat(z0, z1, abs(distance), angle, radius))
         return out, used
 
-    def _bottom_faces(self, c: _Drilled) -> list[SampledFace]:
+    def _bottom_faces(self, c: DrilledFaces) -> list[SampledFace]:
         """The faces at the bottom of a hole."""
         faces = [(face, c.local(face.points)[0]) for face in c.faces]
         return [f for f, s in faces if np.ptp(s) >= self.near and s.max() <= c.radius + self.near]
 
-    def _bottom(self, c: _Drilled, end: float, outward: float) -> tuple[float, Bottom]:
+    def _bottom(self, c: DrilledFaces, end: float, outward: float) -> tuple[float, Bottom]:
         """The position at which the full diameter ends, without rounding, and the bottom.
 
         end: end of the wall along the axis. outward: direction out of the hole, 1 or -1.
@@ -297,7 +280,7 @@ class CutFaces:
         radius = abs(end - top) / math.tan(tip / 4.0) if curved else 0.0
         return top, Bottom(tip, radius)
 
-    def _hole(self, pin: Pin, c: _Drilled) -> Hole:
+    def _hole(self, pin: Pin, c: DrilledFaces) -> Hole:
         """The hole of a cylinder across the pin."""
         z = float(c.axis.point[2])
         outer, angle = outer_radius(pin, z), math.atan2(c.axis.along[1], c.axis.along[0])
@@ -318,7 +301,7 @@ class CutFaces:
         angle = math.atan2(math.sin(angle), math.cos(angle))
         return Hole(z, 2.0 * c.radius, angle, outer - outward * floor, bottom, chamfer)
 
-    def _passage(self, pin: Pin, c: _Drilled) -> Passage:
+    def _passage(self, pin: Pin, c: DrilledFaces) -> Passage:
         """The passage of a cylinder along the pin."""
         x, y, _ = c.axis.point
         place = 2.0 * c.radius, math.hypot(x, y), math.atan2(y, x)

@@ -39,6 +39,7 @@ class CutPin:
         marks, tolerance = marks_of(self.profile), self.profile.tolerance
         flats = tuple(flat.snapped(marks, tolerance) for flat in self.flats)
         slots = tuple(slot.snapped(marks, tolerance) for slot in self.slots)
+        object.__setattr__(self, "holes", tuple(cut.within(self.profile) for cut in self.holes))
         for name, cut in _named((*self.holes, *flats, *slots, *self.passages)).items():
             what, i = name.split()
             cut.check(self.profile, f"{what} {i}", (what, int(i)))

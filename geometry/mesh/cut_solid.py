@@ -63,8 +63,10 @@ def _tool(gmsh: Any, pin: Pin, cut: Cut, reach: float) -> list[Entity]:
     """The volume that a cut removes, beyond the pin's surface by up to `reach`."""
     occ = gmsh.model.occ
     if isinstance(cut, Hole) and cut.plain:
-        x, y = reach * math.cos(cut.angle), reach * math.sin(cut.angle)
-        return [(3, occ.addCylinder(-x, -y, cut.z, 2 * x, 2 * y, 0.0, cut.diameter / 2))]
+        at = cut.placed(pin, reach)
+        x = [reach * d for d in at.direction]
+        low = [o - d for o, d in zip(at.origin, x, strict=True)]
+        return [(3, occ.addCylinder(*low, *(2.0 * d for d in x), cut.diameter / 2))]
     if isinstance(cut, Hole | Passage):
         return [_turned(gmsh, cut.placed(pin, reach))]
     assert isinstance(cut, Flat | Slot)

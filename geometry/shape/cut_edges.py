@@ -84,11 +84,16 @@ def _inside(points: Floats) -> list[tuple[Floats, bool]]:
     return [(x, True)] if np.ptp(x, axis=0).max() > 1e-6 * np.abs(points).max() else []
 
 
-def _mouth(angle: float, a: float, z: float, r: float, side: float) -> Floats:
-    """The mouth of a hole of radius a on a cylinder of radius r, on either side, (P, 3)."""
-    aside, along = a * np.cos(CIRCLE_ANGLES), a * np.sin(CIRCLE_ANGLES)
+def _mouth(hole: Hole, a: float, r: float, side: float) -> Floats:
+    """The mouth of a hole, of radius a, on a cylinder of radius r, on either side, (P, 3)."""
+    aside = hole.offset + a * np.cos(CIRCLE_ANGLES)
     u = side * np.sqrt(np.maximum(r**2 - aside**2, 0.0))
-    return _placed(angle, u, aside, z + along)
+    return _placed(hole.angle, u, aside, hole.z + _along(hole, u, a * np.sin(CIRCLE_ANGLES)))
+
+
+def _along(hole: Hole, u: Floats, up: Floats) -> Floats:
+    """The z from a hole's own at distances u from the pin's axis, `up` across the hole's axis."""
+    return np.asarray(u * math.tan(hole.tilt) + up / math.cos(hole.tilt))
 
 
 def _hole(hole: Hole, pin: Pin) -> list[tuple[Floats, bool]]:
@@ -100,12 +105,13 @@ def _hole(hole: Hole, pin: Pin) -> list[tuple[Floats, bool]]:
     low = floor if hole.depth is None or floor > bore else bore
     for side in sides:
         for radius in dict.fromkeys((a, a + wide)):
-            out += _seen(_mouth(hole.angle, min(radius, r), hole.z, r, side))
+            out += _seen(_mouth(hole, min(radius, r), r, side))
         for direction in (-1.0, 1.0):
             walls = [(a, low, r - wide), (a + wide, r - wide, r)] if wide else [(a, low, r)]
             line = [(w, u) for w, first, last in walls for u in (first, last)]
             w, u = np.array(line).T
-            out += _inside(_placed(hole.angle, side * u, np.zeros(len(u)), hole.z + direction * w))
+            z = hole.z + _along(hole, side * u, direction * w)
+            out += _inside(_placed(hole.angle, side * u, np.full(len(u), hole.offset), z))
     if hole.depth is not None and floor <= -bore and bore:  # through the bore into the other wall
         ends = np.array([-bore, floor])
         for direction in (-1.0, 1.0):

@@ -153,7 +153,9 @@ def wall_edges(
     if chamfer is None:
         return [("wall", a, top)]
     wide, mouth = chamfer
-    return [("wall", a, mouth - wide), ("chamfer", a + wide, mouth), (None, a + wide, top)]
+    # The cone goes on outside of the pin, as an edge that just touched the pin's surface was lost.
+    cone = [("wall", a, mouth - wide), ("chamfer", a + 2.0 * wide, mouth + wide)]
+    return [*cone, (None, a + 2.0 * wide, top)]
 
 
 def closed_outline(

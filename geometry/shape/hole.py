@@ -1,4 +1,4 @@
-"""Holes across the pin, through it or blind."""
+"""Holes across the pin, through it or blind; through it also beside its axis or oblique."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from geometry.shape.drill import (
     turned_surfaces,
     wall_edges,
 )
-from geometry.shape.features import Off, SmoothPart, outer_radius, positive, radii, require
+from geometry.shape.features import Cut, Off, SmoothPart, outer_radius, positive, radii, require
 from geometry.shape.pin import Pin
 from geometry.shape.profile import Edge
 from pinbase.arrays import Floats, Mask
@@ -27,14 +27,15 @@ from pinbase.errors import Place
 
 MIN_SAME_SIDE_COSINE = 0.9  # of the angle between holes that are drilled from the same side
 MIN_WALL_RATIO = 0.02  # of a diameter: thinner walls cannot be made, and take excessive meshes
+MAX_TILT = math.pi / 3.0 + 1e-12  # rad; chosen by judgement
 MAX_MOUTH_REACH = 1.5  # largest extent of a rounded mouth over its radius
 
 
 @dataclass(frozen=True)
 class Hole(Drilled):
-    """A round hole across the pin, whose axis crosses that of the pin.
+    """A round hole across the pin, whose axis crosses that of the pin, or passes it.
 
-    z: of its axis, m.
+    z: of its axis where that is nearest to the pin's, m.
     diameter: m.
     angle: direction of its axis, rad from x; a blind hole is drilled from there.
     depth: from the surface to the end of the full diameter, m; None: through the pin.
@@ -42,6 +43,9 @@ class Hole(Drilled):
     chamfer: width of a 90 degree countersink at its mouths, measured at the generator of the pin
     that it meets, m.
     mouth_radius: radius to which the edges of its mouths are rounded, m.
+    offset: of its axis from the pin's, towards `angle` plus a quarter turn, m.
+    tilt: angle by which its axis leans towards z, rad.
+    outer: radius of the pin there, m; of an oblique hole, which CutPin fills in.
     """
 
     z: float
@@ -51,19 +55,49 @@ class Hole(Drilled):
     bottom: Bottom = SQUARE_BOTTOM
     chamfer: float = 0.0
     mouth_radius: float = 0.0
+    offset: float = 0.0
+    tilt: float = 0.0
+    outer: float = 0.0
 
     what: ClassVar[str] = "hole"
 
     @property
     def extent(self) -> tuple[float, float]:
         """Least and greatest z, with chamfer or rounded mouth, m."""
-        half = self.diameter / 2.0 + self.chamfer + self.mouth_radius
+        half = self._mouth / math.cos(self.tilt) + self.outer * abs(math.tan(self.tilt))
         return self.z - half, self.z + half
 
     @property
+    def _mouth(self) -> float:
+        """Radius of its mouths, m."""
+        return self.diameter / 2.0 + self.chamfer + self.mouth_radius
+
+    @property
     def half_turn(self) -> bool:
-        """Whether half a turn maps it to itself: if it goes through the pin."""
-        return self.depth is None
+        """Whether half a turn maps it to itself: if it goes through the pin and its axis."""
+        return self.depth is None and not self.aslant
+
+    @property
+    def aslant(self) -> bool:
+        """Whether its axis does not cross the pin's at a right angle."""
+        return bool(self.offset or self.tilt)
+
+    def mirrored(self, plane: str) -> Hole:
+        """Its mirror image in the plane through the origin across x, y or z."""
+        if plane == "z":
+            return replace(super().mirrored(plane), tilt=-self.tilt)
+        return replace(super().mirrored(plane), offset=-self.offset)
+
+    def like(self, other: Cut, tolerance: float) -> bool:
+        """Whether it equals another cut up to a tolerance (m), seen from either end."""
+        if isinstance(other, Hole) and other.aslant and not super().like(other, tolerance):
+            other = replace(other.turned(other.angle + math.pi), offset=-other.offset,
+                            tilt=-other.tilt)  # fmt: skip
+        return super().like(other, tolerance)
+
+    def within(self, pin: Pin) -> Hole:
+        """The same hole, which knows the radius of its pin if it is oblique."""
+        return replace(self, outer=outer_radius(pin, self.z)) if self.tilt else self
 
     @property
     def undivided(self) -> bool:
@@ -77,7 +111,7 @@ class Hole(Drilled):
 
     def lengths(self) -> tuple[str, ...]:
         """Names of the fields that are lengths."""
-        return "z", "diameter", "depth", "chamfer", "mouth_radius"
+        return "z", "diameter", "depth", "chamfer", "mouth_radius", "offset", "outer"
 
     def along(self, change: Callable[[float, float], tuple[float, float]]) -> Hole:
         """The same hole midway between changed ends in z."""
@@ -97,14 +131,15 @@ class Hole(Drilled):
             names = [None, *(n for n, _, _ in reversed(upper[1:]))]
             edges = [Edge(n, p, q) for n, p, q in zip(names, lower, lower[1:], strict=False)]
             outline = closed_outline(edges, upper)
-        c, s = math.cos(self.angle), math.sin(self.angle)
-        return Placed(outline, (0.0, 0.0, self.z), (c, s, 0.0))
+        origin, direction = (tuple(v.tolist()) for v in _line(self))
+        return Placed(outline, origin, direction)
 
     def takes(self, x: Floats, radius: float) -> Mask:
         """Mask (P,) of the points x (P, 3) in its mouths, with their chamfers or roundings."""
         c, s = math.cos(self.angle), math.sin(self.angle)
         u, aside = c * x[:, 0] + s * x[:, 1], c * x[:, 1] - s * x[:, 0]
-        distance = np.hypot(aside, x[:, 2] - self.z)
+        up = math.cos(self.tilt) * (x[:, 2] - self.z) - math.sin(self.tilt) * u
+        distance = np.hypot(aside - self.offset, up)
         width = np.maximum(self.chamfer - (radius - np.abs(u)), self.mouth_radius)
         on_side = (u > 0.0) | (self.depth is None)
         return np.asarray((distance < self.diameter / 2.0 + width) & on_side)
@@ -151,13 +186,15 @@ class Hole(Drilled):
             at,
         )
         require(
-            high - self.z < least - pin.tolerance,
-            f"{what}: its mouth is {(high - self.z) / least:.4g} times as wide as the pin; reduce "
+            self._mouth < least - pin.tolerance,
+            f"{what}: its mouth is {self._mouth / least:.4g} times as wide as the pin; reduce "
             "its chamfer or mouth_radius",
             "hole-too-large",
             at,
         )
         self._check_mouth(pin, least, what, at)
+        if self.aslant:
+            self._check_aslant(pin, what, at)
         if self.depth is None:
             return
         outer = outer_radius(pin, self.z)
@@ -199,13 +236,48 @@ class Hole(Drilled):
         both_through = self.depth is None and other.depth is None
         if not both_through and math.cos(self.angle - other.angle) < MIN_SAME_SIDE_COSINE:
             return
-        wall = abs(self.z - other.z) - 0.5 * (self.diameter + other.diameter)
+        wall = _apart(self, other) - 0.5 * (self.diameter + other.diameter)
         least = min(self.diameter, other.diameter)
         require(
             abs(wall) >= MIN_WALL_RATIO * least,
             f"pin {pin.name}: {names[0]} and {names[1]} almost touch: the wall between them must "
             f"be at least {MIN_WALL_RATIO:g} times the smaller diameter; move them apart, or well "
             "into each other",
+            "thin-wall",
+            at,
+        )
+
+    def _check_aslant(self, pin: Pin, what: str, at: Place) -> None:
+        """Raises: GeometryError for an axis that such a hole, or this pin, cannot have."""
+        require(
+            self.plain,
+            f"{what}: offset and tilt are for holes through the pin without chamfer, mouth_radius "
+            "and depth",
+            "key-not-applicable",
+            at,
+        )
+        require(
+            abs(self.tilt) <= MAX_TILT,
+            f"{what}: its tilt is {math.degrees(self.tilt):.4g} deg; at most 60 deg is possible",
+            "too-oblique",
+            at,
+        )
+        low, high = self.extent
+        inner, outer = pin.radii(self.z)
+        require(
+            math.isclose(*radii(pin, low, high), rel_tol=1e-12),
+            f"{what}: offset and tilt need a cylindrical part of the pin, here from z = {low:.4g} "
+            f"to {high:.4g} m",
+            "mouth-not-on-cylinder",
+            at,
+        )
+        # Where a side of the hole touches the surface or the bore, its walls end in an edge.
+        sides = [abs(self.offset + side * self.diameter / 2.0) for side in (1.0, -1.0)]
+        walls = [outer - max(sides), *(abs(s - inner) for s in sides if inner)]
+        require(
+            min(walls) >= MIN_WALL_RATIO * self.diameter,
+            f"{what}: its side is less than {MIN_WALL_RATIO:g} times its diameter from the surface "
+            "of the pin or of the bore; change its offset",
             "thin-wall",
             at,
         )
@@ -241,3 +313,22 @@ class Hole(Drilled):
                 "radius-too-large",
                 at,
             )
+
+
+def _apart(one: Hole, other: Hole) -> float:
+    """The distance of the axes of two holes, m."""
+    if not (one.aslant or other.aslant):
+        return abs(one.z - other.z)
+    (a, d), (b, e) = (_line(hole) for hole in (one, other))
+    across = np.cross(d, e)
+    size = float(np.linalg.norm(across))
+    if size < 1e-9:
+        return float(np.linalg.norm(np.cross(b - a, d)))
+    return float(abs((b - a) @ across) / size)
+
+
+def _line(hole: Hole) -> tuple[Floats, Floats]:
+    """A point (3,) on the axis of a hole, m, and its direction (3,)."""
+    c, s, lean = math.cos(hole.angle), math.sin(hole.angle), math.cos(hole.tilt)
+    point = np.array([-hole.offset * s, hole.offset * c, hole.z])
+    return point, np.array([lean * c, lean * s, math.sin(hole.tilt)])

@@ -40,7 +40,7 @@ class CutShape:
     """The shape of a cut for drawing; its name is, for instance, "hole 1".
 
     z: its ends; of a hole its middle, twice. size: diameter or width; of a flat its distance from
-    the axis. offset: of a passage from the axis. depth: None through the pin and for flats.
+    the axis. offset: of a passage or hole from the axis. depth: None through the pin and for flats.
     angle: from x, degrees. lines: points (z, x) of edges in the view from y, and whether hidden.
     notches: (z, x) of two opposite corners of each piece cut from the silhouette.
     """

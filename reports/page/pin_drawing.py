@@ -367,7 +367,8 @@ def cut_words(cut: CutShape) -> str:
     where = f" at {short(cut.angle % 360.0)}°"
     match kind:
         case "hole":
-            dimensions = f"⌀{size}, {deep}, z = {short(low)},"
+            aside = f"{short(abs(cut.offset))} beside the axis, " if cut.offset else ""
+            dimensions = f"⌀{size}, {deep}, {aside}z = {short(low)},"
         case "flat":
             dimensions = f"{size} from the axis, {between},"
         case "slot":

@@ -44,6 +44,13 @@ def over_disc(floor: float) -> float:
     return integral(lambda y: 2.0 * np.sqrt(a**2 - y**2) * (height(y) - floor), -a, a)
 
 
+def beside(offset: float) -> float:
+    """Of a hole through the bar beside its axis; an oblique one is longer by its cosine."""
+    return integral(
+        lambda y: 4.0 * np.sqrt(a**2 - (y - offset) ** 2) * height(y), offset - a, offset + a
+    )
+
+
 def ring(rho: float, radius: float) -> float:
     """What rounds the right-angled corner of a cylinder, by Pappus: the area between a corner and
     its quarter circle, turned about the axis.
@@ -93,6 +100,9 @@ CUTS: dict[str, tuple[Cut, float]] = {
         Hole(0.03, 2 * a, 0.3, chamfer=0.0006),
         2.0 * (over_disc(0.0) + countersink(0.0006)),
     ),
+    "beside the axis": (Hole(0.03, 2 * a, 0.3, offset=-0.004), beside(0.004)),
+    "oblique": (Hole(0.03, 2 * a, 0.3, tilt=0.5), 2.0 * over_disc(0.0) / math.cos(0.5)),
+    "both": (Hole(0.03, 2 * a, 0.3, offset=0.004, tilt=-0.5), beside(0.004) / math.cos(0.5)),
     "flat": (Flat(0.02, 0.04, 0.007, 0.3, RHO), rounded_flat(0.007, 0.02)),
     "keyway": (Slot(0.02, 0.04, 0.005, 0.003, 0.3), slotted(0.005, 0.02, R - 0.003)),
     "slot through": (Slot(0.02, 0.04, 0.005, None, 0.3), slotted(0.005, 0.02, None)),
@@ -122,7 +132,9 @@ CUTS: dict[str, tuple[Cut, float]] = {
 @each("name", CUTS)
 def test_the_volume_of_a_cut(name: str) -> None:
     cut, expected = CUTS[name]
-    assert BAR.volume - made(cut).volume == pytest.approx(expected, rel=2e-5)
+    # OpenCASCADE's volume of a body with an oblique hole, or one beside the axis, is 2e-6 off.
+    aslant = 3e-6 * BAR.volume if isinstance(cut, Hole) and cut.aslant else 0.0
+    assert BAR.volume - made(cut).volume == pytest.approx(expected, rel=2e-5, abs=aslant)
 
 
 def test_a_rounded_mouth_takes_what_lies_outside_of_its_circles() -> None:
@@ -138,6 +150,16 @@ def test_a_rounded_mouth_takes_what_lies_outside_of_its_circles() -> None:
     floor = [made(Slot(0.02, 0.04, 0.005, 0.003, 0.0, r)).volume for r in (0.0, RHO)]
     straight = 2.0 * 0.015 * RHO**2 * (1.0 - math.pi / 4.0)
     assert floor[1] - floor[0] == pytest.approx(straight + ring(RHO, 0.0025), rel=1e-4)
+
+
+def test_a_countersink_is_cut_at_any_angle() -> None:
+    """OpenCASCADE lost it at the last three, where the edge of its tool just touched the pin."""
+    pin = Pin("P", (Segment(0.012936, 0.0077), Segment(0.01463, 0.0077, connection="B")))
+    taken = [
+        pin.volume - CutPin.of(pin, [Hole(0.009086, 0.001001, angle, chamfer=0.00015015)]).volume
+        for angle in (0.3, 0.8, 1.68511056923227, 2.27)
+    ]
+    assert taken == pytest.approx([taken[0]] * 4, rel=1e-4)
 
 
 @each("name", ["tip", "flat", "keyway", "blind passage"])
@@ -180,6 +202,10 @@ BORED = Pin("bored", (Segment(L, 2 * R, 0.008, connection="B"),))
         (Hole(0.03, 2 * a, 0.0, 0.0001), "cuts-nothing"),
         (Hole(0.03, 2 * a, 0.0, 0.0199), "too-deep"),
         (Hole(0.03, 2 * a, 0.0, 0.0190, Bottom(TIP)), "too-deep"),
+        (Hole(0.03, 2 * a, 0.0, DEPTH, offset=0.003), "key-not-applicable"),
+        (Hole(0.03, 2 * a, 0.0, tilt=1.1), "too-oblique"),
+        (Hole(0.03, 2 * a, 0.0, offset=R - a), "thin-wall"),
+        (Hole(0.008, 2 * a, 0.0, tilt=0.7), "beyond-end"),
         (Hole(0.03, 2 * a, 0.0, DEPTH, Bottom(0.1)), "tip-angle"),
         (Hole(0.03, 2 * a, 0.0, DEPTH, Bottom(radius=1.01 * a)), "radius-too-large"),
         (Hole(0.03, 2 * a, chamfer=0.0001), "chamfer-too-small"),

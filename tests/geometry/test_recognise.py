@@ -101,9 +101,9 @@ def test_a_turned_body_of_spline_surfaces_is_its_profile(name: str, tmp_path: Pa
 def test_its_axis_may_lie_anyhow(name: str, tmp_path: Path) -> None:
     """Either end may be the start, as nothing in the file says which."""
     file = step(PROFILES[name], tmp_path / "pin.step", _turn)
-    with raises(NotTurnedError, "not-turned", "not the file's z-axis"):
-        recognised_profile(file)
-    found = recognised_profile(file, upright=False).pin("P")
+    profile = recognised_profile(file)
+    assert not profile.upright
+    found = profile.pin("P")
     assert found.volume == pytest.approx(PROFILES[name].volume * MM**3, rel=1e-8)
     lengths = sorted(s.length / MM for s in found.segments)
     assert lengths == pytest.approx(sorted(s.length for s in PROFILES[name].segments))
@@ -150,6 +150,10 @@ CUTS: dict[str, Cut] = {
     "tip": Hole(40.0, 4.0, 3.0, 8.0, Bottom(math.radians(118.0))),
     "rounded bottom": Hole(40.0, 4.0, -2.0, 8.0, Bottom(radius=0.5)),
     "rounded tip": Hole(40.0, 4.0, -2.0, 12.0, Bottom(math.radians(118.0), 0.5)),
+    "beside": Hole(40.0, 4.0, 0.5, offset=-3.0),
+    "oblique": Hole(40.0, 4.0, 0.5, tilt=-0.4),
+    "oblique beside": Hole(40.0, 4.0, -0.5, offset=2.0, tilt=0.3),
+    "rounded mouths": Hole(40.0, 4.0, 0.3, mouth_radius=0.6),
     "countersunk": Hole(40.0, 4.0, 0.3, chamfer=0.6),
     "keyway": Slot(30.0, 45.0, 5.0, 3.0, 0.3),
     "rounded keyway": Slot(30.0, 45.0, 5.0, 3.0, 0.3, 0.6),
@@ -180,6 +184,17 @@ def test_a_cut_is_recognised(name: str, tmp_path: Path) -> None:
     assert plain.turned(cut.angle).like(cut, 1e-5), plain
 
 
+def test_a_splined_end_is_its_slots(tmp_path: Path) -> None:
+    """Walls and floors of opposite slots face each other, and are not those of one."""
+    slots = [Slot(45.0, 60.0, 3.0, 2.0, k * math.pi / 4.0, 0.0, False) for k in range(8)]
+    file = step(CutPin.of(PROFILES["sharp"], slots), tmp_path / "pin.step")
+    found = recognised_profile(file)
+    same(found, PROFILES["sharp"])
+    assert len(found.cuts) == 8
+    for made in found.cuts:
+        assert sum(made.scaled(1e3).like(slot, 1e-5) for slot in slots) == 1
+
+
 def test_cuts_of_several_kinds_of_a_body_that_lies_anyhow(tmp_path: Path) -> None:
     """A hole that comes out in a flat, one into a bore, a keyway opposite, all turned."""
     tube = Pin("P", (Segment(30.0, 20.0, bore=8.0), Segment(30.0, 20.0, bore=8.0)))
@@ -188,7 +203,7 @@ def test_cuts_of_several_kinds_of_a_body_that_lies_anyhow(tmp_path: Path) -> Non
         Slot(30.0, 45.0, 4.0, 3.0, 2.8, 0.4), Passage(0.0, 60.0, 2.0, 7.0, -1.5),
     )  # fmt: skip
     file = step(CutPin.of(tube, cuts), tmp_path / "pin.step", _turn)
-    found = recognised_profile(file, upright=False)
+    found = recognised_profile(file)
     assert sorted(cut.what for cut in found.cuts) == ["flat", "hole", "hole", "passage", "slot"]
 
 
@@ -222,7 +237,7 @@ def test_a_dome_may_have_its_poles_aside(tmp_path: Path) -> None:
         occ.fuse([(3, bar)], [(3, ball)])
         occ.synchronize()
         gmsh.write(str(tmp_path / "dome.brep"))
-    found = recognised_profile(BodyFile("P", tmp_path / "dome.brep", MM, ()), upright=False)
+    found = recognised_profile(BodyFile("P", tmp_path / "dome.brep", MM, ()))
     (segment,) = found.pin("P").segments
     assert (segment.length, segment.diameter) == pytest.approx((0.035, 0.01))
     assert segment.edge_radii == pytest.approx((0.0, 0.005))
@@ -243,17 +258,17 @@ def _box(gmsh: Any, solid: int) -> None:
     gmsh.model.occ.fuse([(3, solid)], [(3, box)])
 
 
-def _beside_axis(gmsh: Any, solid: int) -> None:
-    drill = gmsh.model.occ.addCylinder(-20, 3, 40, 40, 0, 0, 2)
-    gmsh.model.occ.cut([(3, solid)], [(3, drill)])
+def _drill(x: float, y: float, dz: float) -> Change:
+    """A blind hole from outside to z = 30 + dz, as deep as the axis is, beside the axis by y."""
+
+    def change(gmsh: Any, solid: int) -> None:
+        drill = gmsh.model.occ.addCylinder(-20, y, 30, x, 0, dz, 2)
+        gmsh.model.occ.cut([(3, solid)], [(3, drill)])
+
+    return change
 
 
-def _oblique(gmsh: Any, solid: int) -> None:
-    drill = gmsh.model.occ.addCylinder(-20, 0, 30, 40, 0, 20, 2)
-    gmsh.model.occ.cut([(3, solid)], [(3, drill)])
-
-
-@pytest.mark.parametrize("change", [_box, _beside_axis, _oblique])
+@pytest.mark.parametrize("change", [_box, _drill(20, 3, 0), _drill(20, 0, 10)])
 def test_other_bodies_are_not_turned(change: Change, tmp_path: Path) -> None:
     with raises(NotTurnedError, "not-turned", "pin.step"):
         recognised_profile(step(PROFILES["sharp"], tmp_path / "pin.step", change))

@@ -343,6 +343,6 @@ def _cut_sizes(cut: Cut) -> tuple[float, float, float | None]:
     if isinstance(cut, Slot):
         return cut.width, 0.0, cut.depth
     if isinstance(cut, Hole):
-        return cut.diameter, 0.0, cut.depth
+        return cut.diameter, cut.offset, cut.depth
     assert isinstance(cut, Passage)
     return cut.diameter, cut.offset, None if cut.mouth == "both" else cut.z1 - cut.z0

@@ -38,28 +38,34 @@ def read_body(file: BodyFile, clamps: Iterable[str] = ()) -> PinLike:
     """Return the body in a file.
 
     It is a profile, with cuts, if the body is one and its bands and clamps are on it; otherwise a
-    solid, with its bands measured.
+    solid about the file's z-axis, with its bands measured.
 
     clamps: names of surfaces.
 
-    Raises: GeometryError, MeshError as SolidBody; GeometryError if it is not a regular file, is too
-    large, or cannot be read within the limits.
+    Raises: GeometryError, MeshError as SolidBody; NotTurnedError if a band or a clamp is not on a
+    profile about another axis than the file's z-axis; GeometryError if it is not a regular file,
+    is too large, or cannot be read within the limits.
     """
     require_readable(file)
     if file.meshed or not file.path.is_file():
         return SolidBody(file, apart)
+    recognised = None
     try:
-        return _profiled(file, turned_apart(file), set(clamps))
+        recognised = turned_apart(file)
+        return _profiled(file, recognised, set(clamps))
     except NotTurnedError as error:
+        if recognised is not None and not recognised.upright:  # a solid is about the file's z-axis
+            why = f"{error.why}{_axes(recognised)}"
+            raise NotTurnedError(file.name, file.path.name, why) from None
         return SolidBody(file, apart, f"{file.path.name} is taken as a solid, since {error.why}")
 
 
-def turned_apart(file: BodyFile, upright: bool = True) -> RecognisedProfile:
+def turned_apart(file: BodyFile) -> RecognisedProfile:
     """Return `geometry.imported.recognise.recognised_profile`, computed in another process.
 
     Raises: as that and `apart`.
     """
-    profile: RecognisedProfile = apart(recognised_profile, file, upright)
+    profile: RecognisedProfile = apart(recognised_profile, file)
     return profile
 
 
@@ -103,17 +109,30 @@ def _profiled(file: BodyFile, recognised: RecognisedProfile, clamps: set[str]) -
         for clamp in clamps:
             pin.surface(clamp)
     except GeometryError as error:
-        raise NotTurnedError(file.name, file.path.name, str(error)) from None
+        why = str(error).removeprefix(f"pin {file.name}: ")
+        raise NotTurnedError(file.name, file.path.name, why) from None
     counted = (
         (len(profile.segments), "segment"),
         *((sum(c.what == kind for c in recognised.cuts), kind) for kind in CUT_KINDS),
     )
     parts = ", ".join(f"{n} {what}{'s' * (n > 1)}" for n, what in counted if n)
-    source = f"{file.path.name} is taken as a profile: {parts}"
-    if recognised.start:
-        source += f"; z counts from its start face, at z = {recognised.start:g} of the file"
+    source = f"{file.path.name} is taken as a profile: {parts}{_axes(recognised)}"
     profile = replace(profile, source=source)
     return replace(pin, profile=profile) if recognised.cuts else profile
+
+
+def _axes(recognised: RecognisedProfile) -> str:
+    """Return how its axes lie in the file, or nothing where they are the file's."""
+    axes, start = "", recognised.start
+    if not recognised.upright:
+        z, x = plain_vector(recognised.along), plain_vector(recognised.x)
+        axes = f"; z is along {z} of the file, and x along {x}"
+    return axes + f"; z counts from its start face, at z = {start:g} of the file" * bool(start)
+
+
+def plain_vector(v: tuple[float, float, float]) -> str:
+    """Return a vector as people read it."""
+    return f"({', '.join(f'{x:.6g}' for x in v)})"
 
 
 def apart(work: Work, file: BodyFile, *arguments: object) -> Any:

@@ -22,7 +22,7 @@ from geometry import (
 from geometry.imported.body_file import BodyFile
 from geometry.imported.recognise import NotTurnedError, RecognisedProfile
 from geometry.shape.drill import FLAT_TIP_ANGLE
-from pinstress.study.model.imported_pin import require_readable, turned_apart
+from pinstress.study.model.imported_pin import plain_vector, require_readable, turned_apart
 from pinstress.study.model.pins import METRES_PER_UNIT
 from pinstress.study.reading.errors import InputError
 from pinstress.study.schema.types import usable_name
@@ -55,7 +55,7 @@ def imported_text(path: Path, name: str | None, unit: str, material: str) -> str
                 f"{path.name} is not a CAD file (STEP, BREP, IGES) whose faces could be recognised",
                 "not-cad",
             )
-        return _text(file, turned_apart(file, upright=False), unit, material)
+        return _text(file, turned_apart(file), unit, material)
     except NotTurnedError as error:
         raise InputError(
             f"{error}; it can be used as a solid: geometry = {json.dumps(path.name)}",
@@ -69,8 +69,9 @@ def _text(file: BodyFile, profile: RecognisedProfile, unit: str, material: str) 
     pin, head = profile.pin(file.name), f"[pin.{_key(file.name)}]"
     lines = [
         f"# From {json.dumps(file.path.name)}:",
-        f"# the axis is along {_vector(profile.along)} of the file, and",
-        f"# z = 0 is {profile.start:g} {unit} along it; angles count from {_vector(profile.x)}.",
+        f"# the axis is along {plain_vector(profile.along)} of the file, and",
+        f"# z = 0 is {profile.start:g} {unit} along it; "
+        f"angles count from {plain_vector(profile.x)}.",
         head,
         f"material = {json.dumps(material, ensure_ascii=False)}  # a [material] of the study",
         "profile = [",
@@ -126,6 +127,9 @@ def _cut(cut: Cut, one: float, unit: str) -> Iterator[str]:
             yield 'ends = "square"'
     elif isinstance(cut, Hole):
         yield from given(z=cut.z, diameter=cut.diameter, depth=cut.depth, chamfer=cut.chamfer)
+        yield from given(mouth_radius=cut.mouth_radius, offset=cut.offset)
+        if cut.tilt:
+            yield f"tilt = {_angle(cut.tilt)}"
         yield from _bottom(cut.bottom, one, unit)
     elif isinstance(cut, Passage):
         if cut.mouth != "both":
@@ -159,10 +163,6 @@ def _length(si: float, one: float, unit: str) -> str:
 
 def _number(si: float, one: float) -> str:
     return f"{si / one:.9g}"
-
-
-def _vector(v: tuple[float, float, float]) -> str:
-    return f"({', '.join(f'{x:.6g}' for x in v)})"
 
 
 def _key(name: str) -> str:

@@ -185,7 +185,8 @@ def _turned(name: str, p: PinTable) -> Pin | CutPin:
 
 
 def _hole(h: HoleTable) -> Hole:
-    return Hole(h.z, h.diameter, h.angle, h.depth, _bottom(h), h.chamfer, h.mouth_radius)
+    mouth = h.chamfer, h.mouth_radius
+    return Hole(h.z, h.diameter, h.angle, h.depth, _bottom(h), *mouth, h.offset, h.tilt)
 
 
 def _passage(h: PassageTable, length: float) -> Passage:

@@ -102,7 +102,7 @@ class BottomTable(StrictTable):
 
 
 class HoleTable(BottomTable):
-    """A hole across the pin, through its axis."""
+    """A hole across the pin."""
 
     z: PositiveLength
     """Position of the hole's axis along the pin."""
@@ -110,6 +110,10 @@ class HoleTable(BottomTable):
     """Width of a countersink of 90 degrees at the mouths, where the surface is highest."""
     mouth_radius: NotNegativeLength = 0.0
     """Radius to which the edges of the mouths are rounded."""
+    offset: Length = 0.0
+    """Distance of the hole's axis from the pin's, towards `angle` plus 90 degrees."""
+    tilt: Angle = 0.0
+    """Angle by which the hole's axis leans towards z, at most 60 degrees."""
 
 
 class FlatTable(StrictTable):

@@ -42,6 +42,20 @@ def of_cosine(times: Floats) -> PinLoads:
     return loads_at(times, "cosine")
 
 
+def held_up(times: Floats) -> PinLoads:
+    """The largest of these loads, which stays."""
+    return replace(loads_at(np.full(len(times), CREST)), times=times)
+
+
+@each("model", ["beam", "harmonic"])
+def test_loads_that_stay_stress_as_one_instant(model: Model, steel: Material) -> None:
+    """None lies beyond the chord of its neighbours, so no interval needs a search."""
+    requirement, times = Requirement(model=model), np.linspace(0.0, 1.0, 5)
+    (found,) = solve_pin(BAR, steel, (), (held_up(times),), requirement, between={"turn": held_up})
+    (alone,) = solve_pin(BAR, steel, (), (loads_at(np.array([CREST])),), requirement)
+    assert found.peak.max_von_mises == pytest.approx(alone.peak.max_von_mises, rel=1e-9)
+
+
 @each("model", ["beam", "harmonic"])
 @each("samples", [3, 5, 41])
 def test_samples_do_not_matter(model: Model, samples: int, steel: Material) -> None:

@@ -77,6 +77,7 @@ def von_mises(read: Read) -> Floats:
     return np.asarray(np.sqrt(np.maximum(square, 0.0)))
 
 
+BESIDE, OBLIQUE = replace(HOLE, offset=0.004), replace(HOLE, angle=0.3, tilt=0.5)
 SLOT = Slot(MIDDLE - 0.004, MIDDLE + 0.004, 0.004)
 TUNNEL = Passage(0.0, SHAFT.length, 0.004, 0.004)
 
@@ -86,6 +87,7 @@ TUNNEL = Passage(0.0, SHAFT.length, 0.004, 0.004)
     [
         (SLOT, 0),
         (Flat(MIDDLE - 0.01, MIDDLE + 0.01, 0.008), 1),
+        (BESIDE, 1),  # in the frame of its piece, which its mirror planes turn
         pytest.param(TUNNEL, 2, marks=pytest.mark.slow),
     ],
 )
@@ -202,6 +204,9 @@ def test_what_is_meshed_of_cuts() -> None:
     assert piece(blind).open_ends == (False, True)
     assert piece(replace(HOLE, depth=0.006)).mirrors == ("y", "z")
     assert piece(MOUTH).mirrors == ("x", "y", "z")
+    assert piece(BESIDE).mirrors == ("y", "z")
+    assert piece(OBLIQUE).mirrors == ("y",)
+    assert piece(replace(OBLIQUE, offset=0.002)).mirrors == ()
     skew = piece(FLATS[0], replace(FLATS[0], angle=0.3 + math.pi / 2))
     assert skew.mirrors == ("y", "z")
     assert skew.angle == pytest.approx(0.3 + math.pi / 4)
@@ -214,7 +219,7 @@ def test_what_is_meshed_of_cuts() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("cuts", sampled([[FLATS[0]], [KEYWAY], [MOUTH]], every=3))
+@pytest.mark.parametrize("cuts", sampled([[FLATS[0]], [BESIDE], [KEYWAY], [MOUTH]], every=3))
 def test_parts_answer_as_the_whole(cuts: list[Cut]) -> None:
     """Each on a mesh of its own, in bending about an axis that is no axis of symmetry."""
 
@@ -305,6 +310,8 @@ def test_a_sharp_flat_is_singular_and_says_what_would_help() -> None:
             Slot(MIDDLE - 0.01, MIDDLE + 0.01, 0.006, 0.0035, 0.0, 0.0012),
             Flat(MIDDLE - D / 2, MIDDLE + D / 2, 0.007, 0.0, 0.002),
             Hole(MIDDLE, 0.006, 0.0, 0.005, Bottom(radius=0.0012)),
+            BESIDE,
+            OBLIQUE,
         ],
         every=3,
     ),

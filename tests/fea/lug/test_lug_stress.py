@@ -134,6 +134,11 @@ def test_instants_of_next_to_no_force_do_no_harm() -> None:
     assert every.von_mises == pytest.approx(alone.von_mises, rel=1e-12)
 
 
+def test_without_force_there_is_no_stress() -> None:
+    """As at the instant at which a joint is varied, where one of its lugs may be free."""
+    assert not largest(lug(), load(np.zeros((2, 2))))
+
+
 def test_an_eccentric_bore_is_stressed_more_at_the_thin_side() -> None:
     """Of a head whose end is nearer to the bore."""
     middle, near = (

@@ -7,6 +7,7 @@ import re
 import tomllib
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -16,6 +17,7 @@ from pinstress import load_study
 from pinstress.cli.commands import run_command_line
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.pins import shape_notes
+from pinstress.study.reading.errors import InputError
 from tests.geometry.test_recognise import (
     PROFILES,
     Change,
@@ -26,6 +28,7 @@ from tests.geometry.test_recognise import (
     step,
 )
 from tests.support.described import describe
+from tests.support.errors import raises
 
 HEAD = """
 title = "From CAD"
@@ -147,6 +150,31 @@ def test_a_run_takes_a_turned_body_as_a_profile(tmp_path: Path) -> None:
     assert (found.band("B").z0, found.band("B").z1) == pytest.approx((0.045, 0.06))
     assert "pin.step is taken as a profile: 3 segments" in shape_notes(found)
     assert "is taken as a profile" in describe(study)[0]
+
+
+def _lying(gmsh: Any, solid: int) -> None:
+    """What was x, y, z is y, z, x; then it is moved."""
+    gmsh.model.occ.rotate([(3, solid)], 0, 0, 0, 1, 1, 1, math.tau / 3.0)
+    gmsh.model.occ.translate([(3, solid)], 7, -20, 5)
+
+
+def test_a_run_takes_a_lying_body_in_its_own_axes(tmp_path: Path) -> None:
+    """Bands are where the file has them along its axis, and angles count from the x that is told.
+    A band beside its cylinder is refused, as a solid would be about another axis.
+    """
+    drilled = CutPin(PROFILES["stepped"], (Hole(30.0, 4.0, 0.4),))
+    step(drilled, tmp_path / "pin.step", _lying)
+    (tmp_path / "study.toml").write_text(HEAD + USED.replace("[45, 60]", "[52, 67]"))
+    study = load_study(tmp_path / "study.toml")
+    found = pin_of(study, "P")
+    assert isinstance(found, CutPin)
+    assert found.profile.volume == pytest.approx(drilled.profile.volume * 1e-9, rel=1e-9)
+    assert (found.band("B").z0, found.band("B").z1) == pytest.approx((0.045, 0.06))
+    assert found.holes[0].angle == pytest.approx(0.4)
+    assert "z is along (1, 0, 0) of the file, and x along (0, 1, 0)" in shape_notes(found)
+    (tmp_path / "study.toml").write_text(HEAD + USED.replace("[45, 60]", "[17, 37]"))
+    with raises(InputError, "not-turned", "band B is not on one cylinder", "at z = 7 of the file"):
+        pin_of(load_study(tmp_path / "study.toml"), "P")
 
 
 @pytest.mark.slow
