@@ -235,7 +235,8 @@ def _of_limit_load(plain: RequirementRow, row: PinResult, margins: list[Margin])
     if limit is not None and limit.lower is not None and limit.upper is not None:
         if limit.lower >= plain.required:
             weakest = min((_reached(m) for m in margins if not m.needs), default=limit.lower)
-            growth = {"strength": limit.lower / weakest, "joint": row.joint_growth, **row.most_loads}
+            growth = {"joint": row.joint_growth, **row.most_loads}
+            growth["strength"] = limit.lower / weakest
             return _depending(plain, limit.lower, _beyond(limit.lower / plain.required, growth))
         outcome: Outcome = "missed" if limit.upper < plain.required else "not decided"
         return replace(plain, reached=limit.lower, outcome=outcome)

@@ -138,7 +138,10 @@ def _broken(*_: object) -> None:
 @pytest.mark.parametrize(
     ("what", "reason"),
     [
-        ("pinstress.analysis.gather.gather_fatigue.assess_over", "at point 1, signed-von-mises failed"),
+        (
+            "pinstress.analysis.gather.gather_fatigue.assess_over",
+            "at point 1, signed-von-mises failed",
+        ),
         (
             "assess.fatigue.critical_points.stress_histories",
             "no history of stress in cases work, jam",
