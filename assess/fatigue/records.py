@@ -91,7 +91,7 @@ class PointFatigue:
     damage_over: Mapping[str, float] = field(default_factory=dict)
 
     def open_beyond(self, damage: float) -> tuple[str, ...]:
-        """What is open that takes the damage beyond one that it does not reach as described."""
+        """Names of what is open that takes the damage beyond one not reached as described."""
         if not self.damage <= damage < (self.largest_damage or 0.0):
             return ()
         alone = tuple(what for what, over in self.damage_over.items() if over > damage)

@@ -90,9 +90,9 @@ class HeldPrescribed(UnderLinkLoads):
             search = PartSearch(
                 reading, profile, between, evidence, stress, (given, between), requirement.tolerance
             )
-            found = search.of(material.strength_parts(profile.length))
+            parts = search.of(material.strength_parts(profile.length))
             tolerance = requirement.tolerance
-            peak = hardened_row(profile, peak, evidence, found, tolerance, lambda x: x.loads)
+            peak = hardened_row(profile, peak, evidence, parts, tolerance, lambda x: x.loads)
             now = peak.governing
         if now is not None and now.times is not None and loads.times is not None:
             loads = loads.merged(now)

@@ -75,7 +75,7 @@ class OutlineNodes:
         rows, places = [], []
         nodes = mesh.nodes
         axis = {None: mesh.axis}
-        named = axis | {name: np.unique(found) for name, found in mesh.edges.items()}
+        named = axis | {name: np.unique(edge) for name, edge in mesh.edges.items()}
         for k, edge in enumerate(meridian(pin)):
             here = _on(edge, nodes, named[edge.name])
             rows.append(here)

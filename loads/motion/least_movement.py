@@ -39,7 +39,7 @@ CLOSED_GAP = 3e-12  # gap of a closed loop, over the length scale; a motion is r
 
 @dataclass(frozen=True)
 class LeastMovement:
-    """How far joints must be moved for the loops to close.
+    """The least movement of joints with which the loops close.
 
     moves: (dx, dy) of every joint, m.
     gap: largest distance by which the members that close loops miss each other before that, at
@@ -163,8 +163,8 @@ def _conditions(
     places: Floats,
     samples: tuple[Floats, Floats],
 ) -> tuple[Floats, Floats]:
-    """What stays open at samples whatever the coordinates: its derivatives by the places (J, 2) of
-    the joints, (conditions, 2 J), and how far it is open, (conditions,) m.
+    """The derivatives of conditions by the places (J, 2) of the joints, (conditions, 2 J), and how
+    far they are open, (conditions,) m, of those that stay open at samples whatever the coordinates.
     """
     q, drives = samples
     rows = _rows(loops, q, drives)

@@ -36,7 +36,7 @@ def case_crushing(
     """The largest use of the core's strength beneath pressures, each of one instant; None where no
     pressed ring is on a hardened stretch. nu: Poisson's ratio.
     """
-    found = [
+    crushed = [
         crushing
         for contact in contacts
         for ring in _rings(contact)
@@ -44,7 +44,7 @@ def case_crushing(
         if case.start <= contact.bands.z[ring] <= case.end
         for crushing in [_of_ring(contact, ring, case, nu)]
     ]
-    return max(found, key=lambda x: x.max_von_mises / x.strength, default=None)
+    return max(crushed, key=lambda x: x.max_von_mises / x.strength, default=None)
 
 
 def _rings(contact: JointContact) -> Ints:

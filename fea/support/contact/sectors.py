@@ -58,7 +58,7 @@ class Sectors:
         return x[:, : len(self)].ravel()
 
     def between(self, apart: Floats) -> Floats:
-        """What depends on the number of sectors between two of them, (R, R, M), for all pairs of
+        """Values by the number of sectors between two of them, (R, R, M), as those of all pairs of
         cells (R C, R C): the mean over the sectors of the second.
         """
         k, rings = np.arange(len(self)), len(apart)

@@ -301,7 +301,7 @@ def _by_friction(
 
 
 def uncompared(contact: JointContact) -> ResolutionComparison:
-    """What stands for a comparison where none was made."""
+    """A comparison without content, where none was made."""
     return ResolutionComparison(NOWHERE, NOWHERE, contact.loads.links, ())
 
 
