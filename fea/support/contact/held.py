@@ -94,6 +94,8 @@ class ContactSupport:
             near = coarser.candidates
             cells = coarser.for_arcs(cells, left)
             finer = finer and coarser.for_arcs(finer, left)
+            if finer is not None and coarser.far_from(left, requirement):
+                cells, finer = finer, None
         progress(f"pin {problem.pin.name}, flexibility of {cells.rings} rings of each lug")
         profile, cut = profile_of(problem.pin), isinstance(problem.pin, CutPin)
         of, between, also = (profile, problem.material, problem.lugs), problem.between, problem.also
@@ -218,6 +220,11 @@ class HeldContact:
         arcs = [self.compared[x.case].half_angle for x in cases if x.case in self.compared]
         usual = _ring_count(self.model, USUAL_RING_COUNT)
         return cells.for_arcs(min(arcs, default=0.5 * np.pi), usual)
+
+    def far_from(self, cases: Sequence[PinLoads], requirement: Requirement) -> bool:
+        """Return whether the next cells will not do for some case either (Compared.far_from)."""
+        known = ((self.compared.get(x.case), requirement.of_case(x.case)) for x in cases)
+        return any(x is not None and x.far_from(of_case) for x, of_case in known)
 
     @property
     def cut(self) -> CutPin | None:
