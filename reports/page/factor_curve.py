@@ -34,7 +34,7 @@ def draw_factor_curve(line: PinLine, unit: str) -> str | None:
     needed, at = _across(d.needed / d.given, most), _down(axis, required)
     # Where two labels would meet, that of the needed diameter, or of the first factor, is moved.
     given_text, needed_text = (f"{engineering(x, 3)} {unit}" for x in (d.given, d.needed))
-    beside = CHARACTER * (len(given_text) + 0.5 * len(needed_text) + 1.0)
+    beside = CHARACTER * (len(given_text) + 0.5 * len(needed_text) + 2.0)
     below = max(_down(axis, factors[0]), at + LINE)
     title = f"Pin {line.pin}: estimated lowest factor of all places"
     parts = [
