@@ -77,6 +77,9 @@ class Plan:
     explained: bool = True
     pins: tuple[str, ...] = ()
 
+    def __repr__(self) -> str:
+        return f"<Plan of {self.study!r}: pins: {len(self.pins)}, cases: {len(self.loads)}>"
+
 
 def prepare(
     study: Study,

@@ -13,10 +13,28 @@ from pinstress.analysis.mechanics.gather_space import skeleton_in_space
 from pinstress.cli.check import Examination, support_of
 from pinstress.study.model.balance import given_warnings
 from pinstress.study.model.tasks import Task
+from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from reports.data.check import CheckedPin, CheckedStudy, PlannedRow
 from reports.data.row import Units
 from reports.page.check import write_check
+
+HTML_HEAD = b"<!doctype html"
+
+
+def require_page(path: Path) -> None:
+    """Check that no other file than such a page is where one is to be written.
+
+    Raises: InputError.
+    """
+    try:
+        with path.open("rb") as file:
+            start = file.read(len(HTML_HEAD))
+    except OSError:  # nothing there, or what writing will find
+        return
+    if start and start.lower() != HTML_HEAD:
+        text = f"--out: {path} exists and is not a page; choose another file"
+        raise InputError(text, code="exists")
 
 
 def write_check_page(study: Study, examination: Examination, path: Path) -> None:

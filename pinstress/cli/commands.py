@@ -44,7 +44,7 @@ from pinstress.cli.shared import (
     read_study,
 )
 from pinstress.study.reading.choices import ChoiceError, Selection
-from pinstress.study.reading.errors import InputError, clipped
+from pinstress.study.reading.errors import InputError, cannot_write, clipped
 
 PLOTS_HELP = "Also draw plots and pictures as SVG and PNG, as `pinstress plots` does (slower)."
 MAX_TIMESTAMP = 253_402_300_799  # the end of the year 9999, the last that Python supports
@@ -337,11 +337,15 @@ def check(study: Path, opens: bool, out: Path | None, no_browser: bool) -> int:
     for line in x.unheld:
         click.echo(f"Not decided: {line}.", err=True)
     if opens or out is not None:
-        from pinstress.cli.check_page import write_check_page
+        from pinstress.cli.check_page import require_page, write_check_page
 
         page = out or Path("out") / f"{loaded.name}_check.html"
-        page.parent.mkdir(parents=True, exist_ok=True)
-        write_check_page(loaded, x, page)
+        require_page(page)
+        try:
+            page.parent.mkdir(parents=True, exist_ok=True)
+            write_check_page(loaded, x, page)
+        except OSError as error:
+            raise cannot_write(page, error) from None
         click.echo(f"Page: {page}", err=True)
         if opens and not no_browser:
             open_page(page)

@@ -53,6 +53,8 @@ def require_junit(path: Path, directory: Path) -> None:
         raise InputError(f"--junit: there is no folder {path.parent}", code="no-folder")
     if path.is_dir():
         raise InputError(f"--junit: {path} is a folder; give a file", code="not-a-file")
+    if not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise InputError(f"--junit: {path} cannot be written", code="cannot-write")
     try:
         with path.open("rb") as file:
             start = file.read(JUNIT_HEAD_SIZE)

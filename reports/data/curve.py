@@ -87,6 +87,11 @@ class FactorCurve:
     in_lugs: tuple[str, ...] = ()
     required_checks: tuple[str, ...] = ()
 
+    def __repr__(self) -> str:
+        first, last = self.values[0], self.values[-1]
+        many = f"pins: {len(self.pins)}, values: {len(self.values)}"
+        return f"<FactorCurve {self.key} {first:.4g} to {last:.4g} {self.unit}: {many}>"
+
     @property
     def pins(self) -> tuple[str, ...]:
         """The pins in their order."""

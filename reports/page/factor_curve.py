@@ -11,6 +11,7 @@ from reports.tables.strength.overview import FactorAxis
 
 WIDTH, HEIGHT = 260.0, 62.0
 POINTS, REACH = 24, 1.25  # points; ratio of scales beyond the needed one
+CHARACTER, LINE = 6.5, 11.0  # width and height of a text's letter
 LEFT, ABOVE, RIGHT, BELOW = 40.0, 18.0, 10.0, 20.0  # margins, for the texts
 
 
@@ -31,15 +32,19 @@ def draw_factor_curve(line: PinLine, unit: str) -> str | None:
     across = [WIDTH * k / (POINTS - 1) for k in range(POINTS)]
     points = " ".join(f"{x:.1f},{_down(axis, f):.1f}" for x, f in zip(across, factors, strict=True))
     needed, at = _across(d.needed / d.given, most), _down(axis, required)
+    # Where two labels would meet, that of the needed diameter, or of the first factor, is moved.
+    given_text, needed_text = (f"{engineering(x, 3)} {unit}" for x in (d.given, d.needed))
+    beside = CHARACTER * (len(given_text) + 0.5 * len(needed_text) + 2.0)
+    below = max(_down(axis, factors[0]), at + LINE)
     title = f"Pin {line.pin}: estimated lowest factor of all places"
     parts = [
         f'<path class="frame" d="M0 0V{HEIGHT}H{WIDTH}"/>',
         f'<path class="limit" d="M0 {at:.1f}H{WIDTH}M{needed:.1f} {at:.1f}V{HEIGHT}"/>',
         f'<polyline points="{points}"/>',
-        _text(0.0, HEIGHT + 15.0, f"{engineering(d.given, 3)} {unit}"),
-        _text(needed, HEIGHT + 15.0, f"{engineering(d.needed, 3)} {unit}", "middle"),
+        _text(0.0, HEIGHT + 15.0, given_text),
+        _text(max(needed, beside), HEIGHT + 15.0, needed_text, "middle"),
         _text(-5.0, at + 4.0, short(required), "end"),
-        _text(-5.0, _down(axis, factors[0]) + 4.0, engineering(factors[0], 3), "end"),
+        _text(-5.0, below + 4.0, engineering(factors[0], 3), "end"),
         _text(5.0 - LEFT, -7.0, title),
     ]
     if d.eye and d.too_large(d.needed):

@@ -21,6 +21,7 @@ ARROW_ROOM, MIN_ARROW_LENGTH = 26.0, 10.0  # of load arrows
 LOAD_COLOUR, SECTION_COLOUR = "#0b5cad", "#9a4a00"
 CURVE_STYLE = 'fill="none" stroke-width="1.4" stroke-linejoin="round"'
 MIN_SHARE = 0.02  # of the largest force: a smaller part is not drawn
+LETTER_HEIGHT = 12.0  # of labels that must not meet
 SYMBOL_RADIUS = 5.0  # of a force out of the plane
 
 
@@ -90,21 +91,30 @@ class StressPanel:
             return []
         y = self.y(allowed)
         words = f"allowed {engineering(allowed)}"
+        x, below, maximum, anchor = self._label()
+        end = x + wide(maximum) if anchor == "start" else x
+        meets = end > self.right - 2.0 - wide(words) and abs(below - (y - 3.0)) < LETTER_HEIGHT
         style = 'class="allowed" stroke-dasharray="2 3"'
         return [line(self.left, y, self.right, y, style, ZONE_COLOUR),
-                text(self.right - 2.0, y - 3.0, words, halo=True, anchor="end")]  # fmt: skip
+                text(self.right - 2.0, below + LETTER_HEIGHT if meets else y - 3.0, words,
+                     halo=True, anchor="end")]  # fmt: skip
+
+    def _label(self) -> tuple[float, float, str, str]:
+        """Return where and how the maximum is written: x, y, text and anchor."""
+        x, y = self.x(self.along.z or 0.0), self.y(self.along.maximum or 0.0) + 4.0
+        words = f"max {engineering(self.along.maximum)}"
+        if x - 7.0 - wide(words) < self.left:
+            return x + 7.0, y, words, "start"
+        return x - 7.0, y, words, "end"
 
     def _mark(self) -> list[str]:
         z, value = self.along.z, self.along.maximum
         if z is None or value is None:
             return []
-        x, y = self.x(z), self.y(value)
-        words = f"max {engineering(value)}"
-        beside = text(x - 7.0, y + 4.0, words, halo=True, anchor="end")
-        if x - 7.0 - wide(words) < self.left:
-            beside = text(x + 7.0, y + 4.0, words, halo=True, anchor="start")
-        return [f'<circle class="governs" cx="{x:.2f}" cy="{y:.2f}" r="3.5" '
-                f'fill="{ZONE_COLOUR}" stroke="#fff"/>', beside]  # fmt: skip
+        x, y, words, anchor = self._label()
+        return [f'<circle class="governs" cx="{self.x(z):.2f}" cy="{self.y(value):.2f}" r="3.5" '
+                f'fill="{ZONE_COLOUR}" stroke="#fff"/>',
+                text(x, y, words, halo=True, anchor=anchor)]  # fmt: skip
 
 
 def ticks(top: float) -> list[float]:

@@ -243,7 +243,7 @@ def flips(row: PinResult, units: Units) -> str:
             continue
         what = d.value if d.what == BENEATH_CONTACT else d.what
         if d.what == TOGETHER or what == IMPULSE_RANGES_TOGETHER:
-            what = f"the open {d.over} values"
+            what = f"the {d.over} values together"
         at = _at(d, units)
         told.append(f"{what} ({at})" if at else what)
     return ", ".join(dict.fromkeys(told))

@@ -251,8 +251,8 @@ def wrong_sentence(
     named = re.search(r"[Pp]in (\S+?)[ ,.]", text)
     rows = results["pins"]
     if state in ("safe", "below yield"):
-        number = re.match(r"All (\d+) pins (are safe|stay below yield)", text)
-        if number and int(number[1]) != len({row["pin"] for row in rows}):
+        number = re.match(r"(?:All (\d+)|Both) pins (are safe|stay below yield)", text)
+        if number and int(number[1] or 2) != len({row["pin"] for row in rows}):
             yield "another number of pins"
         if not number and not re.match(r"Pin \S+ (is safe|stays below yield)", text):
             yield "not that its pin is safe"

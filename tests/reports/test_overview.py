@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from io import StringIO
 
@@ -19,6 +20,7 @@ from reports.data.requirements import RequirementRow, keys_in
 from reports.data.results import Results
 from reports.data.row import PinResult
 from reports.format.place_words import along_words
+from reports.page.factor_curve import draw_factor_curve
 from reports.page.overview import overview_part
 from reports.tables.strength.overview import (
     FactorAxis,
@@ -152,6 +154,18 @@ def test_the_diameter_by_the_law_of_the_section(few: Results) -> None:
     assert factor_at(line.row, scale) == pytest.approx(1.5, rel=1e-9)
     assert factor_at(line.row, 1.0) < 1.5
     assert "→" in diameter_words(line)
+
+
+def test_labels_of_a_pin_that_nearly_suffices_stand_apart(few: Results) -> None:
+    """20.0 and 20.6 mm, and 1.84 and 2, were written on one another."""
+    row = with_values(few.pins[0], safety_factor=1.48, decided=False)
+    (line,) = pin_lines(replace(few, pins=(row,)))
+    curve = draw_factor_curve(line, "mm")
+    assert curve is not None
+    texts = re.findall(r'<text x="(.*?)" y="(.*?)" text-anchor="(.*?)">(.*?)</text>', curve)
+    given, needed, required, first = ((float(x), float(y), t) for x, y, _, t in texts[:4])
+    assert needed[0] - 3.0 * len(needed[2]) > given[0] + 6.0 * len(given[2])
+    assert first[1] - required[1] >= 11.0
 
 
 def test_the_stress_beneath_contact_asks_for_more(few: Results) -> None:

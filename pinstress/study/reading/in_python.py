@@ -237,10 +237,11 @@ def _inside(study: Study, table: Any, part: str | int, key: str) -> Any:
             raise IndexError
         return table[part]
     except (KeyError, IndexError, TypeError):
-        position = part + 1 if isinstance(part, int) else part
-        raise study.error(
-            f"{key}: the study has no {as_text(position)} there", code="unknown-key"
-        ) from None
+        what = f"the study has no {as_text(part)} there"
+        if isinstance(part, int):
+            count = f"it has {len(table)}" if isinstance(table, list) else "it is not a list"
+            what = f"there is no element {part + 1} of its list; {count}, counted from 1"
+        raise study.error(f"{key}: {what}", code="unknown-key") from None
 
 
 def _plain(value: Any, key: str) -> Any:

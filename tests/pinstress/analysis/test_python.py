@@ -74,6 +74,7 @@ def test_results_and_study_are_one_line(results: RunResults) -> None:
     assert "<td>B</td>" in study._repr_html_()
     assert repr(results).startswith("<One pin: pins: 1, rows: 1. Pin B is safe: factor")
     assert len(repr(results).splitlines()) == 1
+    assert repr(pinstress.prepare(study)) == f"<Plan of {study!r}: pins: 1, cases: 1>"
 
 
 def test_names_in_the_html_of_a_study_and_a_row_are_texts() -> None:

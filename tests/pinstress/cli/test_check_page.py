@@ -111,6 +111,22 @@ def test_the_command_writes_it_and_opens_it(
     assert opened == [page.as_uri()]
 
 
+def test_it_takes_no_place_that_is_not_its_own(tmp_path: Path) -> None:
+    """A study named by --out was replaced by the page; where no folder can be, there was a
+    traceback, as in a folder that cannot be written.
+    """
+    (tmp_path / "study.toml").write_text(QUICK)
+    done = run_here("check", "study.toml", "--out", "study.toml", cwd=tmp_path)
+    assert (done.returncode, (tmp_path / "study.toml").read_text()) == (2, QUICK)
+    assert "study.toml exists and is not a page" in done.stderr
+    (tmp_path / "out").write_text("a file")
+    done = run_here("check", "study.toml", "--open", "--no-browser", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "out/study_check.html: cannot be written" in done.stderr.replace("\\", "/")
+    for _ in range(2):
+        assert run_here("check", "study.toml", "--out", "p.html", cwd=tmp_path).returncode == 0
+
+
 def test_it_loads_nothing_that_solves_or_draws(tmp_path: Path) -> None:
     loaded = loaded_by("check", "studies/grenier2008.toml", "--out", str(tmp_path / "x.html"))
     assert "jinja2" in loaded

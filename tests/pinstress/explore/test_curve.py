@@ -56,6 +56,11 @@ def test_the_case_that_counts_is_the_worst_or_one_of_which_nothing_is_known() ->
     assert [p.case for p in worst.least("P")] == ["b", "b"]
 
 
+def test_a_curve_is_one_short_line_in_a_notebook() -> None:
+    curve = of(point(1.0, 9.0), point(2.5, 11.0))
+    assert repr(curve) == "<FactorCurve k 1 to 2.5 mm: pins: 1, values: 2>"
+
+
 def test_reached_throughout_is_no_more_than_the_results_say() -> None:
     open_ = of(point(1.0, 10.1), replace(point(2.0, 10.2), outcome="not decided"))
     (told,) = reached_lines(open_)

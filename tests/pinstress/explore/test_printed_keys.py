@@ -145,7 +145,10 @@ def test_a_lug_without_a_table_has_its_defaults() -> None:
 @each(
     ("key", "message"),
     [
-        ("pin.P.profile[1-4].diameter", "the study has no 4 there"),
+        (
+            "pin.P.profile[1-4].diameter",
+            "there is no element 4 of its list; it has 3, counted from 1",
+        ),
         ("pin.P.profile[2-1].diameter", r"\[2-1\] is no range; the smaller element first"),
         ("pin.P.lugs.left.clearance", "the study has no 'lugs' there"),
     ],

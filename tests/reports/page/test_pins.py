@@ -21,7 +21,7 @@ from reports.page.pin_drawing import draw_pin
 from reports.page.pins import governing_names, pin_parts
 from reports.page.pins_reading import reading_parts, signs
 from reports.page.stress_along import StressAlong, stress_along
-from reports.page.stress_panel import ticks
+from reports.page.stress_panel import StressPanel, ticks
 from reports.tables.column import PinRow
 from reports.tables.stress.joint import carrying_share
 from tests.support.each import each
@@ -197,6 +197,19 @@ def rectangles(svg: str, kind: str) -> list[tuple[float, ...]]:
     """x, y, width and height of the rectangles of a class."""
     pattern = rf'<rect class="{kind}" x="([\d.]+)" y="([\d.]+)" width="([\d.]+)" height="([\d.]+)"'
     return [tuple(map(float, found)) for found in re.findall(pattern, svg)]
+
+
+@each("maximum", [324.5, 305.0, 300.1])
+def test_the_allowed_stress_and_the_maximum_are_not_written_on_one_another(maximum: float) -> None:
+    """On a short pin they were, where the maximum is a little larger."""
+    none = np.zeros(0)
+    along = StressAlong("c", 0.0, (), (), (none, none), (), 20.0, maximum, 300.0)
+    svg = "".join(StressPanel(along, (40.0, 1.6, 58.0), 0.0).draw("MPa"))
+    places = re.findall(r'<text x="(.*?)" y="(.*?)" text-anchor="(.*?)".*?>(max|allowed) ', svg)
+    rows = {name: (float(x), float(y), anchor) for x, y, anchor, name in places}
+    assert rows["max"][2] == "start"
+    assert rows["max"][0] + 50.0 > rows["allowed"][0] - 60.0  # so that they share the width
+    assert abs(rows["max"][1] - rows["allowed"][1]) >= 11.0
 
 
 def test_lugs_are_drawn_to_scale() -> None:
