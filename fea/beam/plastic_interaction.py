@@ -109,4 +109,5 @@ def _within(radius: float, c: Floats) -> Floats:
     """The area of a disc within the distance c of a diameter."""
     near = np.minimum(c, radius)
     angle = np.arcsin(near / radius) if radius else np.zeros_like(c)
-    return np.asarray(2.0 * (near * np.sqrt(radius**2 - near**2) + radius**2 * angle))
+    half = np.sqrt(np.maximum(radius**2 - near**2, 0.0))  # which round-off may make negative
+    return np.asarray(2.0 * (near * half + radius**2 * angle))

@@ -44,7 +44,7 @@ class CutPin:
             what, i = name.split()
             cut.check(self.profile, f"{what} {i}", (what, int(i)))
         for (k, a), (n, b) in combinations(enumerate(self.holes, 1), 2):
-            if (a.z, a.angle) != (b.z, b.angle):
+            if (a.z, a.angle, a.offset, a.tilt) != (b.z, b.angle, b.offset, b.tilt):
                 b.check_beside(a, (f"hole {n}", f"hole {k}"), self.profile, ("hole", n))
         length = self.length
         object.__setattr__(self, "flats", tuple(cut.past(length, tolerance) for cut in flats))

@@ -117,8 +117,9 @@ def _require_reasonable(pin: Pin, size: SectionSize) -> None:
     """Raises: MeshError when the mesh would be too large or a fillet is too small."""
     if (count := triangles(pin, size)) > MAX_TRIANGLES:
         raise MeshError(
-            f"pin {pin.name}: the mesh would need {count:.1e} elements, because the thinnest part "
-            "is very small compared with the whole; model the critical part on its own",
+            f"pin {pin.name}: the mesh would need {count:.1e} elements, of which "
+            f"{MAX_TRIANGLES:,.0f} are allowed, because the thinnest part is very small compared "
+            "with the whole; model the critical part on its own",
             "too-many-elements",
         )
     for rounding in pin.roundings:

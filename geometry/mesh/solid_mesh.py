@@ -139,8 +139,9 @@ def _require_reasonable(pin: Pin, size: MeshSize) -> None:
     elements = pin.volume / (0.12 * _far(pin, size) ** 3)  # 0.12 h^3: a regular tetrahedron
     if elements > MAX_ELEMENTS:
         raise MeshError(
-            f"pin {pin.name}: the mesh would need {elements:.1e} elements, because the thinnest "
-            "part is very small compared with the whole; model the critical part on its own",
+            f"pin {pin.name}: the mesh would need {elements:.1e} elements, of which "
+            f"{MAX_ELEMENTS:,.0f} are allowed, because the thinnest part is very small compared "
+            "with the whole; model the critical part on its own",
             "too-many-elements",
         )
 

@@ -42,7 +42,8 @@ class CutShape:
     z: its ends; of a hole its middle, twice. size: diameter or width; of a flat its distance from
     the axis. offset: of a passage or hole from the axis. depth: None through the pin and for flats.
     angle: from x, degrees. lines: points (z, x) of edges in the view from y, and whether hidden.
-    notches: (z, x) of two opposite corners of each piece cut from the silhouette.
+    notches: (z, x) of two opposite corners of each piece cut from the silhouette. tilt: of a hole
+    towards z, degrees.
     """
 
     name: str
@@ -53,6 +54,7 @@ class CutShape:
     angle: float
     lines: tuple[tuple[tuple[tuple[Length, Length], ...], bool], ...]
     notches: tuple[tuple[Length, Length, Length, Length], ...]
+    tilt: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -377,4 +377,5 @@ def cut_words(cut: CutShape) -> str:
             aside = f"{short(cut.offset)} from the axis" if cut.offset else "on the axis"
             dimensions = f"⌀{size}, {deep}, {between}, {aside}"
             where = where if cut.offset else ""
-    return f"{cut.name}: {dimensions}{where}"
+    lean = f", leaning {short(cut.tilt)}° towards z" if cut.tilt else ""
+    return f"{cut.name}: {dimensions}{where}{lean}"

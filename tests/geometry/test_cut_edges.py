@@ -41,6 +41,17 @@ def test_a_blind_hole_ends_where_it_does() -> None:
     assert walls[:, 1] == pytest.approx([R - 0.006, R])
 
 
+def test_an_oblique_hole_has_its_mouths_apart() -> None:
+    """Its walls lean by its tilt; beside the axis it is so when seen from above."""
+    aside = drawn(Hole(0.05, 0.004, tilt=0.5), SHAFT)
+    apart, half = R * math.tan(0.5), 0.002 / math.cos(0.5)
+    both = np.concatenate([ends(aside, hidden) for hidden in (False, True)])
+    assert both[:, 0].min() == pytest.approx(0.05 - apart - half)
+    assert both[:, 0].max() == pytest.approx(0.05 + apart + half)
+    above = drawn(Hole(0.05, 0.004, ACROSS, offset=0.003), SHAFT)
+    assert ends(above, False) == pytest.approx(np.array([[0.048, -0.005], [0.052, -0.001]]))
+
+
 def test_a_hole_through_a_tube_leaves_its_bore_alone() -> None:
     found = drawn(Hole(0.05, 0.004), TUBE)
     walls = [at[:, 1] for at, hidden in found.lines if hidden and np.ptp(at[:, 1]) > 1e-3]
@@ -72,11 +83,21 @@ def test_a_passage_is_hidden_and_ends_with_its_tip() -> None:
     assert ends(found, True) == pytest.approx(np.array([[0.0, 0.003], [0.062, 0.007]]))
 
 
+def mouths(offset: float) -> float:
+    """What a hole of 4 mm beside the axis takes of the surface."""
+    y = offset + 0.002 * np.cos((np.arange(4000) + 0.5) * math.pi / 4000)
+    step = np.sqrt(0.002**2 - (y - offset) ** 2) * math.pi / 4000
+    wide = 2.0 * np.sqrt(0.002**2 - (y - offset) ** 2)
+    return float(2.0 * np.sum(wide * step * R / np.sqrt(R**2 - y**2)))
+
+
 @each(
     ("cut", "area"),
     [
         (Hole(0.05, 0.002), 2.0 * math.pi * 1e-6),
         (Hole(0.05, 0.002, 1.0, 0.003), math.pi * 1e-6),
+        (Hole(0.05, 0.004, 1.0, offset=-0.006), mouths(0.006)),
+        (Hole(0.05, 0.004, 1.0, offset=0.006, tilt=-0.6), mouths(0.006) / math.cos(0.6)),
         (Flat(0.02, 0.05, 0.008), 0.03 * 2.0 * R * math.acos(0.8)),
         (Slot(0.02, 0.05, 0.004, 0.003, 0.3, 0.0, False), 0.03 * 2.0 * R * math.asin(0.2)),
         (Passage(0.0, L, 0.004, 0.004), 0.0),
@@ -98,6 +119,9 @@ def test_what_cuts_take_of_the_surface(cut: Cut, area: float) -> None:
         ((Hole(0.05, 0.004), Hole(0.054, 0.004, 1.0)), "thin-wall"),  # on the axis
         ((Hole(0.05, 0.004), Hole(0.05401, 0.004)), "thin-wall"),
         ((Hole(0.05, 0.004), Hole(0.055, 0.004)), ""),
+        ((Hole(0.05, 0.004), Hole(0.05, 0.004, offset=0.004)), "thin-wall"),
+        ((Hole(0.05, 0.004), Hole(0.05, 0.004, ACROSS, offset=0.003)), ""),  # into each other
+        ((Hole(0.05, 0.004), Hole(0.056, 0.004, 0.0, offset=0.003, tilt=0.3)), ""),
         ((Hole(0.05, 0.004), Hole(0.052, 0.004)), ""),
         ((Hole(0.05, 0.004, 0.0, 0.004), Hole(0.054, 0.004, math.pi, 0.004)), ""),
     ],

@@ -73,7 +73,8 @@ def test_every_array_has_a_dimension_or_is_known_to_need_none() -> None:
         "ReactionTable.turn",  # rad
         "PowerLedger.violation",  # ratios
         "WheelLoad.factor",
-        "CutShape.angle",  # degrees
+        "CutShape.angle",
+        "CutShape.tilt",  # degrees
         "LinkageMotion.angle",  # degrees, and rad
         "LinkageMotion.angular_velocity",
         "LinkageMotion.angular_acceleration",

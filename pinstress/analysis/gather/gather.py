@@ -328,6 +328,7 @@ def cut_shapes(pin: PinLike) -> Iterator[CutShape]:
             math.degrees(cut.angle),
             lines,
             drawing.notches,
+            math.degrees(cut.tilt) if isinstance(cut, Hole) else 0.0,
         )
 
 

@@ -75,10 +75,10 @@ def resized(
 ) -> str:
     """Return a study's text with pins (by name) scaled across their axis.
 
-    Diameters, bores, fillets, the distances of flats and offsets of passages change; lengths, holes
-    and slots stay. Diameters are rounded up, to a standard one or to four digits, bores and fillets
-    down; scale 1 without standard diameters changes nothing. Provenance that no longer holds is
-    replaced.
+    Diameters, bores, fillets, the distances of flats and offsets of passages and holes change;
+    lengths, other sizes of holes and slots stay. Diameters are rounded up, to a standard one or to
+    four digits, bores and fillets down; scale 1 without standard diameters changes nothing.
+    Provenance that no longer holds is replaced.
 
     required: the study's new required factor of safety, if any.
     """
@@ -275,8 +275,9 @@ def replace_number(table: Any, key: Any, number: float, unit: str) -> None:
 def rounded(number: float, step: float | None, up: int) -> float:
     if number == 0.0:
         return 0.0
-    step = step or 10.0 ** (math.floor(math.log10(number)) + 1 - LENGTH_DIGITS)
-    count = number / step
+    size = abs(number)
+    step = step or 10.0 ** (math.floor(math.log10(size)) + 1 - LENGTH_DIGITS)
+    count = size / step
     # What is a whole number of steps but for the last digits stays.
     whole = math.ceil(count - 1e-9) if up > 0 else math.floor(count + 1e-9)
-    return float(f"{whole * step:.12g}")
+    return math.copysign(float(f"{whole * step:.12g}"), number)

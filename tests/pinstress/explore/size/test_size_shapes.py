@@ -55,6 +55,16 @@ def test_a_pin_with_a_hole() -> None:
 
 
 @pytest.mark.slow
+def test_the_offset_of_a_hole_grows_with_its_pin() -> None:
+    """Else a hole beside the axis would break out of a slimmer pin; its diameter is a tool's."""
+    text = FINE + "[[pin.B.hole]]\nz = 0.9\ndiameter = 0.2\noffset = -0.4\n"
+    study = parse_study(ROOT / "studies" / "one_pin.toml", text)
+    (hole,) = resized_study(study, {"B": 0.5}).table.pin["B"].hole
+    (before,) = study.table.pin["B"].hole
+    assert (hole.z, hole.diameter) == (before.z, before.diameter)
+    assert hole.offset == pytest.approx(0.5 * before.offset, rel=1e-3)
+
+
 def test_a_pin_in_lugs_that_clear_it_by_a_series() -> None:
     """The pin of the clevis with its clearance of 0.05 mm: the next diameter of R20 and no more."""
     study = parse_study(CLEVIS, CLEVIS.read_text())

@@ -37,6 +37,13 @@ def test_sizes_in_words() -> None:
     ]
 
 
+def test_an_oblique_hole_in_words() -> None:
+    aslant = Hole(8 * MM, 4 * MM, offset=-3 * MM, tilt=math.radians(15.0))
+    (cut,) = cut_shapes(CutPin(PIN.profile, (aslant,)))
+    words = cut_words(in_units(cut, lambda dimension: MM if dimension == "length" else 1.0))
+    assert words == ("hole 1: ⌀4, through, 3 beside the axis, z = 8, at 0°, leaning 15° towards z")
+
+
 def test_every_cut_is_drawn() -> None:
     svg = draw_pin(shape(), make_results().units)
     parts = svg.split('<g class="cut">')[1:]
