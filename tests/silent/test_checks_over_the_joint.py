@@ -150,3 +150,19 @@ def test_a_formula_takes_the_largest_clearance() -> None:
     tight, loose, ranged = (worst(solved(x, 20e3), NET) for x in (TIGHT, LOOSE, RANGED))
     assert ranged.demand == loose.demand
     assert ranged.used > 1.03 * tight.used
+
+
+def test_the_hole_about_a_bushing_that_a_loose_joint_loads_more_depends() -> None:
+    """Its stress grows by half with the clearance, and was met as of the joint as given."""
+    ring = "[lug_defaults.bushing]\nthickness = 2\nmaterial = 'steel'\ninterference = 0.01\n"
+    swap = "[lug_defaults.shank]", f"{ring}[lug_defaults.shank]"
+    tight, loose, ranged = (solved(x, 15e3, swap).pins[0].joint for x in (TIGHT, LOOSE, RANGED))
+    holes = [
+        max((x for x in joint.lugs if x.wall == "hole"), key=lambda x: x.max_von_mises)
+        for joint in (tight, loose, ranged)
+        if joint is not None
+    ]
+    given, there, ours = holes
+    assert there.max_von_mises > 1.2 * given.max_von_mises
+    assert ours.max_von_mises == given.max_von_mises
+    assert ours.over_joint * ours.max_von_mises > 0.99 * there.max_von_mises
