@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from fea.core.material import Material
-from fea.lug.lug_stress import BoreStress, LugInPlane, LugLoad, at_walls, bore_stresses
+from fea.lug.lug_stress import (
+    USUAL_AROUND,
+    BoreStress,
+    LugInPlane,
+    LugLoad,
+    at_walls,
+    bore_stresses,
+)
 from fea.lug.slipping import SlippingBushing
 from fea.lug.through_thickness import EyeStress, eye_stress
 from fea.support.contact.pressed_cases import PressedCases
@@ -77,17 +84,26 @@ class _LoadedLug:
         """
         load = self.load(waves, angle, times)
         largest: dict[tuple[str, str], tuple[Lug, BoreStress]] = {}
-        for bushing in self.lug.pressed_bushings() or (None,):
-            at = replace(self.lug, bushing=bushing)
-            bonded = partial(LugInPlane, at, *self.of, memo=self.memo)
-            pressed = bushing is not None and bushing.pressed
-            slipping = partial(SlippingBushing, at, *self.of, memo=self.memo) if pressed else None
+        for at, bonded, slipping in self.planes(self.lug.clearance):
             for stress in bore_stresses(bonded, self.eye, load, slipping):
                 place, size = (stress.wall, stress.place), stress.von_mises + stress.error
                 before = largest.get(place)
                 if before is None or size > before[1].von_mises + before[1].error:
                     largest[place] = at, stress
         return largest
+
+    def planes(
+        self, clearance: float
+    ) -> Iterator[tuple[Lug, Callable[..., LugInPlane], Callable[..., SlippingBushing] | None]]:
+        """The lug with a clearance, m, with either end of the interference of its bushing, and what
+        makes it in its plane, bonded and, of a pressed bushing, slipping.
+        """
+        for bushing in self.lug.pressed_bushings() or (None,):
+            at = replace(self.lug, bushing=bushing, clearance=clearance)
+            bonded = partial(LugInPlane, at, *self.of, memo=self.memo)
+            pressed = bushing is not None and bushing.pressed
+            slipping = partial(SlippingBushing, at, *self.of, memo=self.memo) if pressed else None
+            yield at, bonded, slipping
 
 
 def lug_stresses(
@@ -137,16 +153,22 @@ def lug_stresses(
 def _over_joint(
     loaded: _LoadedLug, pressures: Sequence[VariedPressures], angle: Floats
 ) -> dict[tuple[str, str], float]:
-    """The largest stress by wall where nothing presses on it under any of some pressures, over
-    that under the first ones.
+    """The largest stress by wall and place under any of some pressures, over that under the first
+    ones; not of contact with the pin.
     """
 
     def sizes(joint: VariedPressures) -> dict[tuple[str, str], float]:
         # Lugs that are stiffer, as other links than theirs would make them, are of the same metal.
         (loose,) = (x.clearance for x in joint.lugs if x.connection == loaded.lug.connection)
-        plane = LugInPlane(replace(loaded.lug, clearance=loose), *loaded.of, memo=loaded.memo)
-        walls = at_walls(plane, loaded.eye, loaded.load(joint.waves, angle, None))
-        return {(x.wall, x.place): x.von_mises for x in walls if x.place == "free"}
+        load, largest = loaded.load(joint.waves, angle, None), dict[tuple[str, str], float]()
+        for _, bonded, slipping in loaded.planes(loose):
+            walls = at_walls(bonded(around=USUAL_AROUND), loaded.eye, load)
+            if slipping is not None:
+                walls += at_walls(slipping(around=USUAL_AROUND), loaded.eye, load)
+            for x in walls:
+                place = x.wall, x.place
+                largest[place] = max(largest.get(place, 0.0), x.von_mises)
+        return {place: size for place, size in largest.items() if place[1] != "beneath"}
 
     given, *varied = map(sizes, pressures)
     return {

@@ -175,26 +175,28 @@ def _together(
     Each multiplies the stress by the ratio that it has alone, since they were not solved together:
     exact where stress is proportional to the loads.
     """
-    extreme = max if judged.safe else min
-    over = {"joint": joint.range if joint else None, "landing": pin.landing, "links": pin.sharing}
+    extreme, over = max if judged.safe else min, joint.range if joint else None
+    loads = {"landing": pin.landing, "links": pin.sharing}
     ratios = {
         what: float(extreme(judged.maximum, *each.max_von_mises)) / judged.maximum
-        for what, each in over.items()
+        for what, each in loads.items()
         if each is not None
     }
-    if len(ratios) < 2:
+    if len(ratios) + (over is not None) < 2:
         return
-    beneath = [contact.upper_end if contact else 0.0]
-    variations = joint.range.variations if joint and joint.range else ()
-    counted = (v for v in variations if judged.safe or v.what != FRICTION)
-    beneath += [_upper_end(contact, v) for v in counted]
-    deep = extreme(beneath) * ratios.get("landing", 1.0) * ratios.get("links", 1.0)
-    stress = judged.maximum * math.prod(ratios.values())
-    fails_beneath = deep > judged.permitted
-    turned = judged.turns(stress)
-    if (turned or fails_beneath) if judged.safe else (turned and not fails_beneath):
+    more, variations = math.prod(ratios.values()), over.variations if over else ()
+    counted = [v for v in variations if judged.safe or v.what != FRICTION]
+    beneath = [contact.upper_end if contact else 0.0, *(_upper_end(contact, v) for v in counted)]
+    error = judged.high / judged.maximum
+    # The interval of a variation has its error already, and so has a range by foundations.
+    tops = [v.interval[1] if v.interval else v.max_von_mises * error for v in counted]
+    tops += [over.max_von_mises[1]] if over and judged.safe else []
+    top, deep = (more * extreme(x) for x in ([judged.high, *tops], beneath))
+    if (max(top, deep) > judged.permitted) == judged.safe:
+        ends = over.max_von_mises if over else ()
+        stress = more * extreme((judged.maximum, *ends))
         factor = judged.strength / (max(stress, deep) if judged.safe else stress)
-        yield Dependence(TOGETHER, "", joined([*ratios]), factor)
+        yield Dependence(TOGETHER, "", joined([*["joint"] * (over is not None), *ratios]), factor)
 
 
 def _beneath(judged: JudgedStress, contact: ContactPlace | None) -> Iterator[Dependence]:

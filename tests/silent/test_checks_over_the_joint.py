@@ -189,3 +189,19 @@ forces = { ONE = [20000, 0], OTHER = [20000, 0] }
     assert there.demand > 1.05 * given.demand
     assert 0.99 * there.demand < ours.over_joint * given.demand < 1.1 * there.demand
     assert found[RANGED]["ONE"].over_joint == 1.0
+
+
+def test_the_hole_about_a_bushing_that_a_loose_joint_loads_more_depends() -> None:
+    """Its stress grows by half with the clearance, and was met as of the joint as given."""
+    ring = "[lug_defaults.bushing]\nthickness = 2\nmaterial = 'steel'\ninterference = 0.01\n"
+    swap = "[lug_defaults.shank]", f"{ring}[lug_defaults.shank]"
+    tight, loose, ranged = (solved(x, 15e3, swap).pins[0].joint for x in (TIGHT, LOOSE, RANGED))
+    holes = [
+        max((x for x in joint.lugs if x.wall == "hole"), key=lambda x: x.max_von_mises)
+        for joint in (tight, loose, ranged)
+        if joint is not None
+    ]
+    given, there, ours = holes
+    assert there.max_von_mises > 1.2 * given.max_von_mises
+    assert ours.max_von_mises == given.max_von_mises
+    assert ours.over_joint * ours.max_von_mises > 0.99 * there.max_von_mises

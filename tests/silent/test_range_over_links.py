@@ -12,6 +12,7 @@ from reports.data.unknowns import factor_spread
 from tests.places.test_outcomes_beneath import pin as with_contact
 from tests.reports.test_unknowns import pin as in_joint
 from tests.support.results.judged_results import row
+from tests.support.results.rows import with_values
 
 
 def _over_links(factor: float, low: float, high: float) -> PinResult:
@@ -75,3 +76,20 @@ def test_links_that_take_what_lies_beneath_contact_beyond_what_is_permitted() ->
     assert (one.what, one.value, one.over) == ("beneath", "AE stiffer", "links")
     assert one.factor == pytest.approx(118.0 / 85.2)
     assert _with_links(with_contact(70000.0), 1.1).outcome == "safe"
+
+
+def test_a_range_over_the_joint_that_has_its_error_is_not_given_it_twice() -> None:
+    """An error of 60 %, and foundations up to 3 times the stress with theirs: 6 / 3 / 1.1 = 1.82 of
+    1.5. Nose legs in side loads were said to depend.
+    """
+    made = in_joint(6.0, (0.9, 1.3))
+    stress = made.max_von_mises or 0.0
+    assert made.joint is not None
+    assert made.joint.range is not None
+    free = replace(made.joint.range.variations[0], interval=(0.5 * stress, 3.0 * stress))
+    over = replace(made.joint.range, max_von_mises=(0.5 * stress, 3.0 * stress), variations=(free,))
+    wide = with_values(
+        made, joint=replace(made.joint, range=over), error_estimate=0.6 * stress, depends_on=()
+    )
+    assert _with_links(wide, 1.1).outcome == "safe"
+    assert [d.over for d in _with_links(wide, 1.4).depends_on] == ["joint and links"]  # 1.43
