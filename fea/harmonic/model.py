@@ -6,7 +6,7 @@ directions, share it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -134,22 +134,21 @@ class HarmonicBody:
 
 @dataclass(frozen=True)
 class Moved:
-    """Displacements of a section's nodes under K unit loads, and the loads themselves.
-
-    u: (N, 3, K) m.
-    applied: (N, 3, K) N, nodal forces.
-    tractions: (E, 3, 3, K) Pa, on the outline's edges.
-    """
+    """Displacements u (N, 3, K) m of a section's nodes under K unit loads."""
 
     loads: tuple[UnitLoad, ...]
     u: Floats
-    applied: Floats
-    tractions: Floats
 
     @property
     def harmonics(self) -> Ints:
         """The harmonic of each load, (K,)."""
         return np.array([load.n for load in self.loads])
+
+    def by_harmonic(self) -> Iterator[tuple[int, Ints]]:
+        """Harmonics, and the numbers of their loads."""
+        harmonics = self.harmonics
+        for n in sorted(set(harmonics.tolist())):
+            yield n, np.flatnonzero(harmonics == n)
 
 
 def superposed(parts: Sequence[Moved], loads: tuple[UnitLoad, ...]) -> Moved:
@@ -157,16 +156,11 @@ def superposed(parts: Sequence[Moved], loads: tuple[UnitLoad, ...]) -> Moved:
 
     The sums are those of UnitLoad.single_surface_loads.
     """
-    zeros = (
-        np.zeros((*x.shape[:-1], len(loads)))
-        for x in (parts[0].u, parts[0].applied, parts[0].tractions)
-    )
-    total = Moved(loads, *zeros)
+    total = Moved(loads, np.zeros((*parts[0].u.shape[:-1], len(loads))))
     for part in parts:
         columns = np.flatnonzero(total.harmonics == part.loads[0].n)
         share = shares(part.loads, [loads[k] for k in columns])
-        for name in ("u", "applied", "tractions"):
-            getattr(total, name)[..., columns] += getattr(part, name) @ share
+        total.u[..., columns] += part.u @ share
     return total
 
 
@@ -218,15 +212,10 @@ class HarmonicModel(HarmonicBody):
 
     def moved(self, loads: tuple[UnitLoad, ...]) -> Moved:
         """The displacements under unit loads, harmonic by harmonic."""
-        u = np.zeros((len(self.space.nodes), 3, len(loads)))
-        applied = np.zeros_like(u)
-        tractions = np.zeros((*self.outline.nodes.shape, 3, len(loads)))
-        moved = Moved(loads, u, applied, tractions)
-        for n in sorted(set(moved.harmonics.tolist())):
-            here = np.flatnonzero(moved.harmonics == n)
-            forces, tractions[..., here] = self._applied(n, [loads[k] for k in here])
-            applied[:, :, here] = polar(forces) * [[0.5], [0.5], [1.0]]
-            u[:, :, here] = polar(self.displace(n, forces, self._shifted(n, loads, here)))
+        moved = Moved(loads, np.zeros((len(self.space.nodes), 3, len(loads))))
+        for n, here in moved.by_harmonic():
+            forces, _ = self._applied(n, [loads[k] for k in here])
+            moved.u[:, :, here] = polar(self.displace(n, forces, self._shifted(n, loads, here)))
         return moved
 
     def read(
@@ -238,8 +227,12 @@ class HarmonicModel(HarmonicBody):
             self._readings[key] = reading(
                 self.space, self.outline, self.material, self.clamps, extra, key[1]
             )
-        read = self._readings[key]
-        displacement, stress = read.of(moved.harmonics, moved.u, moved.tractions)
+        read, applied = self._readings[key], np.zeros_like(moved.u)
+        tractions = np.zeros((*self.outline.nodes.shape, 3, len(moved.loads)))
+        for n, here in moved.by_harmonic():
+            forces, tractions[..., here] = self._applied(n, [moved.loads[k] for k in here])
+            applied[:, :, here] = polar(forces) * [[0.5], [0.5], [1.0]]
+        displacement, stress = read.of(moved.harmonics, moved.u, tractions)
         return MeridianFields(
             read.points,
             moved.loads,
@@ -249,7 +242,7 @@ class HarmonicModel(HarmonicBody):
             self.space.unknowns,
             read.triangles,
             unread(read.jumps, read.points, read.skin),
-            read.at_points(moved.applied),
+            read.at_points(applied),
             self.space.section,
         )
 

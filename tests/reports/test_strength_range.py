@@ -81,7 +81,7 @@ def test_strength_and_joint_that_change_an_outcome_only_together() -> None:
     (d,) = row.depends_on
     assert (d.what, d.over) == (TOGETHER, "strength and joint")
     assert d.factor == pytest.approx(2.0 * 0.85 / 1.2)
-    assert flips(row, UNITS) == "the open strength and joint values"
+    assert flips(row, UNITS) == "the strength and joint values together"
     assert over(pin(2.0, (0.9, 1.2)), 0.95, 1.0).outcome == SAFE
 
 

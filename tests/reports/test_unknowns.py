@@ -59,7 +59,7 @@ def test_two_ranges_that_change_an_outcome_only_together() -> None:
     assert (over.over, over.what) == ("joint and landing", TOGETHER)
     assert over.factor == pytest.approx(2.6 / 1.5 / 1.3, rel=1e-9)
     assert over_words(both.depends_on) == "joint and landing"
-    assert flips(both, UNITS) == "the open joint and landing values"
+    assert flips(both, UNITS) == "the joint and landing values together"
     assert pin(3.1, (0.9, 1.3), ("rectangular",)).outcome == SAFE  # 3.1 / 1.95 = 1.59
 
 

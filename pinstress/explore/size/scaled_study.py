@@ -104,8 +104,9 @@ def _resized(
                     diameter = 1.0 if key == "diameter" else None
                     for here, at in _numbers(table, key):
                         _scale(here, at, scale, system, up, standard, diameter)
-        aside = *_plain(table_of_pin.get("passage", [])), *_plain(table_of_pin.get("hole", []))
-        for table in aside:
+        for table in (t for cut in ("passage", "hole") for t in _plain(table_of_pin.get(cut, []))):
+            if "offset" not in table:
+                continue
             for here, at in _numbers(table, "offset"):
                 _scale(here, at, scale, system, -1)
         for key, up in (("meridian", 1), ("bore_meridian", -1)):
