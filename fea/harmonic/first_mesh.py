@@ -14,13 +14,16 @@ from pinbase.memo import Memo
 Key = tuple[object, ...]
 # Unit loads, points (P, 2) to read stress at, and ends of pressures, as of HarmonicModel.solve.
 UnitFields = tuple[tuple[UnitLoad, ...], Floats, tuple[tuple[float, float], ...]]
+# Of displacements under all single rings that are kept.
+MAX_KEPT_BYTES, FLOAT_BYTES = 250_000_000, 8
 
 
 class FirstMesh:
     """The first mesh of a pin while contact holds it.
 
     Displacements under the pressure of each ring alone are solved once, and remembered for other
-    loads of the links; fields under patterns of pressures are superposed from them. They are read
+    loads of the links; fields under patterns of pressures are superposed from them. Where rings and
+    harmonics are too many for that, patterns are solved as they are. They are read
     once, and belong to these loads alone: what was read together is the same to the last bit
     only where the loads are.
     """
@@ -47,10 +50,14 @@ class FirstMesh:
         return known
 
     def _superposed(self, model: HarmonicModel, key: Key, loads: tuple[UnitLoad, ...]) -> Moved:
-        """The displacements under loads, superposed from those on single surfaces."""
+        """The displacements under loads, superposed from those on single surfaces unless these are
+        too many to be kept.
+        """
+        alone = dict.fromkeys(one for load in loads for one in load.single_surface_loads)
+        if len(alone) * model.space.unknowns * FLOAT_BYTES > MAX_KEPT_BYTES:
+            return model.moved(loads)
         parts = self._moved.setdefault(key, [])
         known = {load for part in parts for load in part.loads}
-        alone = dict.fromkeys(one for load in loads for one in load.single_surface_loads)
         new = [load for load in alone if load not in known]
         for n in sorted({load.n for load in new}):
             together = tuple(load for load in new if load.n == n)
