@@ -107,7 +107,8 @@ def why_missed(results: Results, pin: str) -> str:
         return f"{check.check} has a margin of safety of {1.0 / check.used - 1.0:.3g}"
     worst = worst_checks(results)[pin]
     if worst.stated and worst.outcome == NOT_DECIDED:
-        return f"{worst.check} was not checked: {worst.reason}"
+        reason = f", which {worst.reason}" if worst.reason else ""
+        return f"{worst.check} is not decided{reason}"
     if depends:
         every = [d for p in rows if p.outcome == DEPENDS for d in p.depends_on]
         ranges = over_words([d for d in every if d.over != BENEATH_CONTACT])
