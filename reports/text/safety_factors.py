@@ -20,6 +20,7 @@ from reports.tables.strength.fatigue import fatigue_sentence
 from reports.tables.strength.limit_load import limits_table
 from reports.tables.strength.overview import (
     FACTOR_MARK,
+    OVER_OPEN_MARK,
     REQUIRED_MARK,
     SPREAD_MARK,
     overview_table,
@@ -119,9 +120,11 @@ def _key(lines: list[PinLine]) -> str:
     parts = [f"{FACTOR_MARK} factor"]
     parts += [f"{SPREAD_MARK} open range"] * any(line.spread for line in lines)
     parts.append(f"{REQUIRED_MARK} {limit_name}")
-    diameters = [line.diameter for line in lines if line.diameter and line.diameter.needed]
-    parts += ["→ estimate"] * bool(diameters)
-    parts += ["† too large for its lug"] * any(d.too_large(d.needed) for d in diameters)
+    sized = [line.diameter for line in lines if line.diameter]
+    shown = [(d, d.needed or d.whatever) for d in sized if d.needed or d.whatever]
+    parts += ["→ estimate"] * bool(shown)
+    parts += ["† too large for its lug"] * any(d.too_large(diameter) for d, diameter in shown)
+    parts += [f"{OVER_OPEN_MARK} over its open range"] * any(not d.needed for d, _ in shown)
     return "   ".join(parts)
 
 

@@ -27,7 +27,9 @@ from reports.tables.strength.overview import (
     bar,
     check_words,
     diameter_words,
+    either_diameter_words,
     factor_axis,
+    whatever_words,
 )
 from reports.text.load_path import names
 from reports.text.overview import accuracy, decisions, skipped_checks
@@ -154,6 +156,11 @@ def test_the_diameter_by_the_law_of_the_section(few: Results) -> None:
     assert factor_at(line.row, scale) == pytest.approx(1.5, rel=1e-9)
     assert factor_at(line.row, 1.0) < 1.5
     assert "→" in diameter_words(line)
+    assert either_diameter_words(line) == diameter_words(line)
+    # One that only depends is given with the diameter over all that is open: it read as "keep".
+    open_ = replace(line, diameter=replace(line.diameter, needed=None, whatever=24.0, eye=30.0))
+    assert either_diameter_words(open_) == f"{diameter_words(open_)} → 24.0 † ‡"
+    assert whatever_words(open_) == "24.0 †"
 
 
 def test_labels_of_a_pin_that_nearly_suffices_stand_apart(few: Results) -> None:

@@ -25,6 +25,7 @@ AXIS_MARGIN = 1.3  # ratio, beyond the smallest and the largest factor
 MAX_RANK = 10  # of columns that a narrow terminal drops first
 SPREAD_DIGITS = 2
 BAR_WIDTH = 20  # characters
+OVER_OPEN_MARK = "‡"  # of a diameter that suffices over all that is open
 SPREAD_MARK, FACTOR_MARK, REQUIRED_MARK = "-", "#", "|"
 
 
@@ -100,7 +101,7 @@ def overview_table(results: Results, lines: Sequence[PinLine]) -> Table[PinLine]
         Column("bar", lambda x: bar(x, axis) if axis else DASH, heading=_heading(axis),
                numeric=False, rank=4, drop_if_empty=True),
         Column("spread", spread_words, heading="open range", rank=3, drop_if_empty=True),
-        Column("diameter", diameter_words, "length", "diameter",
+        Column("diameter", either_diameter_words, "length", "diameter",
                numeric=False, rank=2, drop_if_empty=True),
         Column("max_von_mises", lambda x: x.row.max_von_mises, "stress", "max von Mises", rank=6),
         Column("error_estimate", lambda x: error_words(x), heading="±", rank=7),
@@ -154,6 +155,16 @@ def diameter_words(line: PinLine) -> str:
         return DASH
     given = short(float(f"{d.given:.4g}"))
     return f"{given} → {_diameter(d, d.needed)}" if d.needed else given
+
+
+def either_diameter_words(line: PinLine) -> str:
+    """Return `diameter_words`, and of a pin that depends on what is open the diameter with which it
+    no longer does, which a double dagger marks.
+    """
+    d = line.diameter
+    if d is None or d.needed or d.whatever is None:
+        return diameter_words(line)
+    return f"{diameter_words(line)} → {_diameter(d, d.whatever)} {OVER_OPEN_MARK}"
 
 
 def whatever_words(line: PinLine) -> str:
