@@ -94,7 +94,8 @@ class ContactSupport:
             near = coarser.candidates
             cells = coarser.for_arcs(cells, left)
             finer = finer and coarser.for_arcs(finer, left)
-            if finer is not None and coarser.far_from(left, requirement):
+            wide = finer is self.finer  # narrow arcs are better known on the next cells
+            if finer is not None and wide and coarser.far_from(left, requirement):
                 cells, finer = finer, None
         progress(f"pin {problem.pin.name}, flexibility of {cells.rings} rings of each lug")
         profile, cut = profile_of(problem.pin), isinstance(problem.pin, CutPin)
