@@ -108,6 +108,12 @@ def test_an_interrupt_leaves_nothing_behind(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+def _stays_within(error: float, rows: list[dict[str, str]]) -> list[dict[str, str]]:
+    """The last rows of an element that are all within an error."""
+    beyond = [k for k, row in enumerate(rows) if float(row["relative_error"]) > error]
+    return rows[max(beyond, default=-1) + 1 :]
+
+
 @pytest.mark.slow
 def test_the_command(tmp_path: Path) -> None:
     """On a short ladder. The mesh on which auto ends is that of a run, to the last digit; every
@@ -143,6 +149,9 @@ def test_the_command(tmp_path: Path) -> None:
     (auto,) = [r for r in rows if r["chosen_by_auto"] == "yes"]
     assert (auto["model"], int(auto["dofs"])) == (run["model"], run["dofs"])
     assert float(auto["max_von_mises"]) == pytest.approx(run["max_von_mises"], rel=1e-9)
-    said = " ".join(done.stdout.split())
-    assert "Cheapest within 5 %: harmonic" in said
+    said, elements = " ".join(done.stdout.split()), {r["element"] for r in rows}
+    # By the times that were measured, which a busy machine may turn around.
+    within = [_stays_within(0.05, [r for r in rows if r["element"] == e]) for e in elements]
+    cheapest = min((tail[0] for tail in within if tail), key=lambda r: float(r["seconds"]))
+    assert f"Cheapest within 5 %: {cheapest['model']}" in said
     assert "Reference: harmonic model" in said
