@@ -123,9 +123,9 @@ def _key(lines: list[PinLine]) -> str:
     sized = [line.diameter for line in lines if line.diameter]
     shown = [(d, d.needed or d.whatever) for d in sized if d.needed or d.whatever]
     parts += ["→ estimate"] * bool(shown)
-    parts += ["† too large for its lug"] * any(d.too_large(diameter) for d, diameter in shown)
-    parts += [f"{OVER_OPEN_MARK} over its open range"] * any(not d.needed for d, _ in shown)
-    return "   ".join(parts)
+    parts += ["† lug too small"] * any(d.too_large(diameter) for d, diameter in shown)
+    parts += [f"{OVER_OPEN_MARK} open range"] * any(not d.needed for d, _ in shown)
+    return "  ".join(parts)
 
 
 def _margins(results: Results) -> list[str]:
