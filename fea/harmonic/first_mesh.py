@@ -23,9 +23,9 @@ class FirstMesh:
 
     Displacements under the pressure of each ring alone are solved once, and remembered for other
     loads of the links; fields under patterns of pressures are superposed from them. Where rings and
-    harmonics are too many for that, patterns are solved as they are. They are read
-    once, and belong to these loads alone: what was read together is the same to the last bit
-    only where the loads are.
+    harmonics are too many for that, patterns are solved as they are. Fields are read once, and
+    belong to these loads alone: what was read together is the same to the last bit only where the
+    loads are.
     """
 
     def __init__(self, memo: Memo | None = None) -> None:

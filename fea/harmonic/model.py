@@ -6,7 +6,7 @@ directions, share it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -132,6 +132,11 @@ class HarmonicBody:
         return np.array([3 * near + 1, 3 * far + 1])
 
 
+# By harmonic: the numbers of loads, their nodal forces (unknowns, K), N, and their tractions at the
+# outline's nodes (E, 3, 3, K), Pa.
+Forces = Mapping[int, tuple[Ints, Floats, Floats]]
+
+
 @dataclass(frozen=True)
 class Moved:
     """Displacements u (N, 3, K) m of a section's nodes under K unit loads."""
@@ -143,12 +148,6 @@ class Moved:
     def harmonics(self) -> Ints:
         """The harmonic of each load, (K,)."""
         return np.array([load.n for load in self.loads])
-
-    def by_harmonic(self) -> Iterator[tuple[int, Ints]]:
-        """Harmonics, and the numbers of their loads."""
-        harmonics = self.harmonics
-        for n in sorted(set(harmonics.tolist())):
-            yield n, np.flatnonzero(harmonics == n)
 
 
 def superposed(parts: Sequence[Moved], loads: tuple[UnitLoad, ...]) -> Moved:
@@ -208,20 +207,30 @@ class HarmonicModel(HarmonicBody):
 
         Raises: SolveError when the pin is not constrained or a check fails.
         """
-        return self.read(self.moved(loads), extra, ends)
+        forces = self._forces(loads)
+        return self.read(self.moved(loads, forces), extra, ends, forces)
 
-    def moved(self, loads: tuple[UnitLoad, ...]) -> Moved:
-        """The displacements under unit loads, harmonic by harmonic."""
-        moved = Moved(loads, np.zeros((len(self.space.nodes), 3, len(loads))))
-        for n, here in moved.by_harmonic():
-            forces, _ = self._applied(n, [loads[k] for k in here])
-            moved.u[:, :, here] = polar(self.displace(n, forces, self._shifted(n, loads, here)))
-        return moved
+    def moved(self, loads: tuple[UnitLoad, ...], forces: Forces | None = None) -> Moved:
+        """The displacements under unit loads, harmonic by harmonic.
+
+        forces: of the loads, if they are known.
+        """
+        u = np.zeros((len(self.space.nodes), 3, len(loads)))
+        for n, (here, on_nodes, _) in (forces or self._forces(loads)).items():
+            u[:, :, here] = polar(self.displace(n, on_nodes, self._shifted(n, loads, here)))
+        return Moved(loads, u)
 
     def read(
-        self, moved: Moved, extra: Floats, ends: Iterable[tuple[float, float]]
+        self,
+        moved: Moved,
+        extra: Floats,
+        ends: Iterable[tuple[float, float]],
+        forces: Forces | None = None,
     ) -> MeridianFields:
-        """The unit fields, read at the points of this mesh."""
+        """The unit fields, read at the points of this mesh.
+
+        forces: of the loads, if they are known.
+        """
         key = extra.tobytes(), tuple(ends)
         if key not in self._readings:  # the first mesh is read again for other loads
             self._readings[key] = reading(
@@ -229,9 +238,9 @@ class HarmonicModel(HarmonicBody):
             )
         read, applied = self._readings[key], np.zeros_like(moved.u)
         tractions = np.zeros((*self.outline.nodes.shape, 3, len(moved.loads)))
-        for n, here in moved.by_harmonic():
-            forces, tractions[..., here] = self._applied(n, [moved.loads[k] for k in here])
-            applied[:, :, here] = polar(forces) * [[0.5], [0.5], [1.0]]
+        for here, on_nodes, on_edges in (forces or self._forces(moved.loads)).values():
+            applied[:, :, here] = polar(on_nodes) * [[0.5], [0.5], [1.0]]
+            tractions[..., here] = on_edges
         displacement, stress = read.of(moved.harmonics, moved.u, tractions)
         return MeridianFields(
             read.points,
@@ -254,6 +263,11 @@ class HarmonicModel(HarmonicBody):
             return None
         names = [load.surface if move else "" for load, move in zip(units, moves, strict=True)]
         return self.motions(n, names, [load.kind == "turn" for load in units])
+
+    def _forces(self, loads: tuple[UnitLoad, ...]) -> Forces:
+        harmonics = np.array([load.n for load in loads])
+        of = {n: np.flatnonzero(harmonics == n) for n in sorted(set(harmonics.tolist()))}
+        return {n: (here, *self._applied(n, [loads[k] for k in here])) for n, here in of.items()}
 
     def _applied(self, n: int, loads: list[UnitLoad]) -> tuple[Floats, Floats]:
         """Nodal forces (unknowns, K) and tractions at the outline's nodes (E, 3, 3, K)."""
