@@ -22,7 +22,7 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.peak import Maximum
 from fea.core.pin_loads import Floats, PinLoads
-from fea.support.lugs.fit import fitted
+from fea.support.lugs.fit import fitted, on_structure
 from fea.support.lugs.links import link_forces, link_moments
 from fea.support.lugs.lug import Lug
 from fea.support.records import BandContact, JointResult
@@ -47,6 +47,11 @@ class PinInLugs:
     material: Material
     lugs: tuple[Lug, ...]
 
+    @property
+    def whole(self) -> Pin:
+        """The same pin with its bands in lugs of a structure."""
+        return on_structure(self.pin, self.lugs)
+
 
 def opinion_in_lugs(
     seated: PinInLugs,
@@ -64,14 +69,14 @@ def opinion_in_lugs(
         opinions = []
         for number, mesh in enumerate(meshes or meshes_for(loads), 1):
             progress(f"pin {peak.pin}, {peak.case}, contact by CalculiX, mesh {number} of 2")
-            opinions.append(joint_opinion(seated.pin, seated.material, seated.lugs, loads, mesh))
+            opinions.append(joint_opinion(seated.whole, seated.material, seated.lugs, loads, mesh))
     except (ArgumentError, CalculixError, SolveError) as error:
         return replace(answer, failure=str(error))
     return _compared(answer, seated, peak, joint, opinions)
 
 
 def transverse(seated: PinInLugs, governing: PinLoads | None) -> PinLoads:
-    """The transverse forces and moments of the links, in balance.
+    """The transverse forces and moments of the links, in balance with what a structure reacts.
 
     Raises: ArgumentError for what CalculiX's model lacks; SolveError for forces out of balance.
     """
@@ -90,20 +95,18 @@ def transverse(seated: PinInLugs, governing: PinLoads | None) -> PinLoads:
     plain = PinLoads(
         loads.case, loads.surfaces, loads.forces * across, loads.moments * across, tilting=tilting
     )
-    pin, lugs = seated.pin, fitted(seated.pin, seated.material, seated.lugs)
-    force = link_forces(pin, 0.0, plain)
-    moment = link_moments((pin, pin), lugs, plain, force, (0.0, 0.0))
-    forces, moments = (np.pad(x, ((0, 0), (0, 0), (0, 1))) for x in (force, moment))
-    return PinLoads(loads.case, pin.connections, forces, moments, tilting=tilting)
+    pin, whole = seated.pin, seated.whole
+    lugs, links = fitted(whole, seated.material, seated.lugs), pin.connections
+    force = link_forces(pin, 0.0, plain, structure=len(lugs) > len(links))
+    moment = link_moments((pin, whole), lugs, plain, force, (0.0, 0.0))
+    of_links = [whole.connections.index(name) for name in links]
+    loaded = force[:, : len(links)], moment[:, of_links]
+    forces, moments = (np.pad(x, ((0, 0), (0, 0), (0, 1))) for x in loaded)
+    return PinLoads(loads.case, links, forces, moments, tilting=tilting)
 
 
 def _require_modelled(seated: PinInLugs) -> None:
-    structure = [x.connection for x in seated.lugs if x.connection not in seated.pin.connections]
     tight = [lug.connection for lug in seated.lugs if lug.clearance < 0.0]
-    if structure:
-        raise ArgumentError(
-            f"CalculiX's model has no lugs of the structure ({', '.join(structure)})", "structure"
-        )
     if tight:
         raise ArgumentError(
             f"CalculiX's model has no interference ({', '.join(tight)})", "interference"
@@ -127,7 +130,7 @@ def _compared(
     opinions: Sequence[JointOpinion],
 ) -> Opinion:
     assert joint.bending_moment is not None  # contact has one
-    pin = seated.pin
+    pin = seated.whole
     moments = [largest_moment(x, pin) for x in opinions]
     stresses = [_stress(x, seated, peak) for x in opinions]
     coarse, fine = opinions
@@ -151,7 +154,7 @@ def _stress(opinion: JointOpinion, seated: PinInLugs, peak: Maximum) -> float:
     CalculiX's rings.
     """
     if peak.places is not None and peak.places.governs == "section":
-        return section_of(opinion, seated.pin, seated.material).value
+        return section_of(opinion, seated.whole, seated.material).value
     assert peak.location is not None
     return opinion.surface_at(np.array(peak.location), seated.material.poisson_ratio)
 

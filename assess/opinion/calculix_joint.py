@@ -153,6 +153,8 @@ def joint_opinion(
 ) -> JointOpinion:
     """CalculiX's opinion on a pin under transverse forces and moments of its links at one instant.
 
+    A lug whose connection has no loads is of a structure.
+
     Raises: ArgumentError for loads or shapes that this model lacks; CalculixError.
     """
     deck, angle = joint_deck(pin, material, lugs, loads, fineness)
@@ -193,10 +195,13 @@ def joint_deck(
     radii = {lug.connection: lug.edge_radius for lug in lugs}
     stations = stations_of(pin, radii, fineness)
     mesh = pin_mesh(pin, stations, fineness, half)
+    held = [lug for lug in lugs if lug.connection not in loads.surfaces]
+    least = min((lug.clearance for lug in held), default=0.0)
+    reaction = -force.sum(axis=0) @ turn  # of the structure on its lugs
     eyes = [
         _eye(
             pin, replace(lug, tilt=0.0) if lug.connection in tilting else lug, (f @ turn, m @ turn),
-            mesh, stations, fineness, half,
+            mesh, stations, fineness, half, (least, reaction) if lug in held else None,
         )
         for lug, f, m in zip(lugs, force, couple, strict=True)
     ]  # fmt: skip
@@ -283,7 +288,13 @@ def _eye(
     stations: list[Floats],
     fineness: Fineness,
     half: bool,
+    structure: tuple[float, Floats] | None,
 ) -> Eye:
+    """The support of a lug.
+
+    structure: of one that holds still, clearance and force (2,), N, with which its structure
+    touches the pin.
+    """
     i, band = pin.labels.index(lug.connection), pin.band(lug.connection)
     radius, tiny = pin.segments[i].diameter / 2.0, 1e-9 * pin.length
     on_band = (stations[i] > band.z0 - tiny) & (stations[i] < band.z1 + tiny)
@@ -293,20 +304,25 @@ def _eye(
     radii = (radius, *(lining[:1] if lining else ()), lug.outer_diameter / 2.0)
     plain = annulus_mesh(radii, z, fineness, half)
     force, (x, y) = acting[0], acting[1].tolist()
-    body = _opened(plain, lug, force, fineness.scale)
+    gap, along = structure or (lug.clearance, force)
+    body = _opened(plain, lug, 0.5 * fineness.scale * gap * _direction(along), fineness.scale)
     before = sum(len(x) - 1 for x in stations[:i]) + int(on_band.argmax())
     surface = np.abs(mesh.outer - radius) < 1e-9 * radius
     ring = (mesh.layer - before) // fineness.parts
     count = -(-(len(z) - 1) // fineness.parts)
     rings = tuple(np.flatnonzero(surface & (ring == k)) for k in range(count))
     part = Part(f"LUG{i}", body, lug.material, lining)
-    return Eye(part, force, lug.tilt * (0.5 if half else 1.0), rings, (x, y))
+    tilt = lug.tilt * (0.5 if half else 1.0)
+    return Eye(part, force, tilt, rings, (x, y), held=structure is not None)
 
 
-def _opened(mesh: Hexahedra, lug: Lug, force: Floats, scale: float) -> Hexahedra:
-    """The mesh of a lug with clearance and rounding of the bore, times `scale`, shifted until its
-    loaded side touches.
-    """
+def _direction(force: Floats) -> Floats:
+    size = float(np.linalg.norm(force))
+    return force / size if size else np.zeros(2)
+
+
+def _opened(mesh: Hexahedra, lug: Lug, shift: Floats, scale: float) -> Hexahedra:
+    """The mesh of a lug with clearance and rounding of the bore, times `scale`, shifted (2,), m."""
     x = mesh.nodes
     r = np.hypot(x[:, 0], x[:, 1])
     edge = np.minimum(x[:, 2] - x[:, 2].min(), x[:, 2].max() - x[:, 2])
@@ -316,9 +332,7 @@ def _opened(mesh: Hexahedra, lug: Lug, force: Floats, scale: float) -> Hexahedra
     moved = x.copy()
     half = 0.5 * scale * lug.clearance
     moved[:, :2] *= (1.0 + share * (half + scale * depth) / r)[:, None]
-    size = float(np.linalg.norm(force))
-    if size and half > 0.0:
-        moved[:, :2] += half * force / size
+    moved[:, :2] += shift
     return replace(mesh, nodes=moved)
 
 

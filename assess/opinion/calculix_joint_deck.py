@@ -68,6 +68,7 @@ class Eye:
     tilt: N m/rad; inf, 0 as of fea.joint's Lug.
     rings: the elements of the pin on each of its rings.
     couple: (2,) N m of its link on it, which turns it along x and along y towards z.
+    held: whether it is of a structure, which holds still.
     """
 
     part: Part
@@ -75,6 +76,7 @@ class Eye:
     tilt: float
     rings: tuple[Ints, ...]
     couple: tuple[float, float] = (0.0, 0.0)
+    held: bool = False
 
 
 @dataclass(frozen=True)
@@ -125,6 +127,11 @@ class JointDeck:
     def axes(self) -> tuple[int, ...]:
         """The transverse axes along which a lug may move: 1 and 2, or 1 for a half."""
         return (1,) if self.half else (1, 2)
+
+    @property
+    def _fixed_eyes(self) -> set[int]:
+        """The eyes that do not shift: of a structure, else the first, which takes the balance."""
+        return {b for b, eye in enumerate(self.eyes) if eye.held} or {0}
 
     @property
     def _parts(self) -> tuple[Part, ...]:
@@ -187,7 +194,7 @@ class JointDeck:
         constrained = [(1 + n, axis, weak) for n in _ends(mesh) for axis in self.axes]
         for b, eye in enumerate(self.eyes):
             shift, tilt = self._auxiliary(b)
-            constrained += [(shift, axis, weak) for axis in self.axes if b]
+            constrained += [(shift, axis, weak) for axis in self.axes if b not in self._fixed_eyes]
             if np.isfinite(eye.tilt):
                 stiff = max(eye.tilt, weak * length**2)
                 constrained += [(tilt, axis, stiff) for axis in self.axes]
@@ -199,13 +206,13 @@ class JointDeck:
             yield f"{stiffness:.10e}"  # without a point it would be read as another axis
 
     def _fixed(self, first: list[tuple[int, int]]) -> Iterator[str]:
-        """The fixed components: the first lug's shift, guided lugs' tilts, and those of the plane
-        of symmetry.
+        """The fixed components: shifts of a structure's lugs or of the first, guided lugs' tilts,
+        and those of the plane of symmetry.
         """
-        shift, _ = self._auxiliary(0)
-        yield from (f"{shift}, {axis}" for axis in self.axes)
         for b, eye in enumerate(self.eyes):
             shift, tilt = self._auxiliary(b)
+            if b in self._fixed_eyes:
+                yield from (f"{shift}, {axis}" for axis in self.axes)
             others = [axis for axis in (1, 2, 3) if axis not in self.axes]
             yield from (f"{node}, {axis}" for node in (shift, tilt) for axis in others)
             if np.isinf(eye.tilt):
@@ -236,7 +243,7 @@ class JointDeck:
         for b, eye in enumerate(self.eyes):
             shift, tilt = self._auxiliary(b)
             for axis in self.axes:
-                if b:
+                if b not in self._fixed_eyes:
                     yield f"{shift}, {axis}, {real(fraction * float(eye.force[axis - 1]))}"
                 if any(eye.couple):
                     yield f"{tilt}, {axis}, {real(fraction * eye.couple[axis - 1])}"

@@ -104,7 +104,8 @@ def contact_deck(
     """
     loads = transverse(seated, peak.governing)
     fineness = replace(meshes_for(loads)[1], scale=1.0)
-    deck, angle = joint_deck(seated.pin, seated.material, seated.lugs, loads, fineness)
+    pin = seated.whole
+    deck, angle = joint_deck(pin, seated.material, seated.lugs, loads, fineness)
     surface = peak.places.surface if peak.places is not None else None
     place = peak.location if surface is None else surface.location
     stress = peak.max_von_mises if surface is None else surface.max_von_mises
@@ -115,7 +116,7 @@ def contact_deck(
     at[1] = abs(at[1]) if deck.half else at[1]
     nodes = deck.pin.mesh.nodes
     node = int(np.linalg.norm(nodes - at, axis=1).argmin())
-    bands = {lug.connection: seated.pin.band(lug.connection) for lug in seated.lugs}
+    bands = {lug.connection: pin.band(lug.connection) for lug in seated.lugs}
     under = next((name for name, b in bands.items() if b.z0 < place[2] < b.z1), "")
     lines = replace(_joint_in_units(deck, units), dialect=dialect).lines()
     return ReviewDeck(

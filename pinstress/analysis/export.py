@@ -38,8 +38,8 @@ CONTACT_NOTE = (
     "the node agrees to 30 % and the bending moment to 5 % (10 % with fillets in lugs), besides "
     "the row's error; the stress under lugs and at their edges is not compared. Each lug begins "
     "where it touches: shifted by half of its clearance along its force. The mean of its outer "
-    "surface is an auxiliary node (*EQUATION) with its force; the first lug stands still, and "
-    "springs of 1e-7 of the pin's stiffness hold what nothing else does."
+    "surface is an auxiliary node (*EQUATION) with its force; lugs of a structure, or the first, "
+    "stand still, and springs of 1e-7 of the pin's stiffness hold what nothing else does."
 )
 UNDER_LUG_NOTE = (
     "The node lies under lug {}: node_von_mises is of the stress without that of the pressure "

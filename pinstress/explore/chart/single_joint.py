@@ -137,11 +137,11 @@ def _foundation(problem: JointProblem) -> MeshMaximum:
 def _calculix(problem: JointProblem, rung: JointRung) -> MeshMaximum:
     seated = PinInLugs(problem.pin, problem.material, problem.lugs)
     loads = transverse(seated, problem.loads.at(np.array([problem.governing])))
-    opinion = joint_opinion(problem.pin, problem.material, problem.lugs, loads, rung.fineness)
+    opinion = joint_opinion(seated.whole, problem.material, problem.lugs, loads, rung.fineness)
     x, stress = opinion.nodes, von_mises(opinion.stress)
     read = outside(problem.singularities, np.hypot(x[:, 0], x[:, 1]), x[:, 2]) & free(opinion)
     top = int(np.argmax(np.where(read, stress, 0.0)))
     location = (float(x[top, 0]), float(x[top, 1]), float(x[top, 2]))
     result = MeshMaximum(opinion.unknowns, float(stress[top]), problem.governing, location)
-    at = section_of(opinion, problem.pin, problem.material)
+    at = section_of(opinion, seated.whole, problem.material)
     return replace(_larger(result, at), instant=problem.governing)

@@ -94,6 +94,37 @@ forces = { one = [10000, 0], other = [-10000, 0] }
 tolerance = 0.05
 joints = "contact"
 """
+ON_STRUCTURE = """
+title = "An eye beside the middle of a clevis that holds still"
+units = "mm-N-s"
+[material.steel]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+yield_strength = "500 MPa"
+[pin.P]
+material = "steel"
+profile = [
+  { length = 20, diameter = 20, name = "left" },
+  { length = 2, diameter = 20 },
+  { length = 20, diameter = 20, connection = "eye" },
+  { length = 8, diameter = 20 },
+  { length = 10, diameter = 20, name = "right" },
+]
+[lug_defaults]
+outer_diameter = 50
+edge_radius = 0.5
+[pin.P.lug.left]
+[pin.P.lug.eye]
+clearance = 0.01
+[pin.P.lug.right]
+clearance = 0.005
+[case.pull]
+kind = "given"
+forces = { eye = [0, 10000] }
+[analysis]
+tolerance = 0.05
+joints = "contact"
+"""
 NOTHING_HOLDS = QUICK.replace('clamp = ["start"]', "").replace("clamp", "# clamp")
 
 
@@ -322,3 +353,31 @@ def test_calculix_finds_the_stress_of_a_fillet_beside_a_lug(tmp_path: Path) -> N
     assert 0.018 < peak.location[2] < 0.020  # on the fillet
     stress = theirs.surface_at(np.array(peak.location), task.material.poisson_ratio)
     assert stress == pytest.approx(peak.max_von_mises, rel=0.08, abs=peak.own_error)
+
+
+@pytest.mark.peers
+def test_calculix_shares_a_force_between_lugs_of_a_structure(tmp_path: Path) -> None:
+    """Of different thickness and clearance, at different distances from the eye: statics alone
+    does not decide their shares.
+    """
+    assert exported(tmp_path, ON_STRUCTURE, "--deck", "calculix", pin="P", case="pull") == 0
+    lines = (tmp_path / "deck.inp").read_text("ascii")
+    assert "lugs of a structure" in " ".join(lines.replace("**", "").split())
+    plan = prepare(pinstress.load_study(tmp_path / "study.toml"))
+    row = next(r for o in solve_tasks(plan) for r in o.rows)
+    assert row.joint is not None
+    ours = {band.name: band.force for band in row.joint.bands}
+    pin = body_of_revolution(plan.tasks[0].pin)
+    assert pin is not None
+    seated = PinInLugs(pin, plan.tasks[0].material, plan.tasks[0].lugs)
+    loads = transverse(seated, row.maximum.governing)
+    mesh = Fineness(rings=4, sectors=16, layers=1, eye=1)
+    theirs = joint_opinion(seated.whole, seated.material, seated.lugs, loads, mesh)
+    assert set(ours) == {"left", "eye", "right"}
+    for lug, force in ours.items():
+        band = seated.whole.band(lug)
+        on = (theirs.ends[:, 0] > band.z0 - 1e-9) & (theirs.ends[:, 1] < band.z1 + 1e-9)
+        total = np.linalg.norm(theirs.force[on].sum(axis=0))
+        assert total == pytest.approx(force, rel=0.03), lug
+    moment = largest_moment(theirs, seated.whole)
+    assert moment == pytest.approx(row.joint.bending_moment, rel=MAX_MOMENT_DIFFERENCE)
