@@ -97,18 +97,14 @@ def undecided_because(pin: PinResult) -> str:
 
 
 def result_words(pin: PinResult) -> str:
-    """Return the outcome of a row with the qualifications of its factor.
-
-    Examples: "not decided: singular", "depends: joint", "fails (yields)".
+    """Return the outcome of a row, with the reason where it is open: "not decided: singular",
+    "depends: joint".
     """
-    state = pin.outcome
-    if state == NOT_DECIDED:
-        return f"{state}: {undecided_because(pin)}"
-    if state == DEPENDS:
-        return f"{state}: {over_words(pin.depends_on)}"
-    more = [undecided_because(pin)] * (pin.verdict != "converged")
-    more += [YIELDS] * bool(pin.yields and state != YIELDS)
-    return f"{state} ({', '.join(more)})" if more else state
+    if pin.outcome == NOT_DECIDED:
+        return f"{pin.outcome}: {undecided_because(pin)}"
+    if pin.outcome == DEPENDS:
+        return f"{pin.outcome}: {over_words(pin.depends_on)}"
+    return pin.outcome
 
 
 def over_words(depends_on: Sequence[Dependence]) -> str:

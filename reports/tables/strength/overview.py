@@ -131,9 +131,7 @@ def _added(results: Results) -> list[Column[PinLine]]:
 
 
 def outcome_words(line: PinLine) -> str:
-    """Return the outcome of a pin, with what qualifies its factor: "not decided: singular", "fails
-    (yields)".
-    """
+    """Return the outcome of a pin, with the reason where it is open: "not decided: singular"."""
     by_row = line.check.row is not None and line.outcome != DEPENDS
     return result_words(line.row) if by_row else line.outcome
 
