@@ -209,6 +209,11 @@ class Results:
             raise NoSuchRow(self._missing(row))
         return matches[0]
 
+    def __contains__(self, row: object) -> bool:
+        """Return whether a row, or a pin in a case, is there: ("E", "landing") in results."""
+        pair = (row.pin, row.case) if isinstance(row, PinResult) else row
+        return any((p.pin, p.case) == pair for p in self.pins)
+
     def _missing(self, row: object) -> str:
         """Return which row is missing, and the pins and cases that there are."""
         pins = ", ".join(dict.fromkeys(p.pin for p in self.pins))

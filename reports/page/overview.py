@@ -40,7 +40,7 @@ from reports.text.overview import (
     skipped_checks,
     why,
 )
-from reports.text.summary import caveats
+from reports.text.summary import ALL_CONVERGED, caveats
 
 MAX_PEAKS = 5  # pins whose largest stress the page tells
 MAX_UNKNOWNS = 6  # rows of the table of what is open
@@ -68,6 +68,8 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
     columns = _columns(pins)
     steps = actions(results, lines)
     linkage = _linkage(results, lines, anchors)
+    by_check = any(check_words(line) != DASH for line in lines)
+    matrix = matrix_rows(requirement_rows(results))
     return {
         "headline": headline(results),
         "state": _css(lines[0].outcome) if lines else "",
@@ -88,19 +90,17 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "spreads": any(line.spread for line in lines),
         "whatever": any(line.spread and whatever_words(line) != DASH for line in lines),
         "legend": _legend(lines, axis, bool(unknown)) if axis else "",
-        "checks": any(check_words(line) != DASH for line in lines),
-        "matrix": [
-            _matrix_row(row, columns.values()) for row in matrix_rows(requirement_rows(results))
-        ],
-        "why": why(results, lines, MAX_PEAKS),
+        "checks": by_check,
+        "matrix": [_matrix_row(row, columns.values()) for row in matrix],
+        "why": why(results, lines, MAX_PEAKS, places=by_check),
         "why_title": "Why they fail" if _fails(lines) else "Why",
         "actions": [*steps.repairs, *steps.remarks],
         "nothing": _nothing(lines),
         "command": steps.command,
         "curve": draw_factor_curve(lines[0], results.units.length) if lines else None,
         "accuracy": [*_accurate(lines), *certainty(lines), *measure_first(unknown, lines)],
-        "unknowns": [_unknown(x, results) for x in unknown[:MAX_UNKNOWNS]],
-        "caveats": [*skipped_checks(results, lines), *caveats(results)],
+        "unknowns": [_unknown(x, results, lines) for x in unknown[:MAX_UNKNOWNS]],
+        "caveats": _caveats(results, lines, formulas=not matrix),
     }
 
 
@@ -263,10 +263,16 @@ def _few(names: Sequence[str]) -> str:
     return ", ".join(names) if more <= 1 else f"{', '.join(names[:MAX_CHECKS])}, {more} more"
 
 
-def _unknown(unknown: Unknown, results: Results) -> dict[str, str]:
+def _caveats(results: Results, lines: Sequence[PinLine], formulas: bool) -> list[str]:
+    """Return what else limits the results; that all have converged the error already says."""
+    notes = [note for note in caveats(results) if not note.startswith(ALL_CONVERGED)]
+    return [*skipped_checks(results, lines, formulas), *notes]
+
+
+def _unknown(unknown: Unknown, results: Results, lines: Sequence[PinLine]) -> dict[str, str]:
     return {
         "what": unknown.what,
         "given": given_words(unknown),
         "range": range_words(unknown, results.units),
-        "flips": flips_words(unknown, results.units),
+        "flips": flips_words(unknown, results.units, lines),
     }

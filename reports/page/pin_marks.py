@@ -71,4 +71,6 @@ def _symbol(line: PinLine, anchor: str) -> str:
     outcome = line.outcome.replace(" ", "-")
     title = f"<title>{escape(line.pin)}: {escape(line.outcome)}</title>"
     symbol = f'<g class="pin {outcome}">{title}{SYMBOLS[line.outcome]}</g>'
-    return f'<a href="#{escape(anchor)}">{symbol}</a>' if anchor else symbol
+    # By keyboard the table beside the drawing has the same links, the worst pin first.
+    link = f'<a href="#{escape(anchor)}" tabindex="-1">{symbol}</a>'
+    return link if anchor else symbol

@@ -55,16 +55,16 @@ def decisions(results: Results, lines: Sequence[PinLine]) -> str:
     return " ".join(part for part in parts if part)
 
 
-def why(results: Results, lines: Sequence[PinLine], most: int) -> Content:
+def why(results: Results, lines: Sequence[PinLine], most: int, places: bool = True) -> Content:
     """Return sentences on the forces, the internal forces that govern, and the largest stresses.
 
-    most: number of pins with their stress.
+    most: number of pins with their stress. places: whether to tell where those of several are.
     """
     solved = [line for line in lines if line.row.max_von_mises]
     if not solved:
         return _unsolved(lines)
     bad = [line for line in solved if line.outcome not in GOOD] or solved[:1]
-    shapes = {shape.pin: shape for shape in results.shapes}
+    shapes = {shape.pin: shape for shape in results.shapes} if places or len(bad) == 1 else {}
     failing = [line for line in bad if line.outcome in (FAILS, YIELDS)] or bad
     path = load_path(results, [line.row for line in solved])
     parts = [path, _dominating(failing), _peaks(results, bad[:most], shapes)]
@@ -143,12 +143,15 @@ def certainty(lines: Sequence[PinLine]) -> Content:
     ]
 
 
-def skipped_checks(results: Results, lines: Sequence[PinLine]) -> Content:
-    """Return a sentence on the checks that lack a number; nothing if all were made."""
+def skipped_checks(results: Results, lines: Sequence[PinLine], formulas: bool = True) -> Content:
+    """Return a sentence on the checks that lack a number; nothing if all were made.
+
+    formulas: whether to name those by formula, which the matrix of requirements has, too.
+    """
     without = list(dict.fromkeys(x.pin for x in lines if without_range(x.row)))
     parts = [f"joint range of {names(without)}"] if without else []
     parts += ["fatigue"] * (results.fatigue is None)
-    parts += [text] if (text := not_made_briefly(results)) else []
+    parts += [text] if formulas and (text := not_made_briefly(results)) else []
     return [f"Skipped: {'; '.join(parts)}."] if parts else []
 
 
@@ -171,14 +174,24 @@ def measure_first(unknown: Sequence[Unknown], lines: Sequence[PinLine] = ()) -> 
     return [f"{nothing}; {first.what} matters most (factor of {row.pin} {low} to {high})."]
 
 
-def flips_words(unknown: Unknown, units: Units) -> str:
-    """Return whether a value alone changes an outcome: "yes: F fails at half-sine"."""
-    flipped = unknown.flipped
-    if not flipped:
-        return "no"
-    told = [_flip(row, d, units) for row, d in flipped]
-    rest = f" and {len(told) - MAX_FLIPS} more" if len(told) > MAX_FLIPS else ""
-    return f"yes: {'; '.join(told[:MAX_FLIPS])}{rest}"
+def flips_words(unknown: Unknown, units: Units, lines: Sequence[PinLine] = ()) -> str:
+    """Return whether a value alone changes an outcome: "F fails at half-sine", "no".
+
+    Checks by formula say only on what together they depend: "perhaps: A in shear".
+    """
+    told = [_flip(row, d, units) for row, d in unknown.flipped]
+    if told:
+        rest = f" and {len(told) - MAX_FLIPS} more" if len(told) > MAX_FLIPS else ""
+        return f"{'; '.join(told[:MAX_FLIPS])}{rest}"
+    concerned = {row.pin: value.owner for row, value in unknown.rows}
+    perhaps = [
+        f"{x.pin} in {x.check.check}"
+        for x in lines
+        if x.check.row is None
+        and x.outcome == DEPENDS
+        and concerned.get(x.pin, "none") in x.check.reason
+    ]
+    return f"perhaps: {', '.join(perhaps)}" if perhaps else "no"
 
 
 def range_words(unknown: Unknown, units: Units) -> str:
@@ -329,21 +342,31 @@ def _dominating(lines: Sequence[PinLine]) -> str:
 
 
 def _peaks(results: Results, lines: Sequence[PinLine], shapes: dict[str, PinShape]) -> str:
-    units = results.units
-    verb = " reaches" if len(lines) == 1 else ""
+    """Return a sentence on the largest stress of pins.
+
+    shapes: of the pins whose place is told.
+    """
+    unit = results.units.stress
+    single = len(lines) == 1
     told = [
-        f"{x.pin}{verb} {engineering(x.row.max_von_mises, 3)} {units.stress} "
-        f"({place_words(x.row, shapes.get(x.pin))})".replace(" ()", "")
+        f"{x.pin}{' reaches' * single} {engineering(x.row.max_von_mises, 3)}{f' {unit}' * single}"
+        f"{_place(x, shapes)}"
         for x in lines
     ]
+    if single:
+        return f"{told[0]}."
     first = lines[0].row
     permitted = (first.yield_strength or 0.0) / limit(first)
-    if len(told) == 1:
-        return f"{told[0]}."
-    if not permitted:
-        return f"Largest stress: {'; '.join(told)}."
     word = "permitted" if first.required else "the yield strength"
-    return f"Largest stress: {'; '.join(told)}; {engineering(permitted, 3)} is {word}."
+    end = f"; {engineering(permitted, 3)} is {word}" if permitted else ""
+    return f"Largest stress [{unit}]: {', '.join(told)}{end}."
+
+
+def _place(line: PinLine, shapes: dict[str, PinShape]) -> str:
+    """Return the place of a pin's largest stress in brackets, of a pin with its shape."""
+    shape = shapes.get(line.pin)
+    words = place_words(line.row, shape) if shape else ""
+    return f" ({words})" if words else ""
 
 
 def _exceeded(lines: Sequence[PinLine]) -> Content:

@@ -80,11 +80,18 @@ def page(browser: Any, shipped: Callable[[str], Path]) -> Any:
 def test_three_questions_are_answered_in_the_first_screen(page: Any) -> None:
     with screen(page, 1400):
         text = page.execute_script(SEEN, FIRST_SCREEN)
+        bottoms = page.execute_script(
+            "return [...document.querySelectorAll('.note')].map("
+            "(e) => e.getBoundingClientRect().bottom)"
+        )
+    assert len(bottoms) == 3
+    assert max(bottoms) <= FIRST_SCREEN
     # Which pins fail, and why?
     assert "5 of 9 pins miss the required factor 10 (landing): E, J, A, D, G." in text
     assert "194,000 lbf goes J–E–A to the frame; others at most 35,700." in text
     assert "Shear dominates E, bending J, A, D and G." in text
-    assert "E 195,000 psi (surface, step beside E2)" in text
+    assert "surface, step beside E2" in text
+    assert "Largest stress [psi]: E 195,000, J 152,000" in text
     assert "plastic bending and shear, ultimate load, landing" in text  # which J misses
     # Which diameter?
     assert "2 → 3.44" in text
@@ -151,6 +158,29 @@ def test_linkage_and_requirements_share_a_narrow_screen(page: Any) -> None:
         )
     assert linkage["x"] + linkage["width"] <= matrix["x"]
     assert linkage["y"] + linkage["height"] < FIRST_SCREEN
+
+
+def test_the_keyboard_goes_to_the_parts_and_to_each_pin_once(page: Any) -> None:
+    """There were 48 stops before the parts, 9 of them in the drawing, in no order."""
+    from selenium.webdriver import ActionChains, Keys
+
+    with screen(page, 1400):
+        page.execute_script("document.activeElement.blur(); scrollTo(0, 0)")
+        keys = ActionChains(page)
+        keys.send_keys(Keys.TAB).perform()
+        first = page.switch_to.active_element
+        assert first.text == "Skip to the parts of the report"
+        keys.send_keys(Keys.ENTER).perform()
+        assert page.switch_to.active_element.get_dom_attribute("id") == "content"
+        keys.send_keys(Keys.TAB).perform()
+        inside = "return document.querySelector('main').contains(document.activeElement)"
+        assert page.execute_script(inside)
+        stops = page.execute_script(
+            "return [...document.querySelectorAll('.first-screen a')].filter("
+            "(a) => a.tabIndex >= 0).map((a) => a.textContent)"
+        )
+        page.execute_script("document.activeElement.blur(); scrollTo(0, 0); location.hash = ''")
+    assert stops == [*"EJADGFHBC", "Words"]
 
 
 def test_the_first_screen_on_paper(page: Any) -> None:

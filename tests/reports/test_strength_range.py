@@ -92,7 +92,7 @@ def test_the_strength_is_told_among_what_is_open() -> None:
     assert (first.what, tilt.what) == (YIELD_STRENGTH, "tilt")
     ((_, value),) = first.rows
     assert (value.low, value.high) == pytest.approx((1.4, 2.4))
-    assert flips_words(first, UNITS).startswith("yes: A may fail below 88,900 psi")
+    assert flips_words(first, UNITS).startswith("A may fail below 88,900 psi")
     assert range_words(first, UNITS).endswith(" psi")
     assert measure_first([first, tilt]) == ["Measure first: yield strength (A)."]
 

@@ -14,6 +14,8 @@ import pytest
 from assess.judgement import DEPENDS, FAILS, SAFE
 from fea.support.records import JointRange, Variation
 from reports.data.dependence import TOGETHER, depends_on
+from reports.data.headline import JudgedCheck
+from reports.data.overview import PinLine
 from reports.data.row import PinResult, Units
 from reports.data.unknowns import factor_spread, open_values, unknowns
 from reports.format.words import over_words
@@ -102,12 +104,22 @@ def test_each_open_value_alone() -> None:
     assert not any(v.flips for v in values.values())
 
 
+def test_a_check_by_formula_that_depends_is_named_for_each_value_of_its_range() -> None:
+    """The table said "no" for all values beside a pin that depends by its shear."""
+    row = pin(9.0, (0.9, 1.3), BOTH)
+    check = JudgedCheck("A", row.case, "shear", DEPENDS, 1.1, 1.0, 0.9, reason="joint")
+    line = PinLine(row, check, row.case, None, None, None)
+    words = {u.what: flips_words(u, UNITS, [line]) for u in unknowns([row])}
+    assert words.pop("tilt") == "perhaps: A in shear"
+    assert set(words.values()) == {"no"}
+
+
 def test_what_flips_most_pins_comes_first_then_what_matters_most() -> None:
     """2.3 / (pi / 2) = 1.46: the pulse flips; 1.533 at 0.1 s and a tilt of 1.3 do not."""
     rows = [pin(2.3, (0.9, 1.3), BOTH), with_values(pin(9.0, (0.9, 1.3), BOTH), pin="B")]
     ranked = unknowns(rows)
     assert [u.what for u in ranked] == ["pulse", "velocity change", "impulse time", "tilt"]
-    assert flips_words(ranked[0], UNITS) == "yes: A may fail with half-sine"
+    assert flips_words(ranked[0], UNITS) == "A may fail with half-sine"
     assert [flips_words(u, UNITS) for u in ranked[1:]] == ["no"] * 3
     assert range_words(ranked[2], UNITS) == "0.1 to 0.2 s"
     assert measure_first(ranked) == ["Measure first: force over time at landing (A)."]

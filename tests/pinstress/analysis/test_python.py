@@ -99,6 +99,10 @@ def test_a_missing_row_names_what_there_is(results: RunResults) -> None:
 
 def test_a_row_equals_that_of_the_table(results: RunResults) -> None:
     row, same = results["B", "landing"], results.pins[0]
+    assert ("B", "landing") in results
+    assert ("B", "pull") not in results
+    assert "B" not in results
+    assert row in results
     assert row == same
     assert same == row
     assert row == Results.__getitem__(results, ("B", "landing"))
