@@ -344,7 +344,7 @@ def _dominating(lines: Sequence[PinLine]) -> str:
 def _peaks(results: Results, lines: Sequence[PinLine], shapes: dict[str, PinShape]) -> str:
     """Return a sentence on the largest stress of pins.
 
-    shapes: of the pins whose place is told.
+    shapes: of the pins whose places are named.
     """
     unit = results.units.stress
     single = len(lines) == 1
