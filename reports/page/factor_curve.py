@@ -36,7 +36,7 @@ def draw_factor_curve(line: PinLine, unit: str) -> str | None:
     given_text, needed_text = (f"{engineering(x, 3)} {unit}" for x in (d.given, d.needed))
     beside = CHARACTER * (len(given_text) + 0.5 * len(needed_text) + 2.0)
     below = max(_down(axis, factors[0]), at + LINE)
-    title = f"Pin {line.pin}: estimated lowest factor of all places"
+    title = f"Pin {line.pin}: estimated lowest factor, beneath contact too"
     parts = [
         f'<path class="frame" d="M0 0V{HEIGHT}H{WIDTH}"/>',
         f'<path class="limit" d="M0 {at:.1f}H{WIDTH}M{needed:.1f} {at:.1f}V{HEIGHT}"/>',
@@ -48,10 +48,11 @@ def draw_factor_curve(line: PinLine, unit: str) -> str | None:
         _text(5.0 - LEFT, -7.0, title),
     ]
     if d.eye and d.too_large(d.needed):
-        lug = _across(MAX_LUG_SHARE * d.eye / d.given, most)
+        largest = MAX_LUG_SHARE * d.eye
+        lug = _across(largest / d.given, most)
         parts += [
             f'<path class="lug" d="M{lug:.1f} 0V{HEIGHT}"/>',
-            _text(lug + 4.0, HEIGHT - 4.0, "too large for its lug"),
+            _text(lug + 4.0, HEIGHT - 4.0, f"above {engineering(largest, 3)}: lug too small"),
         ]
     box = f"{-LEFT} {-ABOVE} {LEFT + WIDTH + RIGHT} {ABOVE + HEIGHT + BELOW}"
     return (

@@ -35,8 +35,7 @@ MEASURED = {
     "strength": "yield strength",
 }
 ESTIMATES_TEXT = (
-    "Diameters are estimates, 0.6 to 1.1 times what the command found for five pins; it verifies "
-    "them."
+    "Diameters are estimates: for five pins 0.6 to 1.1 times those that the command found."
 )
 Content = list[str]
 
@@ -416,8 +415,12 @@ def _other_ways(results: Results) -> Content:
     else:
         parts.append(f"Or a yield strength of {strength} for {worst.pin}.")
     if worst.impulse_time and worst.given_time:
+        needed, unit = engineering(worst.impulse_time, 3), results.units.time
+        longest = float(row.landing.impulse_time.max()) if row.landing else worst.impulse_time
         parts.append(
-            f"Or an impulse time of {engineering(worst.impulse_time, 3)} instead of "
-            f"{short(worst.given_time)} {results.units.time} for {worst.pin}."
+            f"Nor a longer impulse: {worst.pin} needs {needed} of at most {short(longest)} {unit}."
+            if longest < worst.impulse_time
+            else f"Or an impulse time of {needed} instead of {short(worst.given_time)} {unit} for "
+            f"{worst.pin}."
         )
     return parts
