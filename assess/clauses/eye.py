@@ -133,7 +133,7 @@ def loaded_eyes(s: Situation) -> list[LoadedEye]:
         if not size.any():
             continue
         axial, transverse, basis = size, np.zeros_like(size), AXIAL_BASIS
-        angle = _shank_angle(s, lug)
+        angle = shank_angle(s, lug)
         if angle is not None:
             # A link that pulls draws the pin towards its shank.
             x, y = np.cos(angle), np.sin(angle)
@@ -153,7 +153,7 @@ def place_of(s: Situation, loaded: LoadedEye, instant: int) -> WorstPlace:
     return WorstPlace.at_band(s.pin.band(loaded.connection), s.loads, instant)
 
 
-def _shank_angle(s: Situation, lug: Lug) -> Floats | None:
+def shank_angle(s: Situation, lug: Lug) -> Floats | None:
     """The angle of a lug's shank at the instants of the loads, (T,) rad; None if not known."""
     if lug.shank is None:
         return None

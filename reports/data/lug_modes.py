@@ -26,6 +26,7 @@ LUG_MODES: Mapping[str, tuple[str, ...]] = MappingProxyType(
         ),
         "yield": ("Melcon-Hoblit yield",),
         "across the shank": ("Melcon-Hoblit transverse", "Ekvall transverse"),
+        "out of its plane": ("lug, bending out of its plane",),
         "oblique": ("Melcon-Hoblit oblique",),
         "bushing": ("AFFDL bushing",),
         "press fit": (PRESS_FIT_METHOD,),
