@@ -3,8 +3,8 @@ BIN := .venv/bin
 LOCKBIN := .venv-lock/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-rest test-all test-browser test-peers test-portable coverage mutants check types \
-	bench evidence docs wheel lock clean
+.PHONY: help setup demo test test-rest test-all test-ci test-browser test-peers test-portable calculix \
+	coverage mutants check types bench evidence docs wheel lock clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 12
@@ -42,13 +42,19 @@ test-all: setup ## run all tests, also the long ones that CI leaves out
 	$(PYTEST) -m "long or not long" $(ARGS)
 	@$(MAKE) --no-print-directory test-browser test-peers WITH="or long"
 
+# In one run their files are imported once, what they share is solved once, and workers wait once at its end.
+test-ci: calculix ## run in one go what test, test-rest and test-peers run
+	$(PYTEST) -m "slow or not slow or peers" $(ARGS)
+
 test-browser: setup ## run the tests of the report in Chromium, which root gets installed
 	@sh scripts/tools.sh test-browser "Chromium or its driver" "chromium chromium-driver" \
 		chromium chromedriver
 	$(PYTEST) --dist loadfile -m "browser $(WITH)" tests/browser $(ARGS)
 
-test-peers: setup ## run the comparisons with CalculiX, which root gets installed
+calculix: setup
 	@sh scripts/tools.sh test-peers CalculiX calculix-ccx ccx
+
+test-peers: calculix ## run the comparisons with CalculiX, which root gets installed
 	$(PYTEST) -m "peers $(WITH)" $(call marked,peers) $(ARGS)
 
 test-portable: setup ## run quick tests without what Linux alone has, as on Windows and macOS

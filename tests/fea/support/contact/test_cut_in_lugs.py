@@ -34,6 +34,8 @@ CLEVIS = Pin(
     ),
 )
 LUGS = tuple(Lug(n, 0.05, STEEL, 0.0, 0.0, 2.1e5) for n in "ABC")
+ONCE = Requirement(0.05, cells="usual", meshes=1)  # cells small beside cuts, on one mesh
+ROUGHLY = Requirement(0.05, cells="rough", meshes=1)
 
 
 def test_cuts_in_lugs_have_an_error_and_a_note() -> None:
@@ -67,8 +69,7 @@ def test_rounded_mouths_under_weight() -> None:
     forces = np.array([[[-0.5 * F, 0.0, 0.0], [F, weight, 0.0], [-0.5 * F, 0.0, 0.0]]])
     loads = PinLoads("pull", ("A", "B", "C"), forces, body=np.array([0.0, -9.81, 0.0]))
     cut = CutPin(CLEVIS, (Hole(0.023, 0.15 * D, np.pi / 2.0, mouth_radius=5e-4),))
-    requirement = Requirement(0.05, cells="rough", meshes=1)
-    (found,) = solve_in_lugs(PinProblem(cut, STEEL, LUGS, (loads,)), requirement)
+    (found,) = solve_in_lugs(PinProblem(cut, STEEL, LUGS, (loads,)), ROUGHLY)
     assert found.peak.model == "harmonic+local"
     assert "imbalance-reacted" not in found.peak.reasons
 
@@ -89,7 +90,7 @@ def test_the_crest_at_a_hole_is_found_between_samples() -> None:
     cut = CutPin(CLEVIS, (Hole(0.023, 0.2 * D, np.radians(15.0)),))
     case = at(np.linspace(0.0, 1.0, 5))
     given = PinProblem(cut, STEEL, LUGS, (case,), between={"turn": at})
-    (found,) = solve_in_lugs(given, Requirement(0.05))
+    (found,) = solve_in_lugs(given, ROUGHLY)
     peak = found.peak
     assert peak.max_von_mises is not None
     assert peak.time is not None
@@ -102,7 +103,7 @@ def test_the_crest_at_a_hole_is_found_between_samples() -> None:
     assert peak.max_von_mises == pytest.approx(each.max(), rel=1e-5)
     assert peak.max_von_mises >= each.max() * (1.0 - 1e-9)
     alone = replace(at(np.array([peak.time])), times=None)
-    (single,) = solve_in_lugs(PinProblem(cut, STEEL, LUGS, (alone,)), Requirement(0.05))
+    (single,) = solve_in_lugs(PinProblem(cut, STEEL, LUGS, (alone,)), ROUGHLY)
     assert single.peak.max_von_mises == pytest.approx(peak.max_von_mises, rel=2e-3)
 
 
@@ -114,8 +115,8 @@ def test_a_grease_hole_at_the_extreme_fibre() -> None:
     forces = F * np.array([[[-0.5, 0.0, 0.0], [1.0, 0.0, 0.0], [-0.5, 0.0, 0.0]]])
     loads = PinLoads("pull", ("A", "B", "C"), forces)
     cut = CutPin(CLEVIS, (Hole(0.023, 0.2 * D),))
-    (plain,) = solve_in_lugs(PinProblem(CLEVIS, STEEL, LUGS, (loads,)), Requirement(0.05))
-    (holed,) = solve_in_lugs(PinProblem(cut, STEEL, LUGS, (loads,)), Requirement(0.05))
+    (plain,) = solve_in_lugs(PinProblem(CLEVIS, STEEL, LUGS, (loads,)), ONCE)
+    (holed,) = solve_in_lugs(PinProblem(cut, STEEL, LUGS, (loads,)), ONCE)
     assert plain.joint is not None
     assert holed.joint is not None
     assert plain.joint.bending_moment is not None
@@ -140,13 +141,13 @@ def test_a_keyway_that_faces_the_load_moves_its_pressure() -> None:
     forces = F * np.array([[[-0.5, 0.0, 0.0], [1.0, 0.0, 0.0], [-0.5, 0.0, 0.0]]])
     loads = PinLoads("pull", ("A", "B", "C"), forces)
     long, wide, moments = 0.01, 0.004, []
-    (plain,) = solve_in_lugs(PinProblem(CLEVIS, STEEL, LUGS, (loads,)), Requirement(0.1))
+    (plain,) = solve_in_lugs(PinProblem(CLEVIS, STEEL, LUGS, (loads,)), ONCE)
     assert plain.joint is not None
     assert plain.joint.bending_moment is not None
     for angle in (0.0, np.pi):
         key = Slot(0.023 - long / 2, 0.023 + long / 2, wide, 0.0025, angle, 0.0008, False)
         pin = CutPin(CLEVIS, slots=(key,))
-        (found,) = solve_in_lugs(PinProblem(pin, STEEL, LUGS, (loads,)), Requirement(0.1))
+        (found,) = solve_in_lugs(PinProblem(pin, STEEL, LUGS, (loads,)), ONCE)
         peak = found.peak
         assert found.joint is not None
         assert peak.model == "harmonic+local"
