@@ -44,8 +44,13 @@ def ring(**lug: Any) -> pinstress.RunResults:
 
 
 def press_fits(results: pinstress.RunResults) -> list[Margin]:
-    """Of bushing and eye."""
+    """Of the pin, if it is pressed in, bushing and eye."""
     return [m for m in results["P", "pull"].margins if "press fit" in m.method]
+
+
+def pressed_bushing(results: pinstress.RunResults) -> list[Margin]:
+    """The margins of bushing and eye."""
+    return press_fits(results)[-2:]
 
 
 def test_a_pin_that_may_be_pressed_in_does_not_relieve_its_bushing() -> None:
@@ -57,15 +62,45 @@ def test_a_pin_that_may_be_pressed_in_does_not_relieve_its_bushing() -> None:
         ring(clearance=-0.0003),
         ring(clearance=-0.0003, range={"clearance": [-0.0003, 0.0]}),
     )
-    assert press_fits(least)[0].demand == pytest.approx(BORE, abs=1.0)
-    assert press_fits(most)[0].demand < 24e3
+    assert pressed_bushing(least)[0].demand == pytest.approx(BORE, abs=1.0)
+    assert pressed_bushing(most)[0].demand < 24e3
     for wall in (0, 1):
-        ends = [press_fits(x)[wall].demand or 0.0 for x in (least, most)]
-        assert press_fits(over)[wall].demand == pytest.approx(max(ends), rel=1e-9)
-    assert (press_fits(most)[0].margin or 0.0) > 0.0
+        ends = [pressed_bushing(x)[wall].demand or 0.0 for x in (least, most)]
+        assert pressed_bushing(over)[wall].demand == pytest.approx(max(ends), rel=1e-9)
+    assert (pressed_bushing(most)[0].margin or 0.0) > 0.0
     for results in (least, over):
         worst = worst_checks(results)["P"]
         assert (worst.outcome, worst.check) == ("fails", "press fit, bushing")
+
+
+def test_a_hollow_pin_pressed_in_is_judged_with_prescribed_loads() -> None:
+    """Lame: the hoop stress at the bore is 2 p b^2 / (b^2 - a^2), with p by the interference. No
+    row of prescribed loads has it, and no margin had.
+    """
+    a, b, c, E, nu, interference = 8.0, 10.0, 25.0, 210e3, 0.3, 0.02  # mm, MPa
+    eye = (c * c + b * b) / (c * c - b * b) + nu
+    tube = (b * b + a * a) / (b * b - a * a) - nu
+    p = interference / (2.0 * b) * E / (eye + tube)
+    hoop = 2.0 * p * b * b / (b * b - a * a)
+    steel = {"youngs_modulus": E, "poisson_ratio": nu, "yield_strength": 1.1 * hoop}
+    profile = [{"length": 20, "diameter": 20, "bore": 16, "connection": x} for x in "LR"]
+    lug = {"outer_diameter": 50, "clearance": -interference}
+    raw = {
+        "title": "A hollow pin pressed in",
+        "units": "mm-N-s",
+        "analysis": {"joints": "prescribed", "required_safety_factor": 1.25, "model": "beam",
+                     "tolerance": 0.9},
+        "material": {"steel": steel},
+        "case": {"pull": {"kind": "given", "forces": {"L": [-10, 0], "R": [10, 0]}}},
+        "pin": {"P": {"material": "steel", "profile": profile, "lug": {"L": lug, "R": lug}}},
+    }  # fmt: skip
+    results = pinstress.run(pinstress.study_from(raw))
+    of_pin = [m for m in press_fits(results) if m.method == "press fit, pin"]
+    assert [m.at for m in of_pin] == ["L", "R"]
+    assert [m.demand for m in of_pin] == pytest.approx([hoop] * 2, rel=1e-9)
+    assert [m.margin for m in of_pin] == pytest.approx([1.1 / 1.25 - 1.0] * 2)
+    worst = worst_checks(results)["P"]
+    assert (worst.outcome, worst.check) == ("fails", "press fit, pin")
 
 
 HOT = f"""
