@@ -1,7 +1,8 @@
 """The stress of press fits alone, by Lame's tubes: of a pin in the bore of a lug, and of a bushing
 in its hole.
 
-It needs neither loads nor a shank. A lug whose stress is solved has it in that.
+It needs neither loads nor a shank. A lug whose stress is solved has it in that, and so has a pin
+whose contact is solved.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ METHOD = "press fit"
     omits="the loads, which the stress of a lug with a shank has; the eye is a ring",
 )
 def press_fit(text: CheckText, s: Situation) -> list[Margin]:
-    """The margins of bushing and eye of lugs with an interference whose stress is not solved."""
+    """The margins of pin, bushing and eye with an interference whose stress is not solved."""
     solved = {stress.connection for stress in s.lug_stresses}
     lugs = (lug for lug in s.lugs if lug.connection not in solved)
     return [margin for lug in lugs for margin in _margins(text, s, lug)]
@@ -38,12 +39,11 @@ def _margins(text: CheckText, s: Situation, lug: Lug) -> Iterator[Margin]:
     band = pin.band(lug.connection)
     bore = max(max(x.bores) for x in pin.segments if x.connection == lug.connection)
     place = WorstPlace(lug.connection, band.middle)
-    stresses = list(press_fit_stresses(lug, band.radius, bore / 2.0, s.material))
+    stresses = press_fit_stresses(lug, band.radius, bore / 2.0, s.material)
     required = s.row.required if s.row else None
-    for wall, (material, stress) in zip(
-        ("bushing", "eye")[-len(stresses) :], stresses, strict=True
-    ):
-        if stress > 0.0:
+    walls = "pin", *["bushing"] * (lug.bushing is not None), "eye"
+    for wall, (material, stress) in zip(walls, stresses, strict=True):
+        if stress > 0.0 and (wall != "pin" or s.joint is None):
             named = replace(text, method=f"{text.method}, {wall}")
             (margin,) = named.at_levels(s, stress, place, material, material.yield_strength)
             margin = replace(margin, factor=max(margin.factor, required or 0.0))

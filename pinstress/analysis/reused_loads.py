@@ -66,12 +66,12 @@ def _content(study: Study, raw: Mapping[str, Any]) -> bytes:
         if joint.weight is None and joint.fixed_in is None and name in table.pin
     ]
     weights = [(raw["pin"][x], table.material[table.pin[x].material].density) for x in weighed]
-    along = [_lengths(raw["pin"][x]) for x in table.pin] if _bands_count(study) else []
+    along = [_lengths(raw["pin"][x]) for x in table.pin] if bands_count(study) else []
     depends = [tables, joints, weights, along]
     return hashlib.sha256(json.dumps(depends, default=str).encode()).digest()
 
 
-def _bands_count(study: Study) -> bool:
+def bands_count(study: Study) -> bool:
     """Return whether forces may depend on where along the pins links bear on them: in space, and
     out of the plane of a planar linkage.
     """

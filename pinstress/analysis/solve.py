@@ -35,6 +35,7 @@ if TYPE_CHECKING:  # what solves is imported where a task is not in the cache
 
 # Of a dimension, m, whose effect is found.
 DIMENSION_STEPS = {"in-lbf-s": 0.1 * 0.0254, "mm-N-s": 1e-3, "m-N-s": 1e-3}
+NO_FRICTION = "not included: friction in lugs, which needs the pressures of contact"
 
 Keep = Callable[[Field], None]
 Ask = Callable[[Plan, Task, tuple[PinResult, ...], Tell], tuple[Opinion, ...]]
@@ -294,7 +295,7 @@ def _in_lugs(
                 joint = replace(joint, lugs=stress)
             except ArithmeticError as error:  # the pin's stress stands without that of its lugs
                 remark = f"no stress of the lugs: {error}"
-                joint = replace(joint, remark="; ".join(filter(None, (joint.remark, remark))))
+                joint = replace(joint, remark=_joined(joint.remark, remark))
         out.append(joint)
     return tuple(out)
 
@@ -349,6 +350,10 @@ def _histories(task: Task, solved: tuple[Solution, ...]) -> tuple[tuple[PointHis
         return (), f"{type(error).__name__}: {error}"
 
 
+def _joined(*remarks: str) -> str:
+    return "; ".join(filter(None, remarks))
+
+
 def _around(plan: Plan, task: Task, solved: tuple[Solution, ...]) -> tuple[JointResult | None, ...]:
     """Return the range over lugs around a pin with prescribed clamps and loads, by case."""
     around, loads = task.surroundings, [solution.peak.governing for solution in solved]
@@ -357,11 +362,14 @@ def _around(plan: Plan, task: Task, solved: tuple[Solution, ...]) -> tuple[Joint
     if around.pin is None:
         none = JointResult("prescribed", remark=around.why)
         return tuple(none if here is not None else None for here in loads)
+    from fea.support.contact.friction import rubs
     from fea.support.foundation.variations import prescribed_ranges
 
     ranges = prescribed_ranges(
         around.pin, task.material, around.lugs, loads, (plan.requirement.distance, around.assumed)
     )
+    if rubs(task.given):
+        ranges = tuple(x and replace(x, remark=_joined(x.remark, NO_FRICTION)) for x in ranges)
     if not task.material.hardened:
         return ranges
     from fea.support.hardened_row import range_of_row

@@ -74,7 +74,7 @@ class FactorCurve:
     stress_unit: of the points' stresses.
     points: by rising value.
     in_lugs: the pins whose lugs are not judged.
-    required_checks: those that the study requires besides yield, which are not judged either.
+    other_checks: those that a run judges besides yield, and that are not judged here.
     """
 
     study: str
@@ -85,7 +85,7 @@ class FactorCurve:
     stress_unit: str
     points: tuple[CurvePoint, ...]
     in_lugs: tuple[str, ...] = ()
-    required_checks: tuple[str, ...] = ()
+    other_checks: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         first, last = self.values[0], self.values[-1]

@@ -284,17 +284,14 @@ def _margin_words(check: JudgedCheck) -> str:
 
 def not_judged(pins: Iterable[str], checks: Iterable[str]) -> str:
     """Return the sentences that factors are of pins alone, of which these have lugs, and of yield
-    alone, beside which the study requires these checks; empty without any.
+    alone, beside which a run judges these checks; empty without any.
     """
-    names, required = (", ".join(dict.fromkeys(x)) for x in (pins, checks))
+    names, others = (", ".join(dict.fromkeys(x)) for x in (pins, checks))
     of_lugs = (
         f"The lugs of {names} are not judged here, the pin alone: `pinstress run` judges both."
     )
-    of_checks = (
-        f"What the study requires besides yield ({required}) is not judged here: "
-        "`pinstress run` judges it."
-    )
-    return " ".join([of_lugs] * bool(names) + [of_checks] * bool(required))
+    of_checks = f"Of pins, yield alone is judged here: `pinstress run` also judges {others}."
+    return " ".join([of_lugs] * bool(names) + [of_checks] * bool(others))
 
 
 def spare_words(check: JudgedCheck) -> str:

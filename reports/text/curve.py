@@ -22,7 +22,7 @@ def print_curve(curve: FactorCurve, console: Console) -> None:
     console.print(fitted_table(worst_table(curve), None, console.width))
     here = "* as in the study. " if curve.nominal in curve.values else ""
     console.print(Text(f"{here}A row has the pin's worst case."))
-    said = filter(None, [not_judged(curve.in_lugs, curve.required_checks)])
+    said = filter(None, [not_judged(curve.in_lugs, curve.other_checks)])
     for line in (*_idle(curve), *reached_lines(curve), *_failures(curve), *said):
         console.print(Text(line))
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import pytest
 
+import pinstress
 from fea.support.contact.cell_error import NOWHERE
 from fea.support.contact.variations import ResolutionComparison
 from fea.support.records import FRICTION, JointRange, Variation
@@ -63,3 +64,51 @@ def test_friction_is_an_open_value_that_only_lowers_the_factor() -> None:
     assert value.high == pytest.approx(1.8)
     assert value.low == pytest.approx(1.8 / 1.3)
     assert value.flips is not None
+
+
+RUBBED = """
+title = "Friction around prescribed loads"
+units = "mm-N-s"
+[material.steel]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+yield_strength = "900 MPa"
+fatigue = { knee_stress = "300 MPa", knee_cycles = 1e6, slope = 5, mean_stress_sensitivity = 0.2 }
+[analysis]
+joints = "prescribed"
+model = "beam"
+tolerance = 0.9
+[fatigue]
+unit = "flight"
+life = 1
+[fatigue.occurrences]
+pull = 1
+[case.pull]
+kind = "given"
+forces = { L = [-25000, 0], M = [50000, 0] }
+[lug_defaults]
+friction = 0.3
+[pin.P]
+material = "steel"
+balance = "R"
+profile = [
+  { length = 10, diameter = 20, connection = "L" },
+  { length = 20, diameter = 20, connection = "M" },
+  { length = 10, diameter = 20, connection = "R" },
+]
+"""
+
+
+def test_what_leaves_out_the_stated_friction_says_so() -> None:
+    """The range of prescribed loads was without it, and fatigue without its torque, in silence."""
+    for friction in (0.3, 0.0):
+        text = RUBBED.replace("friction = 0.3", f"friction = {friction}")
+        results = pinstress.run(pinstress.study_from(text))
+        joint, fatigue = results["P", "pull"].joint, results.fatigue
+        assert joint is not None
+        assert joint.range is not None
+        assert ("not included: friction in lugs" in joint.remark) is (friction > 0.0)
+        assert fatigue is not None
+        said = [x for x in fatigue.left_out if x.startswith("Friction in lugs: its torque")]
+        assert len(said) == (friction > 0.0)
+        assert all(x.endswith("pin P.") for x in said)

@@ -15,6 +15,7 @@ import pinstress
 from pinstress.cli.commands import run_command_line
 from pinstress.explore.sweep.design_columns import designs_of
 from pinstress.explore.sweep.page import summary
+from reports.data.headline import worst_checks
 from tests.support.each import each
 
 STUDY = """
@@ -63,9 +64,27 @@ check = "rupture"
 level = "ultimate"
 factor = 100
 """
-REQUIRED_SAID = (
-    "What the study requires besides yield (rupture) is not judged here: `pinstress run` judges it."
-)
+YIELD_ALONE = "Of pins, yield alone is judged here: `pinstress run` also judges "
+FORMULAS_SAID = f"{YIELD_ALONE}shear, bearing, bending."
+REQUIRED_SAID = f"{YIELD_ALONE}rupture, shear, bearing, bending."
+# 50 kN / (20 x 10 mm) = 250 MPa of bearing and 50 kN / (2 x 314 mm^2) = 80 MPa of shear at limit
+# load, times 1.5 at ultimate; one flight has ten pulls of 191 MPa
+LIFE = """
+[fatigue]
+unit = "flight"
+life = 1e6
+failure_probability = 0.1
+[fatigue.occurrences]
+pull = 10
+"""
+CURVE = """
+[material.steel.fatigue]
+knee_stress = "50 MPa"
+knee_cycles = 1e6
+slope = 5
+scatter = 3.5
+mean_stress_sensitivity = 0.2
+"""
 
 
 @each("command", [["sweep"], ["reliability"], ["curve", KEY, "--points", "2"]])
@@ -77,8 +96,7 @@ def test_what_judges_pins_alone_says_so(
     arguments = [command[0], str(path), *command[1:], "--out", str(tmp_path / "out"), "--quiet"]
     run_command_line([*arguments, "--jobs", "1"])
     said = " ".join(capsys.readouterr().out.split())
-    assert SAID in said
-    assert "requires besides yield" not in said
+    assert f"{SAID} {FORMULAS_SAID}" in said
 
 
 @each("command", [["sweep"], ["reliability"], ["curve", KEY, "--points", "2"]])
@@ -105,4 +123,26 @@ def test_the_run_judges_the_lugs(tmp_path: Path) -> None:
     assert row.meets_required is True
     net = next(m for m in row.margins if m.method == "lug, net section" and m.level == "limit")
     assert net.demand == pytest.approx(500.0)
-    assert summary(designs_of(pinstress.sweep(study, jobs=1))).endswith(f". {SAID}")
+    assert summary(designs_of(pinstress.sweep(study, jobs=1))).endswith(f". {SAID} {FORMULAS_SAID}")
+
+
+@each("more,check,said", [
+    ('bearing_strength = "100 MPa"', "bearing", "shear, bearing, bending"),
+    ('shear_strength = "60 MPa"', "single shear, mean", "shear, bearing, bending"),
+    (f"{CURVE}{LIFE}", "fatigue life", "shear, bearing, bending, fatigue"),
+])  # fmt: skip
+def test_what_a_run_judges_besides_yield_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], more: str, check: str, said: str
+) -> None:
+    """Rows read "safe", and nothing said that a run of the same study fails by another check."""
+    strong = 'yield_strength = "900 MPa"\n'
+    alone = STUDY.replace('lug.M = { outer_diameter = 30, material = "weak" }\n', "")
+    path = tmp_path / "study.toml"
+    path.write_text(alone.replace(strong, f"{strong}{more}\n", 1))
+    worst = worst_checks(pinstress.run(pinstress.load_study(path)))["P"]
+    assert (worst.outcome, worst.check) == ("fails", check)
+    arguments = ["curve", str(path), KEY, "--points", "2", "--out", str(tmp_path / "out")]
+    assert run_command_line([*arguments, "--quiet", "--jobs", "1"]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "safe" in printed
+    assert f"{YIELD_ALONE}{said}." in printed

@@ -157,22 +157,23 @@ def yielding_interference(lug: Lug, radius: float, bore: float, material: Materi
 def press_fit_stresses(
     lug: Lug, radius: float, bore: float, pin: Material
 ) -> Iterator[tuple[Material, float]]:
-    """Yield the material of the bushing and of the eye, and the largest von Mises stress (Pa) in
-    each, by their press fits alone: of the pin in its bore, and of the bushing in its hole, with
-    the most interference in its range.
+    """Yield the material of the pin, of the bushing and of the eye, and the largest von Mises
+    stress (Pa) in each, by their press fits alone: of the pin in its bore, and of the bushing in
+    its hole, with the interferences in their ranges that stress it most. In a bushing the two
+    relieve each other.
 
     radius, bore: of the pin, both radii, m.
 
     Source: AFFDL-TR-69-42, 9.16, superposed.
     """
     walls = [(bore, radius, pin), *_walls(lug, radius)]
-    tightest = min((lug.clearance, *(lug.range.clearance or ())))
-    fields = max(-tightest, 0.0) * _press_fit(walls)[1:]
+    pressed = {max(-x, 0.0) for x in (lug.clearance, *(lug.range.clearance or ()))}
+    every = [x * _press_fit(walls) for x in pressed]
     if lug.bushing is not None:
-        most = max((x.misfit for x in lug.pressed_bushings()), key=abs)
-        fields = fields + most * bushing_press_fit(lug, radius)
-    for (inner, _, material), constants in zip(walls[1:], fields, strict=True):
-        yield material, _largest(inner, constants)
+        of_bushing = np.vstack([np.zeros(2), bushing_press_fit(lug, radius)])
+        every = [x + y.misfit * of_bushing for x in every for y in lug.pressed_bushings()]
+    for (inner, _, material), *constants in zip(walls, *every, strict=True):
+        yield material, max(_largest(inner, x) for x in constants)
 
 
 def bushing_press_fit(lug: Lug, radius: float) -> Floats:

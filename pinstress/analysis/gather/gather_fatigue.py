@@ -234,6 +234,7 @@ def _left_out(
     ]
     tight = dict.fromkeys(t.pin.name for t in plan.tasks if _pressed(t.lugs))
     left = dict.fromkeys(t.pin.name for t in plan.tasks if _pressed(t.given) and not t.lugs)
+    rubbed = dict.fromkeys(t.pin.name for t in plan.tasks if any(x.friction for x in t.given))
     shear = dict.fromkeys(p.pin for p in points if SIGNED_SHEAR_RULE in p.note)
     sentences = [
         ("No fatigue data of the material: pin", _without_data(plan, table)),
@@ -248,6 +249,11 @@ def _left_out(
         (
             "Assembly stress of interference fits is left out where loads are prescribed: pin",
             left,
+        ),
+        (
+            "Friction in lugs: its torque, which alternates as links turn, is left out; bending by "
+            "it counts over the range of a joint in contact: pin",
+            rubbed,
         ),
         ("Cracks may start in singular zones, where stress is not evaluated: pin", singular),
     ]  # fmt: skip

@@ -47,7 +47,7 @@ class Designs:
     first: (D + 1,), start of the rows of each design.
     required: the safety factor, None for none.
     in_lugs: the pins whose lugs are not judged.
-    required_checks: those that the study requires besides yield, which are not judged either.
+    other_checks: those that a run judges besides yield, and that are not judged here.
     """
 
     study: str
@@ -58,7 +58,7 @@ class Designs:
     results: tuple[DesignColumn, ...]
     texts: dict[str, DesignColumn]  # by the names in ROW_COLUMNS
     in_lugs: tuple[str, ...] = ()
-    required_checks: tuple[str, ...] = ()
+    other_checks: tuple[str, ...] = ()
 
     @property
     def failed_rows(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
@@ -107,7 +107,7 @@ def designs_of(table: pa.Table) -> Designs:
         results=tuple(every[name] for name in _results(list(every), keys)),
         texts=texts,
         in_lugs=tuple(name for name in in_lugs if name in pins),
-        required_checks=tuple(metadata.get("required_checks", ())),
+        other_checks=tuple(metadata.get("other_checks", ())),
     )
 
 

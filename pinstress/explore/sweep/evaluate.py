@@ -20,6 +20,7 @@ from fea.core.peak import Maximum, Verdict
 from geometry import ArgumentError, PinLike
 from pinbase.memo import Memo
 from pinstress.analysis.plan import prepare, requirement_of
+from pinstress.analysis.reused_loads import bands_count
 from pinstress.analysis.solve import solutions
 from pinstress.explore.sweep.laws import Floats
 from pinstress.explore.sweep.number import Number
@@ -207,8 +208,8 @@ class Evaluator:
     def _moves(self, number: Number, case: str) -> bool:
         """Return whether the loads of a case depend on a number.
 
-        They depend on numbers of the mechanism, of the case and of cases that it names, and on
-        those that give mass to floating pins.
+        They depend on numbers of the mechanism, of the case and of cases that it names, on those
+        that give mass to floating pins, and in space on lengths, which place bands along pins.
         """
         table, *inner = number.path
         if table == "case":
@@ -225,7 +226,9 @@ class Evaluator:
             if name in study.pin and joint.fixed_in is None and joint.weight is None
         ]
         if table == "pin":
-            return inner[0] in free
+            lengths = any(path[-1] == "length" for path in number.paths)
+            along = lengths or not study.pin[str(inner[0])].profile
+            return inner[0] in free or (along and bands_count(self.study))
         return inner[-1] == "density" and any(study.pin[x].material == inner[0] for x in free)
 
     def loads_of(self, study: Study, values: Sequence[float]) -> dict[str, CaseLoads | InputError]:

@@ -54,7 +54,7 @@ def summary(designs: Designs) -> str:
     parts += [f"{varied} varied {'parameter' if varied == 1 else 'parameters'}"]
     if designs.required is not None:
         parts += [f"required safety factor {short(designs.required)}"]
-    return f"{'; '.join(parts)}. {not_judged(designs.in_lugs, designs.required_checks)}".rstrip()
+    return f"{'; '.join(parts)}. {not_judged(designs.in_lugs, designs.other_checks)}".rstrip()
 
 
 def page_data(designs: Designs) -> dict[str, Any]:

@@ -64,7 +64,7 @@ def summary(table: pa.Table, console: Console) -> None:
         )
     in_lugs = stated.get("pins_in_lugs", ())
     held = (row["pin"] for row in rows if row["pin"] in in_lugs)
-    if said := not_judged(held, stated.get("required_checks", ())):
+    if said := not_judged(held, stated.get("other_checks", ())):
         console.print(said, highlight=False, markup=False)
     rough = Counter(row["pin"] for row in rows if row["verdict"] in ("unconverged", "singular"))
     if rough:

@@ -145,7 +145,7 @@ def _schema(study: Study, parameters: Sequence[Parameter]) -> pa.Schema:
         "parameters": {p.key: {"unit": p.number.unit, "law": p.law_text} for p in parameters},
         "required_safety_factor": common_required_factor(study),
         "pins_in_lugs": with_given_lugs(study, study.table.pin),
-        "required_checks": checks_besides_yield(study),
+        "other_checks": checks_besides_yield(study),
     }
     return pa.schema(
         schema_fields, metadata={METADATA_KEY: json.dumps(stated, ensure_ascii=False).encode()}

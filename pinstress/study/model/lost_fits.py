@@ -11,13 +11,14 @@ from pinstress.study.reading.file import Study
 
 def lost_fits(study: Study, task: Task, case: str) -> tuple[str, ...]:
     """Return the lugs from which a pin pressed into them comes loose at the temperature of a case,
-    in words: "LEFT above 143 degC".
+    with the least of its interferences, in words: "LEFT above 143 degC".
     """
     rise, out = rise_of(study, case), []
     for lug in task.given:
-        given = lug.clearance - lug.growth
-        if rise and given < 0.0 <= lug.clearance:
-            opens = temperature_words(study, -rise * given / lug.growth)
+        every = (x - lug.growth for x in (lug.clearance, *(lug.range.clearance or ())))
+        lost = [x for x in every if x < 0.0 <= x + lug.growth]
+        if rise and lost:
+            opens = temperature_words(study, -rise * max(lost) / lug.growth)
             out.append(f"{lug.connection} {'above' if rise > 0.0 else 'below'} {opens}")
     return tuple(out)
 

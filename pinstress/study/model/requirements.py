@@ -15,6 +15,7 @@ from pinstress.study.reading.file import Study
 from pinstress.study.schema.require import RequireTable, level_of
 
 Pair = tuple[str, str]  # pin, case
+CHECKED_BY_FORMULA = "shear", "bearing", "bending"
 
 
 def required_factor(study: Study, pin: str, case: str) -> float | None:
@@ -53,8 +54,17 @@ def common_required_factor(study: Study, pins: Iterable[str] | None = None) -> f
 
 
 def checks_besides_yield(study: Study) -> tuple[str, ...]:
-    """Return the checks besides yield for which the study states a requirement."""
-    return tuple(dict.fromkeys(t.check for t in study.table.require if t.check != "yield"))
+    """Return the checks of pins that a run judges besides their largest stress against yield: what
+    the study requires, what it has data for, and the formulas for pins with a profile or outline.
+    """
+    table, pins = study.table, study.table.pin.values()
+    life = table.fatigue is not None and table.fatigue.life is not None
+    judged: list[str] = [t.check for t in table.require if t.check != "yield"]
+    judged += CHECKED_BY_FORMULA * any(pin.geometry is None for pin in pins)
+    judged += ["rupture"] * any(table.material[pin.material].ultimate_strength for pin in pins)
+    judged += ["fatigue"] * life
+    judged += [f'the code "{code}"' for code in table.analysis.codes if code != "general"]
+    return tuple(dict.fromkeys(judged))
 
 
 def sizing_factor(study: Study, pin: str, case: str) -> float | None:
