@@ -9,6 +9,7 @@ import click
 
 from pinbase.platform import portable
 from pinstress.cli.output_folder import replacing, require_replaceable
+from pinstress.cli.plots import draw_into, report_missing
 from pinstress.cli.run import console, progress_bar
 from pinstress.cli.streams import unneeded
 from pinstress.explore.chart.chart import ChartPlan, chart, plan_chart
@@ -20,7 +21,6 @@ from reports.data.chart import CHART_NAME, Chart
 from reports.format.file_names import plot_name
 from reports.format.numbers import percent
 from reports.plots.chart import chart_plot
-from reports.plots.draw import draw
 from reports.tables.chart import chart_table
 from reports.text.chart_summary import print_chart
 
@@ -66,12 +66,13 @@ def chart_and_write(
         with progress_bar(quiet=quiet) as progress:
             result = chart(plan, partial(measure, limits=limits), meshes, runs, progress, calculix)
         chart_table(result).write(staging)
-        draw([chart_plot(result)], staging)
+        failed = draw_into(staging, chart_plot(result))
     with unneeded(directory):
         print_chart(result, console())
     if not quiet:
-        click.echo(f"Chart: {directory / CHART_NAME}.svg", err=True)
-    return _report_missed(result)
+        name = CHART_CSV if failed else f"{CHART_NAME}.svg"
+        click.echo(f"Chart: {directory / name}", err=True)
+    return max(report_missing(failed), _report_missed(result))
 
 
 def _require_contact(plan: ChartPlan) -> None:

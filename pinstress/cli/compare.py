@@ -12,7 +12,13 @@ from pinbase.processes.apart import Failed, apart
 from pinbase.processes.pool import preload
 from pinstress.cli.closing import EXIT_REQUIREMENT_MISSED
 from pinstress.cli.output_folder import replacing, require_replaceable
-from pinstress.cli.plots import PICTURE_MODULES, PICTURE_SECONDS, draw_pin
+from pinstress.cli.plots import (
+    PICTURE_MODULES,
+    PICTURE_SECONDS,
+    draw_pin,
+    images,
+    report_missing,
+)
 from pinstress.cli.run import console
 from pinstress.cli.streams import unneeded
 from pinstress.cli.view import opened_results
@@ -22,8 +28,6 @@ from reports.data.comparison import DECISION_CHANGED, UNCHANGED, RowPair, RunCom
 from reports.data.requirement_pairs import GONE, LOST
 from reports.page.comparison import PicturePair, write_comparison
 from reports.plots.comparison import comparison_plot
-from reports.plots.draw import svg
-from reports.plots.theme import on_paper
 from reports.text.comparison import print_comparison, write_markdown
 from reports.vtk.read_back import Opened
 from reports.vtk.renderer import renderer_problem
@@ -57,10 +61,7 @@ def compare(first: Path, second: Path, out: Path | None, pictures: bool) -> int:
         drawn = _pictures(comparison, opened, staging, failed) if pictures else ()
         write_comparison(comparison, staging / COMPARISON_PAGE, _plot(comparison, failed), drawn)
     click.echo(f"Comparison: {out / COMPARISON_PAGE}", err=True)
-    if failed:
-        said = "; ".join(f"{name}: {failure.reason}" for name, failure in failed.items())
-        click.echo(f"Error: missing in it: {said}", err=True)
-    return max(status, int(bool(failed)))
+    return max(status, report_missing(failed))
 
 
 def _report_lost(comparison: RunComparison) -> int:
@@ -77,14 +78,7 @@ def _report_lost(comparison: RunComparison) -> int:
 def _plot(comparison: RunComparison, failed: dict[str, Failed]) -> str:
     """Return the plot of the page as SVG; empty where there is none."""
     plot = comparison_plot(comparison)
-    if plot is None:
-        return ""
-    drawing = partial(svg, {**plot.spec, "config": on_paper()})
-    (image,) = apart([("the plot", drawing)], PICTURE_SECONDS)
-    if isinstance(image, Failed):
-        failed["the plot"] = image
-        return ""
-    return image
+    return "".join(image for _, image in images([plot] if plot else [], failed))
 
 
 def _compared(a: Opened, b: Opened) -> RunComparison:

@@ -8,13 +8,13 @@ import click
 
 from pinbase.processes.pool import processes
 from pinstress.cli.output_folder import replacing, require_replaceable
+from pinstress.cli.plots import draw_into, report_missing
 from pinstress.cli.run import console, progress_bar
 from pinstress.cli.streams import unneeded
 from pinstress.explore.curve import Ends, curve
 from pinstress.study.reading.file import Study
 from reports.data.curve import CURVE_NAME
 from reports.plots.curve import curve_plot
-from reports.plots.draw import draw
 from reports.tables.curve import curve_table
 from reports.text.curve import print_curve
 
@@ -41,15 +41,16 @@ def curve_and_write(
         with progress_bar(alone=processes(jobs) == 1, quiet=quiet) as progress:
             result = curve(study, key, ends, points, pins, processes(jobs), progress)
         curve_table(result).write(staging)
-        draw([curve_plot(result)], staging)
+        failed = draw_into(staging, curve_plot(result))
     with unneeded(out):
         print_curve(result, console())
     if not quiet:
-        click.echo(f"Curve: {out / CURVE_NAME}.svg", err=True)
+        click.echo(f"Curve: {out / (CURVE_CSV if failed else f'{CURVE_NAME}.svg')}", err=True)
+    status = report_missing(failed)
     if not any(point.safety_factor for point in result.points):
         click.echo("Not decided: no value has a factor of safety.", err=True)
         return 1
-    return 0
+    return status
 
 
 def number_or_text(value: str | None) -> float | str | None:

@@ -6,7 +6,7 @@ each complete or not at all.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -28,8 +28,9 @@ from reports.folder.inside import NotPlain, is_inside, read_inside, write_inside
 from reports.folder.results_json import MAX_RESULTS_SIZE
 from reports.page.scripts import REPORT_PAGE, document_of, plots_of
 from reports.pdf.typeset import Content, shown_plots, typeset
-from reports.plots.draw import draw_plot
+from reports.plots.draw import draw_plot, svg
 from reports.plots.spec import Plot
+from reports.plots.theme import on_paper
 from reports.vtk.read_back import Opened, open_results
 from reports.vtk.renderer import renderer_problem
 
@@ -106,6 +107,31 @@ def _attempted(name: str, add: Callable[[], dict[str, Failed]]) -> dict[str, Fai
         return {name: Failed(str(error))}
     except MemoryError:
         return {name: Failed(NO_MEMORY_REASON)}
+
+
+def images(plots: Iterable[Plot], failed: dict[str, Failed]) -> Iterator[tuple[Plot, str]]:
+    """Yield plots with their drawings as SVG. failed: receives those that could not be drawn."""
+    shown = list(plots)
+    work = [(p.name, partial(svg, {**p.spec, "config": on_paper()})) for p in shown]
+    for plot, image in zip(shown, apart(work, PICTURE_SECONDS), strict=True):
+        if isinstance(image, Failed):
+            failed[f"the plot {plot.name}"] = image
+        else:
+            yield plot, image
+
+
+def draw_into(folder: Path, plot: Plot) -> dict[str, Failed]:
+    """Write a plot as SVG and as PNG into a folder and return the failure, if any."""
+    (drawn,) = apart([(plot.name, partial(draw_plot, plot, folder))], PICTURE_SECONDS)
+    return {f"the plot {plot.name}": drawn} if isinstance(drawn, Failed) else {}
+
+
+def report_missing(failed: dict[str, Failed]) -> int:
+    """Report what is missing in what was written, and return the exit status."""
+    if failed:
+        said = "; ".join(f"{name}: {failure.reason}" for name, failure in failed.items())
+        click.echo(f"Error: missing in it: {said}", err=True)
+    return int(bool(failed))
 
 
 def require_results(directory: Path) -> set[str]:

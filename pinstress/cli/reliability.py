@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import click
 
 from assess.judgement import DEPENDS, NOT_DECIDED
+from pinbase.processes.apart import Failed
 from pinbase.processes.pool import preload, processes
 from pinstress.analysis.plan import prepare
 from pinstress.analysis.results import run
 from pinstress.cli.output_folder import replacing, require_replaceable
+from pinstress.cli.plots import images, report_missing
 from pinstress.cli.run import RUN_LIBRARIES, RUN_MODELS, console, progress_bar
 from pinstress.cli.shared import connected
 from pinstress.cli.streams import unneeded
@@ -20,7 +22,7 @@ from pinstress.explore.reliability.designs import for_values, random_numbers
 from pinstress.study.model.hardened import require_strengths
 from pinstress.study.reading.file import Study
 from reports.data.reliability import Reliability
-from reports.page.reliability import write_reliability_page
+from reports.page.reliability import distribution_plots, write_reliability_page
 from reports.tables.reliability import write_reliability
 from reports.text.reliability import name, print_reliability
 
@@ -69,12 +71,14 @@ def reliability_and_write(
             with connected(connection) as cluster:
                 assessment = assess(study, nominal, most, progress, pins, cases, cluster)
         write_reliability(assessment, staging)
-        write_reliability_page(assessment, staging / RELIABILITY_PAGE)
+        failed: dict[str, Failed] = {}
+        shown = images(distribution_plots(assessment), failed)
+        write_reliability_page(assessment, shown, staging / RELIABILITY_PAGE)
     with unneeded(directory):
         print_reliability(assessment, console())
     if not quiet:
         click.echo(f"Report: {directory / RELIABILITY_PAGE}", err=True)
-    return _status(assessment)
+    return max(report_missing(failed), _status(assessment))
 
 
 def _status(assessment: Reliability) -> int:

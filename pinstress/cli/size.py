@@ -67,7 +67,7 @@ def size_and_write(study: Study, goal: SizingGoal, options: SizeOptions) -> int:
     target = target_of(study, options.out, new=False)
     plan = prepare(study, pins=options.pins)
     state = SizeState(target, identity(study, goal, {task.pin.name for task in plan.tasks}))
-    if not options.resume and not state.path.exists():
+    if not options.resume and not state.exists:
         require_new(target, OTHER_FILE_REMEDY)
     sizing = _Sizing(study, goal, target, state)
     sizing.start(options.resume)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
-from reports.data.reliability import Reliability, Risk
+from reports.data.reliability import Reliability
 from reports.format.template import rendered
-from reports.plots.draw import svg
 from reports.plots.reliability import distribution_plot
-from reports.plots.theme import on_paper
+from reports.plots.spec import Plot
 from reports.tables.column import Column, Table, read_only
 from reports.tables.reliability import drivers_table, risks_table, ways_table
 from reports.text.reliability import remarks, sentence, solved, ways_title
@@ -20,12 +20,16 @@ LAW_COLUMNS: list[Column[tuple[str, str]]] = [
 ]
 
 
-def write_reliability_page(reliability: Reliability, path: Path) -> None:
-    """Write reliability.html."""
-    plots = (
-        distribution_plot(reliability, risk)
-        for risk in _worst_first(reliability)[:MAX_DISTRIBUTION_PLOTS]
-    )
+def distribution_plots(reliability: Reliability) -> list[Plot]:
+    """The plots of the page, of the rows with the largest probabilities."""
+    worst = sorted(reliability.risks, key=lambda risk: -risk.most)[:MAX_DISTRIBUTION_PLOTS]
+    return [plot for risk in worst if (plot := distribution_plot(reliability, risk))]
+
+
+def write_reliability_page(
+    reliability: Reliability, plots: Iterable[tuple[Plot, str]], path: Path
+) -> None:
+    """Write reliability.html. plots: with their drawings as SVG."""
     laws = Table("laws", LAW_COLUMNS, reliability.parameters)
     text = rendered(
         "reliability.html.j2",
@@ -38,10 +42,6 @@ def write_reliability_page(reliability: Reliability, path: Path) -> None:
             ("Random numbers", laws.grid()),
         ],
         remarks=[*remarks(reliability), solved(reliability)],
-        plots=[(svg({**plot.spec, "config": on_paper()}), plot.caption) for plot in plots if plot],
+        plots=[(image, plot.caption) for plot, image in plots],
     )
     path.write_text(text, encoding="utf-8", newline="\n")
-
-
-def _worst_first(reliability: Reliability) -> list[Risk]:
-    return sorted(reliability.risks, key=lambda risk: -risk.most)

@@ -104,6 +104,9 @@ def _hardened(rng: random.Random, pins: Tree, whole: bool) -> Tree:
     """
     hardened = {}
     for name, pin in pins.items():
+        if pin["material"] != "steel":  # others have no strength, which the rest must have
+            hardened[name] = pin
+            continue
         thin = min(_least(s["diameter"]) - _largest(s.get("bore")) for s in pin["profile"])
         case: Tree = {"surface": Quantity(11e8, "stress"), "core": Quantity(6e8, "stress"),
                       "depth": length(thin * rng.choice((0.01, 0.05, 0.1)))}  # fmt: skip

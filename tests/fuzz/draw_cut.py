@@ -48,7 +48,20 @@ def _hole(rng: random.Random, d: float, long: list[float]) -> Tree:
         hole["chamfer"] = length(0.15 * bore)
     if rng.random() < 0.3:
         hole |= {"depth": length(rng.uniform(0.3, 0.45) * d), "bottom_radius": length(0.1 * bore)}
-    return hole
+    return hole if len(hole) > 3 else hole | aslant(f"{z} {bore}", d, bore, 0.9)
+
+
+def aslant(dice: str, d: float, bore: float, most: float) -> Tree:
+    """Offset, tilt, both or neither of a hole through a pin; by dice of their own, so that all else
+    of a study falls as it does without them.
+
+    d, bore: diameters of pin and hole, m. most: largest tilt, rad.
+    """
+    rng = random.Random(f"aslant {dice}")
+    room = 0.45 * d - 0.5 * bore
+    offset = {"offset": length(room * rounded(rng.uniform(-1.0, 1.0), 2))}
+    tilt = {"tilt": angle(rounded(rng.uniform(-most, most), 2))}
+    return rng.choice(({}, offset, tilt, offset | tilt))
 
 
 def _flat(rng: random.Random, d: float, long: list[float]) -> Tree:

@@ -8,6 +8,7 @@ import math
 import random
 from collections.abc import Sequence
 
+from tests.fuzz.draw_cut import aslant
 from tests.fuzz.draw_pin import rounded
 from tests.fuzz.quantity import INCH, Quantity, Tree, angle, force, length
 
@@ -70,8 +71,10 @@ class Seat:
         lugs = {band: _lug(rng, diameter, couple, self.classes) for band in bands}
         self.table: Tree = {"material": "steel", "profile": profile, "lug": lugs}
         if rng.random() < 0.15 and not bored and widest[0] > 0.6 * diameter:
-            self.table["hole"] = [{"z": length(widest[1]), "diameter": length(0.15 * diameter),
-                                   "angle": angle(rng.uniform(-3.0, 3.0))}]  # fmt: skip
+            bore = 0.15 * diameter
+            hole = {"z": length(widest[1]), "diameter": length(bore),
+                    "angle": angle(rng.uniform(-3.0, 3.0))}  # fmt: skip
+            self.table["hole"] = [hole | aslant(f"{widest[1]} {bore}", diameter, bore, 0.35)]
             self.classes.add("hole in a lug")
 
 

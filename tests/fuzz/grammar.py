@@ -25,7 +25,7 @@ from tests.fuzz.quantity import Tree, write
 
 TOLERANCE = 0.2  # of all studies
 OPTIONS = {
-    "run": ("--no-cache", "--vtk", "none", "--jobs", "1", "--memory-limit", "500"),
+    "run": ("--no-cache", "--vtk", "none", "--jobs", "1", "--memory-limit", "1000"),
     "sweep": ("--jobs", "1", "--quiet"),
     "reliability": ("--jobs", "1", "--quiet"),
 }
@@ -39,6 +39,7 @@ REASONS = {
     r"dead point at": "the drive would push the linkage past where it can go",
     r"change point at": "two paths cross there",
     r"friction jams": "that much friction leaves no motion, or two",
+    r"bushing in lug .* is loose at": "its interference is smaller than what heat takes from it",
 }
 
 

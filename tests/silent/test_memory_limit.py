@@ -71,6 +71,46 @@ def test_a_memory_limit_costs_pictures_alone(kilobytes: int, tmp_path: Path) -> 
     assert (tmp_path / "out" / "report.pdf").read_bytes().startswith(b"%PDF-")
 
 
+LAWS = """
+[vary]
+sample = "latin-hypercube"
+count = 3
+[vary.parameters]
+'material."AISI 4340".yield_strength' = { normal = ["225 ksi", "10 ksi"] }
+[reliability]
+samples = 10
+importance_samples = 0
+sobol_samples = 0
+"""
+YIELD_STRENGTH = 'material."AISI 4340".yield_strength'
+DESIGNS = {
+    "reliability": ([], {"reliability.html", "reliability.json"}, "reliability.html"),
+    "curve": ([YIELD_STRENGTH, "--from", "200 ksi", "--to", "225 ksi", "--points", "2"],
+              {"curve.csv"}, "curve.csv"),
+}  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", DESIGNS)
+def test_a_memory_limit_costs_pictures_of_designs_alone(command: str, tmp_path: Path) -> None:
+    """Before, signal 5 within Vega's engine took all the designs with it."""
+    (tmp_path / "study.toml").write_text(QUICK + LAWS, encoding="utf-8")
+    options, wanted, named = DESIGNS[command]
+    arguments = [command, "study.toml", *options, "--out", "out", "--jobs", "1"]
+    shell = ["bash", "-c", 'ulimit -v 9000000; exec "$@"', "bash", sys.executable, "-m"]
+    made = subprocess.run(
+        [*shell, "pinstress", *arguments], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert made.returncode == 1, made.stderr
+    assert wanted <= manifest.entries(tmp_path / "out")
+    assert f"out/{named}" in made.stderr
+    (error,) = [line for line in made.stderr.splitlines() if line.startswith("Error: ")]
+    assert error.startswith("Error: missing in it: the plot ")
+    assert "ended by signal 5 " in error
+    assert error.endswith("it may have run out of memory")
+    assert "Traceback" not in made.stderr
+
+
 def ends(how: int) -> int:
     faulthandler.disable()  # of pytest, which would print what is meant to happen
     os.kill(os.getpid(), how)

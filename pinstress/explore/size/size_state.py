@@ -6,6 +6,7 @@ import hashlib
 import os
 import zipfile
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -48,6 +49,13 @@ class SizeState:
         self.path = target.with_name(target.name + STATE_SUFFIX)
         self._target, self._identity = target, identity
 
+    @property
+    def exists(self) -> bool:
+        """Whether there is such a file; a name that is too long has none."""
+        with suppress(OSError):
+            return self.path.exists()
+        return False
+
     def begin(self) -> None:
         """Create the file, without a pin.
 
@@ -62,8 +70,12 @@ class SizeState:
                 code="unfinished-size",
             ) from None
         except OSError as error:
-            raise cannot_write(self.path, error) from None
-        self.write(())
+            raise cannot_write(self._both, error) from None
+        try:
+            self.write(())
+        except InputError:
+            self.end()
+            raise
 
     def read(self) -> tuple[SizingResult, ...]:
         """Return the finished pins.
@@ -96,15 +108,22 @@ class SizeState:
 
         Raises: InputError where it cannot be written.
         """
-        replace_file(self.path, pack(FinishedPins(self._identity, pins)))
+        replace_file(self.path, pack(FinishedPins(self._identity, pins)), self._both)
+
+    @property
+    def _both(self) -> str:
+        """The user's file and this one, for messages: nobody has named this one."""
+        return f"{self._target}, and {self.path.name} while its pins are sized"
 
     def end(self) -> None:
         """Remove the file."""
         self.path.unlink(missing_ok=True)
 
 
-def replace_file(path: Path, content: bytes) -> None:
+def replace_file(path: Path, content: bytes, name: str = "") -> None:
     """Write a file in one step.
+
+    name: of it in messages, its path by default.
 
     Raises: InputError where it cannot be written.
     """
@@ -113,5 +132,6 @@ def replace_file(path: Path, content: bytes) -> None:
         partial.write_bytes(content)
         os.replace(partial, path)
     except OSError as error:
-        partial.unlink(missing_ok=True)
-        raise cannot_write(path, error) from None
+        with suppress(OSError):  # as of a name that is too long
+            partial.unlink(missing_ok=True)
+        raise cannot_write(name or path, error) from None

@@ -117,6 +117,22 @@ def test_what_cannot_be_resumed_is_told(tmp_path: Path) -> None:
     assert not (tmp_path / "study_sized.toml").exists()
 
 
+@pytest.mark.parametrize("length", [250, 238])
+def test_a_file_that_cannot_be_written_is_named_as_it_was_given(
+    tmp_path: Path, length: int
+) -> None:
+    """Names have 255 bytes: the first leaves too few for the file of finished pins, the second for
+    that in which it is written. Both ended with a traceback.
+    """
+    (tmp_path / "study.toml").write_text(QUICK)
+    name = "n" * (length - 5) + ".toml"
+    made = run_here("size", "study.toml", "--fos", "1.5", "--out", name, cwd=tmp_path)
+    assert made.returncode == 2
+    assert made.stderr.startswith(f"Error: {name}, and {name}.unfinished while its pins are sized")
+    assert "cannot be written (File name too long)" in made.stderr
+    assert [p.name for p in tmp_path.iterdir()] == ["study.toml"]
+
+
 def test_a_new_study_that_was_edited_is_not_overwritten(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
