@@ -15,7 +15,7 @@ from loads.linkage.linkage import LinkageError
 from loads.linkage.parts import Point, Slider, Turn
 from loads.motion.complex_points import cross, number
 from loads.motion.motion import Motion
-from pinbase.arrays import Complex, Floats
+from pinbase.arrays import Complex, Floats, Mask
 
 SWITCH_TIME_TOLERANCE = 1e-12  # relative: an instant this close to a switch coincides with it
 MIN_POINT_DISTANCE = 1e-12  # of the length scale: points this close have no line between them
@@ -64,6 +64,16 @@ class Load(Protocol):
     def switches(self) -> tuple[float, ...]:
         """Times at which the load jumps, s."""
         ...
+
+
+def acts(times: Floats, begin: float, end: float) -> Mask:
+    """Mask (T,) of the times (T,) s at which a load acts; at a switch as just before it."""
+    on = np.ones(len(times), dtype=bool)
+    if math.isfinite(begin):
+        on &= times > begin + SWITCH_TIME_TOLERANCE * abs(begin)
+    if math.isfinite(end):
+        on &= times <= end + SWITCH_TIME_TOLERANCE * abs(end)
+    return on
 
 
 @dataclass(frozen=True)
@@ -121,13 +131,7 @@ class Applied:
 
     def size(self, motion: Motion) -> Floats:
         """Factor of force and couple at every instant, (T,)."""
-        t = motion.times
-        on = np.ones(len(motion), dtype=bool)
-        if self.switches:
-            on = (t > self.begin + SWITCH_TIME_TOLERANCE * abs(self.begin)) & (
-                t <= self.end + SWITCH_TIME_TOLERANCE * abs(self.end)
-            )
-        factor = np.zeros(len(motion))
+        on, factor = acts(motion.times, self.begin, self.end), np.zeros(len(motion))
         if self.times is None:
             factor[on] = 1.0
         elif on.any():  # its table need not cover the time in which it does not act

@@ -156,12 +156,8 @@ def forces(d: Drop, y: Floats, mode: Mode) -> DropForces:
 def _rates(d: Drop, y: Floats, mode: Mode) -> Floats:
     """Time derivatives (STATE_ROWS, T) of states y (STATE_ROWS, T) in one mode."""
     f, out = forces(d, y, mode), np.zeros_like(y)
-    out[TYRE_DEFLECTION], out[DEFLECTION_RATE], out[WHEEL_TRAVEL], out[WHEEL_TRAVEL_RATE] = (
-        y[DEFLECTION_RATE],
-        f.unsprung,
-        y[WHEEL_TRAVEL_RATE],
-        f.sprung - f.unsprung,
-    )
+    out[TYRE_DEFLECTION], out[DEFLECTION_RATE] = y[DEFLECTION_RATE], f.unsprung
+    out[WHEEL_TRAVEL], out[WHEEL_TRAVEL_RATE] = y[WHEEL_TRAVEL_RATE], f.sprung - f.unsprung
     if d.strut is not None:
         out[OIL_ENERGY] = d.strut.oil_force(f.speed) * f.speed
         out[FRICTION_ENERGY] = mode.strut * d.strut.friction * f.speed
@@ -261,11 +257,8 @@ def _after(d: Drop, event: str, y: Floats, mode: Mode) -> tuple[Floats, Mode]:
 
 def _slides(d: Drop, y: Floats) -> int:
     """Sliding direction of a wheel that touches the ground: 1 aft, -1 forward."""
-    return (
-        -1
-        if d.wheel is not None and d.wheel.slip(y[LEG_DEFLECTION_RATE], y[WHEEL_SPIN]) < 0.0
-        else 1
-    )
+    wheel = d.wheel
+    return -1 if wheel and wheel.slip(y[LEG_DEFLECTION_RATE], y[WHEEL_SPIN]) < 0.0 else 1
 
 
 def _wheel(d: Drop, y: Floats, mode: Mode, event: str) -> int:

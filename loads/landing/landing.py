@@ -178,12 +178,8 @@ def land(drop: Drop) -> Landing:
 
 def _energies(d: Drop, y: Floats, stroke: Floats) -> LandingEnergies:
     """Energies at states y (STATE_ROWS, T). stroke: of the strut, (T,) m."""
-    z1, v1, zero = (
-        y[TYRE_DEFLECTION] + y[WHEEL_TRAVEL],
-        y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE],
-        np.zeros(y.shape[1]),
-    )
-    wheel, bending = d.wheel, zero
+    z1, v1 = y[TYRE_DEFLECTION] + y[WHEEL_TRAVEL], y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE]
+    wheel, bending = d.wheel, (zero := np.zeros(y.shape[1]))
     kinetic = 0.5 * (d.sprung * v1**2 + d.unsprung * y[DEFLECTION_RATE] ** 2)
     if wheel is not None:
         bending_mass = wheel.mass if wheel.stiffness is not None else 0.0

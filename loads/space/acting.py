@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from loads.forces.acting import SWITCH_TIME_TOLERANCE, ForceLaw
+from loads.forces.acting import ForceLaw, acts
 from loads.forces.curve import ForceTable
 from loads.space.linkage import Vector
 from loads.space.motion import SpaceMotion
@@ -88,12 +88,7 @@ class SpaceForce:
 
     def pushes(self, motion: SpaceMotion) -> Iterator[SpacePush]:
         """The force and couple at every instant; at a switch, those just before it."""
-        t = motion.times
-        on = np.ones(len(motion), dtype=bool)
-        if math.isfinite(self.begin):
-            on &= t > self.begin + SWITCH_TIME_TOLERANCE * abs(self.begin)
-        if math.isfinite(self.end):
-            on &= t <= self.end + SWITCH_TIME_TOLERANCE * abs(self.end)
+        on = acts(motion.times, self.begin, self.end)
         size = np.where(on, 1.0 if self.times is None else self.times(motion), 0.0)
         force, couple = (size[:, None] * np.array(v) for v in (self.force, self.couple))
         if self.follows:

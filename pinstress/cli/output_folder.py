@@ -51,9 +51,8 @@ def require_replaceable(
     if contents and known is None:
         raise InputError(
             f"--out: {directory} contains {_some(contents)}, but no list of what pinstress wrote "
-            f"({manifest.MANIFEST_FILE}): it was written by another program or an earlier "
-            f"version, or "
-            "copied without that file; choose another folder, or delete this one",
+            f"({manifest.MANIFEST_FILE}): it was written by another program or an earlier version, "
+            "or copied without that file; choose another folder, or delete this one",
             code="not-ours",
         )
     if strange := {name for name in contents - (known or set()) if not also(name)}:

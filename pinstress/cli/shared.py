@@ -151,10 +151,8 @@ class Commands(click.Group):
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the sections, then the commands that are in none of them."""
         names = self.list_commands(ctx)
-        wide, placed = (
-            max(map(len, names)),
-            {name for section in COMMAND_SECTIONS.values() for name in section},
-        )
+        wide = max(map(len, names))
+        placed = {name for section in COMMAND_SECTIONS.values() for name in section}
         rest = tuple(name for name in names if name not in placed)
         for title, members in {**COMMAND_SECTIONS, "Other": rest}.items():
             rows = [

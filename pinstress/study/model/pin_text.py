@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -25,9 +24,8 @@ from geometry.shape.drill import FLAT_TIP_ANGLE
 from pinstress.study.model.imported_pin import plain_vector, require_readable, turned_apart
 from pinstress.study.model.pins import METRES_PER_UNIT
 from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.in_python import key_part
 from pinstress.study.schema.types import usable_name
-
-BARE_KEY_PATTERN = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def imported_text(path: Path, name: str | None, unit: str, material: str) -> str:
@@ -66,13 +64,13 @@ def imported_text(path: Path, name: str | None, unit: str, material: str) -> str
 
 
 def _text(file: BodyFile, profile: RecognisedProfile, unit: str, material: str) -> str:
-    pin, head = profile.pin(file.name), f"[pin.{_key(file.name)}]"
+    pin, table = profile.pin(file.name), f"pin.{key_part(file.name)}"
     lines = [
         f"# From {json.dumps(file.path.name)}:",
         f"# the axis is along {plain_vector(profile.along)} of the file, and",
         f"# z = 0 is {profile.start:g} {unit} along it; "
         f"angles count from {plain_vector(profile.x)}.",
-        head,
+        f"[{table}]",
         f"material = {json.dumps(material, ensure_ascii=False)}  # a [material] of the study",
         "profile = [",
         *(f"  {{ {', '.join(_segment(s, file.unit, unit))} }}," for s in pin.segments),
@@ -80,7 +78,7 @@ def _text(file: BodyFile, profile: RecognisedProfile, unit: str, material: str) 
         *_listed(pin, file.unit, unit),
     ]
     for cut in profile.cuts:
-        lines += ["", f"[[pin.{_key(file.name)}.{cut.what}]]", *_cut(cut, file.unit, unit)]
+        lines += ["", f"[[{table}.{cut.what}]]", *_cut(cut, file.unit, unit)]
     return "\n".join(lines) + "\n"
 
 
@@ -163,7 +161,3 @@ def _length(si: float, one: float, unit: str) -> str:
 
 def _number(si: float, one: float) -> str:
     return f"{si / one:.9g}"
-
-
-def _key(name: str) -> str:
-    return name if BARE_KEY_PATTERN.fullmatch(name) else json.dumps(name, ensure_ascii=False)

@@ -43,10 +43,9 @@ def counted_twice(table: AnalysisTable, notes: Mapping[str, str]) -> tuple[str, 
     statement = f"{'contains' if note else 'is'} {' times '.join(factors + times)}"
     return (
         f"{REQUIRED_FACTOR_KEY}: {required:g} {statement}{' by its note' * bool(note)}, and the "
-        f"margins of safety "
-        f"already contain {' and '.join(keys)}; the required factor compares yield with the stress "
-        "under the loads of the study as they are (1: no yielding at limit load); if it is another "
-        "factor, say in its note where it comes from",
+        f"margins of safety already contain {' and '.join(keys)}; the required factor compares "
+        "yield with the stress under the loads of the study as they are (1: no yielding at limit "
+        "load); if it is another factor, say in its note where it comes from",
     )
 
 

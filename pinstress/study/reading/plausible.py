@@ -144,10 +144,8 @@ def _question(stated: StatedValue, system: UnitSystem) -> str:
     if usual.low <= stated.value <= usual.high:  # then the modulus may as well be wrong
         return (
             f"{stated.key}: {as_text(stated.written)} is {stated.value / one:,.4g} {unit}, more "
-            f"than "
-            f"{MAX_YIELD_STRAIN:.0%} of youngs_modulus "
-            f"({stated.most / MAX_YIELD_STRAIN / one:,.4g} {unit}); "
-            "check the units of both"
+            f"than {MAX_YIELD_STRAIN:.0%} of youngs_modulus "
+            f"({stated.most / MAX_YIELD_STRAIN / one:,.4g} {unit}); check the units of both"
         )
     is_, low, most = (f"{value / one:,.4g}" for value in (stated.value, *ends))
     hint = f"; did you mean {likely}?" if (likely := _likely(stated, system)) else ""

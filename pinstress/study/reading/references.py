@@ -200,13 +200,6 @@ def _of_requirements(table: StudyTable) -> Iterator[Wrong]:
         known |= {key: i for key in keys if key not in known}
 
 
-MATERIAL_TABLE_OF_METHOD = {
-    "signed-von-mises": "fatigue",
-    "critical-plane": "fatigue",
-    "fkm-p-ram": "fkm",
-}
-
-
 def _of_fatigue(table: StudyTable, fatigue: FatigueTable) -> Iterator[Wrong]:
     """Yield errors unless the spectrum's cases exist and a pin's material has data for its
     method.
@@ -221,10 +214,8 @@ def _of_fatigue(table: StudyTable, fatigue: FatigueTable) -> Iterator[Wrong]:
     if fatigue.method == "fkm-p-ram" and (fatigue.failure_probability or 0.0) > 0.5:
         text = 'fatigue.failure_probability: must be at most 0.5 for method "fkm-p-ram"'
         yield Wrong(text, code="out-of-range")
-    needs, used = (
-        MATERIAL_TABLE_OF_METHOD[fatigue.method],
-        {pin.material for pin in table.pin.values()},
-    )
+    needs = "fkm" if fatigue.method == "fkm-p-ram" else "fatigue"
+    used = {pin.material for pin in table.pin.values()}
     given = [name for name in used & table.material.keys() if getattr(table.material[name], needs)]
     if not given:
         yield Wrong(

@@ -172,20 +172,15 @@ PIN_SIZED = Within(_pin_sized, "from 1 µm to 1 km")
 
 
 def usable_name(name: str) -> str:
-    bad, instead = (
-        [c for c in dict.fromkeys(name) if c in FORBIDDEN_CHARACTERS],
-        "letters, digits, - and _",
-    )
-    what = ""
+    bad = [c for c in dict.fromkeys(name) if c in FORBIDDEN_CHARACTERS]
+    what, instead = "", "letters, digits, - and _"
     if bad:
         what = f"cannot be part of a file name on every system, because of {' '.join(bad)}"
     elif not name or name[0] in ". ":
         what = "cannot be part of a file name"
     elif len(quote(name)) > MAX_NAME_LENGTH:
-        what, instead = (
-            "is too long for a part of a file name",
-            f"at most {MAX_NAME_LENGTH} characters",
-        )
+        what = "is too long for a part of a file name"
+        instead = f"at most {MAX_NAME_LENGTH} characters"
     elif not name.isprintable():
         what = "has unprintable characters"
     if what:

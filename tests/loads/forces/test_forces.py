@@ -186,6 +186,17 @@ def test_a_load_that_is_switched_acts_only_between() -> None:
     assert over.drives[0].largest.value >= (1.0 - 1e-5) * abs(just.drive[0, 0])
 
 
+def test_a_load_with_one_switch_acts_on_its_other_side() -> None:
+    at, free = BAR.joint("B").at, turned(samples=11)
+    until = turned(Applied("rocker", at, (1e4, 0.0), end=0.45), samples=11)
+    since = turned(Applied("rocker", at, (1e4, 0.0), begin=0.45), samples=11)
+    always = turned(Applied("rocker", at, (1e4, 0.0)), samples=11).drive
+    before = np.arange(11)[:, None] <= 4
+    assert until.drive == pytest.approx(np.where(before, always, free.drive), rel=1e-12)
+    assert since.drive == pytest.approx(np.where(before, free.drive, always), rel=1e-12)
+    assert np.abs(always - free.drive).max() > 1e3
+
+
 def test_points_of_a_spring_that_coincide() -> None:
     at = BAR.joint("B").at
     spring = Spring("s", Distance(("rocker", "coupler"), (at, at)), ForceLaw(1.0))
