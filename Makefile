@@ -3,7 +3,7 @@ BIN := .venv/bin
 LOCKBIN := .venv-lock/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-rest test-all test-ci test-browser test-peers test-portable calculix \
+.PHONY: help setup demo test test-rest test-all test-browser test-peers test-portable calculix \
 	coverage mutants check types bench evidence docs wheel lock clean
 
 help: ## list the targets
@@ -35,16 +35,13 @@ WITH =
 test: setup ## run the quick tests; ARGS="..." goes to pytest
 	$(PYTEST) -m "not slow" $(ARGS)
 
-test-rest: setup ## run the slow ones: packaging, the fuzzer, every shipped study, slow validation
-	$(PYTEST) -m slow $(call marked,slow) $(ARGS)
+# In one run files are imported once, what they share is solved once, and workers wait once at the end.
+test-rest: calculix ## run the slow ones and those with CalculiX: packaging, the fuzzer, validation, peers
+	$(PYTEST) -m "slow or peers" $(sort $(call marked,slow) $(call marked,peers)) $(ARGS)
 
 test-all: setup ## run all tests, also the long ones that CI leaves out
 	$(PYTEST) -m "long or not long" $(ARGS)
 	@$(MAKE) --no-print-directory test-browser test-peers WITH="or long"
-
-# In one run their files are imported once, what they share is solved once, and workers wait once at its end.
-test-ci: calculix ## run in one go what test, test-rest and test-peers run
-	$(PYTEST) -m "slow or not slow or peers" $(ARGS)
 
 test-browser: setup ## run the tests of the report in Chromium, which root gets installed
 	@sh scripts/tools.sh test-browser "Chromium or its driver" "chromium chromium-driver" \

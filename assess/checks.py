@@ -23,6 +23,7 @@ from assess.clauses import (
 )
 from assess.clauses.lug_checks import lug_checks
 from assess.clauses.lug_collapse import lug_collapse, lug_rupture
+from assess.clauses.lug_out_of_plane import lug_out_of_plane
 from assess.codes import DEFAULT_CODES, Code
 from assess.margin import Margin, for_comparison
 from assess.situation import Situation
@@ -37,7 +38,6 @@ from assess.strength.hand_checks import (
     mean_shear,
     neutral_axis_shear,
 )
-from assess.strength.lug_out_of_plane import lug_out_of_plane
 from assess.strength.lug_stress import lug_stress
 from assess.strength.model_stress import model_rupture, model_yield
 from assess.strength.plastic_bending import plastic_bending

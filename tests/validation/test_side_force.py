@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import pinstress
-from assess.strength.lug_out_of_plane import STRUCTURE_NEED
+from assess.clauses.lug_out_of_plane import STRUCTURE_NEED
 from pinstress.analysis.plan import all_loads
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.reading.file import load_study

@@ -11,9 +11,7 @@ import pytest
 import skfem
 from skfem.helpers import ddot, eye, sym_grad, trace
 
-from assess.margin import Margin
-from assess.situation import LoadFactors, Situation
-from assess.strength.lug_out_of_plane import (
+from assess.clauses.lug_out_of_plane import (
     STRUCTURE_NEED,
     PlateSection,
     _Actions,
@@ -21,6 +19,8 @@ from assess.strength.lug_out_of_plane import (
     _face,
     lug_out_of_plane,
 )
+from assess.margin import Margin
+from assess.situation import LoadFactors, Situation
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.support.lugs.lug import Lug, Shank
