@@ -49,8 +49,8 @@ def player_data(scene: Scene, drives: list[DriveTable], units: Units) -> dict[st
         "pitch": [pixels(ends.reshape(-1, 4)) for _, ends, _ in scene.pitch],
         "connections": _connections(scene),
         "applied": [
-            {"at": pixels(scene.placed(point)), **_components(scene, force)}
-            for point, force in scene.applied
+            {"at": pixels(scene.placed(point)), "lever": joint, **_components(scene, force)}
+            for (point, force), joint in zip(scene.applied, scene.levers, strict=True)
         ],
         "couples": [
             {"at": pixels(scene.placed(point)), **_components(scene, couple, 7)}

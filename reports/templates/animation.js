@@ -8,7 +8,7 @@
     centres: all("[data-centre]"), arrows: all("[data-arrow]"), rows: all("[data-row]"),
     curves: all("[data-curve]"), strips: all("[data-strip]"), cursors: all(".cursor"),
     positions: all("[data-position]"), forces: all("output[data-force]"),
-    applied: all("[data-applied]"), sizes: all("[data-size-of]"),
+    applied: all("[data-applied]"), levers: all("[data-lever]"), sizes: all("[data-size-of]"),
     names: all("[data-between]"), pitch: all("[data-pitch]"),
   };
   const space = data.space && inSpace(data), dim = space ? 3 : 2; // coordinates of a point
@@ -131,6 +131,7 @@
       const force = Math.hypot(...components), long = foreshortened(components, aim, couple ? data.arrow.couple : data.arrow.largest), back = long + data.arrow.gap, size = parts.sizes[n];
       const [u, v] = force > 0 ? aim.map((c) => c / (Math.hypot(...aim) || 1)) : [0, 0];
       const angle = (Math.atan2(v, u) * 180) / Math.PI;
+      if (Number.isInteger(a.lever)) parts.levers[n].setAttribute("d", line([joints[a.lever], [x, y]]));
       parts.applied[n].setAttribute("transform", `${place(x - back * u, y - back * v)} rotate(${angle.toFixed(2)})`);
       stretch(parts.applied[n], long);
       size.setAttribute("transform", place(x - (back + 12) * u, y - (back + 12) * v + 4));

@@ -124,6 +124,21 @@ def pushed(moving: Results) -> Results:
     return replace(moving, motion=(replace(motion, applied=(load,)),))
 
 
+def test_a_load_off_the_joints_is_joined_to_the_nearest_of_its_body(pushed: Results) -> None:
+    """It hung in the air; one at a joint needs no line."""
+    page = Reader(render(pushed))
+    assert page.data["applied"][0]["lever"] is None
+    assert ["d" in a for a in page.having("data-lever")] == [False]
+    motion = pushed.motion[0]
+    load = motion.applied[0]
+    there = motion.joint_position[:, 1] * 0.9 + motion.joint_position[:, 0] * 0.1
+    off = replace(load, position=there)
+    aside = Reader(render(replace(pushed, motion=(replace(motion, applied=(load, off)),))))
+    levers = [a["lever"] for a in aside.data["applied"]]
+    assert levers == [None, 1]
+    assert [a["data-lever"] for a in aside.having("data-lever") if "d" in a] == ["1"]
+
+
 def test_an_applied_load_ends_before_its_point_and_says_its_size(pushed: Results) -> None:
     page = Reader(render(pushed))
     (applied,) = page.data["applied"]
