@@ -28,18 +28,16 @@ from reports.tables.strength.overview import (
     spread_words,
     whatever_words,
 )
-from reports.text.overview import (
+from reports.text.certainty import (
     accuracy,
-    actions,
     certainty,
-    decisions,
     flips_words,
     given_words,
     measure_first,
     range_words,
     skipped_checks,
-    why,
 )
+from reports.text.overview import actions, decisions, why
 from reports.text.summary import ALL_CONVERGED, caveats
 
 MAX_PEAKS = 5  # pins whose largest stress the page tells

@@ -9,35 +9,23 @@ from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, OUTCOME_O
 from pinbase.grouped import grouped
 from reports.data.changes import Remedy, command
 from reports.data.decision import largest_factor, limit
-from reports.data.dependence import BENEATH_CONTACT, IMPULSE_RANGES_TOGETHER, TOGETHER
 from reports.data.overview import GOOD, PinLine, QuietCase, quiet_cases
 from reports.data.results import PinShape, Results
-from reports.data.row import Dependence, PinResult, Units
-from reports.data.unknowns import NO_SPREAD, Unknown, decided_by, factor_spread, without_range
-from reports.format.numbers import DASH, engineering, short, threshold
+from reports.format.numbers import engineering, short
 from reports.format.place_words import action, place_words
-from reports.format.ranges import factor_range, factor_text
-from reports.format.units import unit_name
+from reports.format.ranges import factor_range
 from reports.format.words import undecided_because
 from reports.tables.strength.changes import singularity_remedies, unsized_notes
-from reports.tables.strength.margins import not_made_briefly
+from reports.text.certainty import Content, flips, state
 from reports.text.load_path import load_path, names
 from reports.text.lug_advice import lug_advice, lug_peaks
 
 MAX_NAMED_CASES = 4
-MAX_FLIPS = 3  # values of one kind that change an outcome, in a sentence
 ROUND_OFF = 1e-9
 STRONGER = 3.0  # times the strength, which no other steel has
-MEASURED = {
-    "landing": "force over time at landing",
-    "joint": "clearance and stiffness of the lugs",
-    "links": "stiffness of the links",
-    "strength": "yield strength",
-}
 ESTIMATES_TEXT = (
     "Diameters are estimates: for five pins 0.6 to 1.1 times those that the command found."
 )
-Content = list[str]
 
 
 def decisions(results: Results, lines: Sequence[PinLine]) -> str:
@@ -108,114 +96,6 @@ def actions(results: Results, lines: Sequence[PinLine], study: str = "") -> Acti
     return Actions(repairs, remarks, sizing)
 
 
-def accuracy(lines: Sequence[PinLine]) -> Content:
-    """Return a sentence on the errors of the maxima; nothing where none has one."""
-    rows = [x.row for x in lines if x.row.max_von_mises]
-    sound = [r for r in rows if r.verdict != "singular" and r.error_estimate is not None]
-    if not sound:
-        return []
-    most = max((r.error_estimate or 0.0) / (r.max_von_mises or 1.0) for r in sound)
-    return [f"up to {engineering(100.0 * most, 2)} %." if most >= 1e-4 else "below 0.01 %."]
-
-
-def certainty(lines: Sequence[PinLine]) -> Content:
-    """Return sentences on the pins that fail whatever is open, and on the error with which the one
-    nearest to the factor would not.
-    """
-    rows = [x.row for x in lines if x.row.decided is False and x.row.safety_factor]
-    if not rows:
-        return []
-    nearest = max(rows, key=lambda r: r.safety_factor or 0.0)
-    needed = (nearest.required or 1.0) / (nearest.safety_factor or 1.0) - 1.0
-    even = "Even " if len(rows) > 1 else ""
-    whatever = [r.pin for r in rows if not r.depends_on and factor_spread(r)]
-    within = [r.pin for r in rows if r.depends_on]
-    parts = []
-    if whatever:
-        parts.append(f"{names(whatever)} {_state(FAILS, whatever)} whatever the open values are")
-    if within:
-        parts.append(f"{names(within)} {'are' if len(within) > 1 else 'is'} safe at some of them")
-    return [
-        *([f"{'; '.join(parts)}."] if parts else []),
-        f"{even}{nearest.pin} would pass only if its stress were overestimated by "
-        f"{engineering(100.0 * needed, 2)} %.",
-    ]
-
-
-def skipped_checks(results: Results, lines: Sequence[PinLine], formulas: bool = True) -> Content:
-    """Return a sentence on the checks that lack a number; nothing if all were made.
-
-    formulas: whether to name those by formula, which the matrix of requirements has, too.
-    """
-    without = list(dict.fromkeys(x.pin for x in lines if without_range(x.row)))
-    parts = [f"joint range of {names(without)}"] if without else []
-    parts += ["fatigue"] * (results.fatigue is None)
-    parts += [text] if formulas and (text := not_made_briefly(results)) else []
-    return [f"Skipped: {'; '.join(parts)}."] if parts else []
-
-
-def measure_first(unknown: Sequence[Unknown], lines: Sequence[PinLine] = ()) -> Content:
-    """Return a sentence on the open value to measure first."""
-    matters = [x for x in unknown if x.ratio > NO_SPREAD]
-    if not matters:
-        return []
-    if deciding := decided_by(unknown):
-        owner, pins = next(iter(deciding.items()))
-        return [f"Measure first: {MEASURED[owner]} ({names(pins)})."]
-    first = matters[0]
-    row, value = max(first.rows, key=lambda x: x[1].ratio)
-    low, high = (factor_text(end, row.required or 1.0) for end in (value.low, value.high))
-    depending = [x.pin for x in lines if x.outcome == DEPENDS and x.check.row is None]
-    others = list(dict.fromkeys(depending))
-    nothing = "Nothing open changes an outcome alone"
-    if others:
-        nothing = f"Checks besides yield depend on what is open ({names(others)})"
-    return [f"{nothing}; {first.what} matters most (factor of {row.pin} {low} to {high})."]
-
-
-def flips_words(unknown: Unknown, units: Units, lines: Sequence[PinLine] = ()) -> str:
-    """Return whether a value alone changes an outcome: "F fails at half-sine", "no".
-
-    Checks by formula say only on what together they depend: "perhaps: A in shear".
-    """
-    told = [_flip(row, d, units) for row, d in unknown.flipped]
-    if told:
-        rest = f" and {len(told) - MAX_FLIPS} more" if len(told) > MAX_FLIPS else ""
-        return f"{'; '.join(told[:MAX_FLIPS])}{rest}"
-    concerned = {row.pin: value.owner for row, value in unknown.rows}
-    perhaps = [
-        f"{x.pin} in {x.check.check}"
-        for x in lines
-        if x.check.row is None
-        and x.outcome == DEPENDS
-        and concerned.get(x.pin, "none") in x.check.reason
-    ]
-    return f"perhaps: {', '.join(perhaps)}" if perhaps else "no"
-
-
-def range_words(unknown: Unknown, units: Units) -> str:
-    """Return the range of an open value."""
-    parts = [state for state in unknown.states if state != given_words(unknown)]
-    if unknown.ends:
-        dimension = unknown.rows[0][1].dimension
-        ends = dict.fromkeys(short(float(f"{end:.6g}")) for end in unknown.ends)
-        parts.insert(0, f"{' to '.join(ends)} {unit_name(dimension, units)}")
-    return ("; " if any("," in part for part in parts) else ", ").join(parts)
-
-
-def given_words(unknown: Unknown) -> str:
-    """Return the study's own value in the unit of the range; a dash for none, or several."""
-    given = {value.given for _, value in unknown.rows}
-    value = given.pop() if len(given) == 1 else None
-    return short(float(f"{value:.6g}")) if isinstance(value, float) else value or DASH
-
-
-def _flip(row: PinResult, d: Dependence, units: Units) -> str:
-    state = "may fail" if row.as_described in GOOD else "is safe"
-    at = f"with {d.value or d.what}" if d.over == "links" else _at(d, units)
-    return f"{row.pin} {state} {'with ' if at and at == d.value else ''}{at}".strip()
-
-
 def _undecided(lines: Sequence[PinLine]) -> str:
     open_ = [line for line in lines if line.outcome == NOT_DECIDED]
     alone = _one_pin(lines)
@@ -244,32 +124,6 @@ def _depending(results: Results, lines: Sequence[PinLine]) -> str:
     return f"{first.replace(' on ', ' depends on ', 1)}{''.join(f'; {x}' for x in rest)}."
 
 
-def flips(row: PinResult, units: Units) -> str:
-    """Return the values that change the outcome of a row: "clearance (above 0.0007 in), pulse
-    (half-sine)".
-    """
-    told = []
-    for d in row.depends_on:
-        if d.over == BENEATH_CONTACT:
-            told.append("stress beneath contact")
-            continue
-        what = d.value if d.what == BENEATH_CONTACT else d.what
-        if d.what == TOGETHER or what == IMPULSE_RANGES_TOGETHER:
-            what = f"the {d.over} values together"
-        at = _at(d, units)
-        told.append(f"{what} ({at})" if at else what)
-    return ", ".join(dict.fromkeys(told))
-
-
-def _at(d: Dependence, units: Units) -> str:
-    """Return at which values an outcome differs: "above 0.0007 in", "half-sine"; or nothing."""
-    value = d.flips_at if d.flips_at is not None else d.at
-    if value is None:
-        return "" if d.what == BENEATH_CONTACT else d.value
-    side = "" if d.given is None else "above " if (d.at or value) > d.given else "below "
-    return f"{side}{threshold(value)} {unit_name(d.dimension, units)}"
-
-
 def _good(lines: Sequence[PinLine]) -> str:
     good = [line for line in lines if line.outcome in GOOD]
     if not good or len(good) == len(lines):
@@ -289,20 +143,12 @@ def _also(results: Results, lines: Sequence[PinLine]) -> str:
     for row in sorted(more, key=lambda r: OUTCOME_ORDER[r.outcome]):
         by_case.setdefault(row.case, {}).setdefault(row.outcome, []).append(row.pin)
     told = [
-        f"in {case} " + ", ".join(f"{names(p)} {_state(s, p)}" for s, p in of.items())
+        f"in {case} " + ", ".join(f"{names(p)} {state(s, p)}" for s, p in of.items())
         for case, of in by_case.items()
     ]
     if len(told) > MAX_NAMED_CASES:
         return f"Pins are not safe in {len(told)} other cases either (safety_factors.csv)."
     return f"Also {'; '.join(told)}." if told else ""
-
-
-def _state(outcome: str, pins: Sequence[str]) -> str:
-    """Return an outcome as the verb of some pins."""
-    plural = len(pins) > 1
-    if outcome == NOT_DECIDED:
-        return "are not decided" if plural else "is not decided"
-    return outcome.removesuffix("s") if plural else outcome
 
 
 def _all_quiet(cases: Sequence[QuietCase]) -> str:

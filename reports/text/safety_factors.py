@@ -26,15 +26,9 @@ from reports.tables.strength.overview import (
     overview_table,
 )
 from reports.tables.strength.sensitivities import MAX_BRIEF_ROWS, shown_sensitivities
+from reports.text.certainty import accuracy, measure_first, skipped_checks
 from reports.text.fitted_table import fitted_table, print_table
-from reports.text.overview import (
-    accuracy,
-    actions,
-    decisions,
-    measure_first,
-    skipped_checks,
-    why,
-)
+from reports.text.overview import actions, decisions, why
 from reports.text.summary import ALL_CONVERGED, caveats
 
 if TYPE_CHECKING:

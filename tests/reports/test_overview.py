@@ -31,8 +31,9 @@ from reports.tables.strength.overview import (
     factor_axis,
     whatever_words,
 )
+from reports.text.certainty import accuracy, skipped_checks
 from reports.text.load_path import names
-from reports.text.overview import accuracy, decisions, skipped_checks
+from reports.text.overview import decisions
 from reports.text.safety_factors import print_safety_factors
 from tests.support.results.made_up_joint import make_joint
 from tests.support.results.rows import with_values

@@ -20,7 +20,7 @@ from reports.data.dependence import TOGETHER, YIELD_STRENGTH, depends_on
 from reports.data.requirements import requirement_rows
 from reports.data.row import PinResult, Units
 from reports.data.unknowns import factor_spread, unknowns
-from reports.text.overview import flips, flips_words, measure_first, range_words
+from reports.text.certainty import flips, flips_words, measure_first, range_words
 from tests.reports.test_unknowns import pin
 
 UNITS = Units("in", "lbf", "psi", "s")

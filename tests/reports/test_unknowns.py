@@ -19,7 +19,7 @@ from reports.data.overview import PinLine
 from reports.data.row import PinResult, Units
 from reports.data.unknowns import factor_spread, open_values, unknowns
 from reports.format.words import over_words
-from reports.text.overview import flips, flips_words, measure_first, range_words
+from reports.text.certainty import flips, flips_words, measure_first, range_words
 from tests.silent.test_outcomes import landing
 from tests.support.results.judged_results import row
 from tests.support.results.made_up_joint import make_joint
