@@ -14,7 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from assess.opinion.calculix import CalculixError
-from assess.opinion.calculix_joint import JointOpinion, joint_opinion, plane_of
+from assess.opinion.calculix_joint import joint_opinion, plane_of
+from assess.opinion.calculix_joint_answer import JointOpinion
 from assess.opinion.calculix_joint_mesh import Fineness
 from assess.opinion.calculix_row import section_of
 from assess.opinion.opinions import BandOpinion, ContactOpinion, Opinion

@@ -1,9 +1,9 @@
 """An input deck for CalculiX: a pin and its lugs in frictionless contact, surface to surface.
 
 The pin is the slave, ring by ring, so that CalculiX prints the force on every ring; the bore of a
-lug is the master. A lug is supported as in fea.joint: on its outer surface a traction of constant
-direction, linear along z, which is what *EQUATION of the mean motion of that surface makes of a
-force or a spring on an auxiliary node.
+lug is the master. A lug is supported as in fea.support.contact: on its outer surface a traction of
+constant direction, linear along z, which is what *EQUATION of the mean motion of that surface makes
+of a force or a spring on an auxiliary node.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class Eye:
     """The support of a lug.
 
     force: (2,) N of its link on it.
-    tilt: N m/rad; inf, 0 as of fea.joint's Lug.
+    tilt: N m/rad; inf, 0 as of fea.support.contact's Lug.
     rings: the elements of the pin on each of its rings.
     couple: (2,) N m of its link on it, which turns it along x and along y towards z.
     held: whether it is of a structure, which holds still.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from assess.opinion.calculix_joint import JointOpinion
+from assess.opinion.calculix_joint_answer import JointOpinion
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.section.section_stress import AtSection, SectionField

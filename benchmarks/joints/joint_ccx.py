@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from assess.opinion.calculix import CALCULIX_COMMAND, INSTALL_HINT, CalculixError, installed
-from assess.opinion.calculix_joint import JointOpinion, edges, joint_opinion
+from assess.opinion.calculix_joint import joint_opinion
+from assess.opinion.calculix_joint_answer import JointOpinion, edges
 from assess.opinion.calculix_joint_mesh import CONTACT_STIFFNESS, Fineness
 from benchmarks.timing import table
 from fea.core.material import Material

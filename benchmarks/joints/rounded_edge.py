@@ -1,6 +1,7 @@
 """A lug shrunk on a pin, its bore's edges truly rounded, by axisymmetric finite elements of its
 own: bilinear quadrilaterals, nodes in contact facing each other, no friction. It shares nothing
-with the rings of fea.joint but the problem: there the rounding is a gap of a lug with sharp edges.
+with the rings of fea.support.contact but the problem: there the rounding is a gap of a lug with
+sharp edges.
 """
 
 from __future__ import annotations

@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from assess.opinion.calculix_joint import JointOpinion, deck_opinion, joint_deck
+from assess.opinion.calculix_joint import deck_opinion, joint_deck
+from assess.opinion.calculix_joint_answer import JointOpinion
 from assess.opinion.calculix_joint_mesh import Fineness
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads

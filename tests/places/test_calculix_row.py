@@ -7,7 +7,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from assess.opinion.calculix_joint import JointOpinion, joint_opinion
+from assess.opinion.calculix_joint import joint_opinion
+from assess.opinion.calculix_joint_answer import JointOpinion
 from assess.opinion.calculix_joint_mesh import Fineness
 from assess.opinion.calculix_row import free, pressed, section_of
 from fea.core.material import Material

@@ -9,7 +9,8 @@ import math
 import numpy as np
 import pytest
 
-from assess.opinion.calculix_joint import JointOpinion, joint_opinion
+from assess.opinion.calculix_joint import joint_opinion
+from assess.opinion.calculix_joint_answer import JointOpinion
 from assess.opinion.calculix_joint_mesh import Fineness
 from assess.opinion.calculix_row import free, section_of
 from benchmarks.joints.joint import STEEL, D

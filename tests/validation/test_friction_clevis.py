@@ -1,11 +1,11 @@
 """The range of a clevis's stress by friction, beside CalculiX's contact with friction.
 
-CalculiX 2.20 had the clevis of studies/clevis.toml as fea.joint does: half of the joint, C3D20R, 16
-sectors, four rings on each band and two in the rounding of each edge, contact surface to surface of
-200 E / d with a tenth of that against sliding, loads and clearance scaled by 0.01; lugs do not move
-along the axis. friction_clevis_ccx.csv has von Mises stress (MPa) of the tension fibre at mid-span
-while the load grows to its full value in two increments, and falls to 0.5 and 0.1 of it in two
-increments each. The deck: assess.opinion.calculix_joint.joint_deck with Fineness(rings=4,
+CalculiX 2.20 had the clevis of studies/clevis.toml as fea.support.contact does: half of the joint,
+C3D20R, 16 sectors, four rings on each band and two in the rounding of each edge, contact surface to
+surface of 200 E / d with a tenth of that against sliding, loads and clearance scaled by 0.01; lugs
+do not move along the axis. friction_clevis_ccx.csv has von Mises stress (MPa) of the tension fibre
+at mid-span while the load grows to its full value in two increments, and falls to 0.5 and 0.1 of it
+in two increments each. The deck: assess.opinion.calculix_joint.joint_deck with Fineness(rings=4,
 sectors=16, eye=2), its `friction`, and `history` (1, 0.5, 0.1). Without friction it is 3 % above
 ours on this coarse mesh, so that ratios to it are compared, at the same load.
 

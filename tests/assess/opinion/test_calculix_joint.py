@@ -12,14 +12,8 @@ import pytest
 
 from assess.opinion import calculix
 from assess.opinion.calculix import CalculixError
-from assess.opinion.calculix_joint import (
-    JointOpinion,
-    contact_forces,
-    edges,
-    joint_deck,
-    joint_opinion,
-    stations_of,
-)
+from assess.opinion.calculix_joint import joint_deck, joint_opinion, stations_of
+from assess.opinion.calculix_joint_answer import JointOpinion, contact_forces, edges
 from assess.opinion.calculix_joint_deck import JointDeck, surface_weights
 from assess.opinion.calculix_joint_mesh import Fineness, Hexahedra, annulus_mesh, pin_mesh
 from fea.core.material import Material

@@ -16,7 +16,8 @@ from assess.opinion.calculix_in_lugs import (
     opinion_in_lugs,
     transverse,
 )
-from assess.opinion.calculix_joint import JointOpinion, edges, joint_deck
+from assess.opinion.calculix_joint import joint_deck
+from assess.opinion.calculix_joint_answer import JointOpinion, edges
 from assess.opinion.calculix_joint_mesh import Fineness, pin_mesh
 from assess.opinion.opinions import BandOpinion, ContactOpinion, Opinion
 from fea.core.material import Material
