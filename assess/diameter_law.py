@@ -2,12 +2,14 @@
 
 A factor grows with the cube of the diameter where bending governs, with its square where shear or
 an axial force does; what lies beneath contact, where pressure is force over diameter and length,
-with little more than the diameter itself.
+with little more than the diameter itself. A pin that is large beside its length is pressed as a
+disc, with a stress of about its mean pressure, whatever bends it.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, replace
 
 from fea.core.places import SectionPlace
 from geometry import PinLike
@@ -17,6 +19,9 @@ BENDING_EXPONENT, SHEAR_EXPONENT = 3.0, 2.0
 # Larger than that of a mean pressure, 1, since peaks at the lugs' edges even out as the pin becomes
 # stiffer: 1.4 to 1.8 between one and three times the diameters of studies/landing_gear.toml
 BEARING_EXPONENT = 1.5
+# Of the mean pressure on a band: the largest stress of a pin with large diameters; 0.9 to 1.4 at
+# three and four times those of studies/landing_gear.toml and clevis.toml (benchmarks estimates)
+DISC_STRESS = 1.2
 SAME_STRESS = 0.01  # relative
 STEP_DISTANCE = 1e-3  # of the length, from a section to both sides
 
@@ -49,13 +54,43 @@ def beneath_exponent(factor: float, beneath: float, exponent: float) -> float:
     return exponent if same else BEARING_EXPONENT
 
 
-def estimated_scale(factor: float, beneath: float, exponent: float, required: float) -> float:
-    """Return the scale of all diameters at which a pin reaches a factor of safety, by these laws.
+@dataclass(frozen=True)
+class DiameterLaw:
+    """The factors of a pin, which grow with the scale of all its diameters.
 
     factor: by surface and section, which grows with `exponent`. beneath: by the stress beneath
-    contact, inf without any.
+    contact, inf without any. disc: by the pressure of lugs, as on a disc, inf without any.
     """
-    of_row: float = (required / factor) ** (1.0 / exponent)
-    below = beneath_exponent(factor, beneath, exponent)
-    of_contact: float = (required / beneath) ** (1.0 / below)
-    return max(of_row, of_contact)
+
+    factor: float
+    beneath: float
+    exponent: float
+    disc: float = math.inf
+
+    @property
+    def _laws(self) -> tuple[tuple[float, float], ...]:
+        """Each factor with its exponent."""
+        below = beneath_exponent(self.factor, self.beneath, self.exponent)
+        return (self.factor, self.exponent), (self.beneath, below), (self.disc, 1.0)
+
+    def factor_at(self, scale: float) -> float:
+        """Return the lowest factor at a scale."""
+        return min(float(factor * scale**exponent) for factor, exponent in self._laws)
+
+    def scale(self, required: float) -> float:
+        """Return the scale at which all factors reach the required one."""
+        return max(float((required / factor) ** (1.0 / e)) for factor, e in self._laws)
+
+    def times(self, share: float) -> DiameterLaw:
+        """Return the law with all factors times a share."""
+        return replace(
+            self, factor=share * self.factor, beneath=share * self.beneath, disc=share * self.disc
+        )
+
+
+def disc_factor(strength: float, pressure: float, factor: float) -> float:
+    """Return the factor of a pin as a disc under a mean pressure, in the unit of the strength.
+
+    factor: the lowest by its solution, which is no larger than the disc's.
+    """
+    return max(strength / (DISC_STRESS * pressure), factor) if pressure > 0.0 else math.inf

@@ -1,4 +1,6 @@
-"""The estimated diameters of a run's first screen, beside those that `pinstress size` finds."""
+"""The estimated diameters of a run's first screen, beside those that `pinstress size` finds, and the
+stress over mean pressure of pins with large diameters, which the estimates take.
+"""
 
 from __future__ import annotations
 
@@ -11,9 +13,17 @@ from pinbase.processes.pool import cores, preload
 from pinstress import Study, load_study, run
 from pinstress.analysis.plan import prepare
 from pinstress.cli.run import RUN_LIBRARIES, RUN_MODELS
+from pinstress.explore.size.scaled_study import resized_study
 from pinstress.explore.size.size_pin import SizingGoal, SizingResult
 from pinstress.explore.size.size_pins import size_pins
 from reports.data.overview import PinLine, pin_lines
+
+DISCS = (
+    ("landing_gear.toml", "A", "landing"),
+    ("landing_gear.toml", "J", "landing"),
+    ("clevis.toml", "P", "pull"),
+)
+DISC_SCALES = 3.0, 4.0
 
 
 def estimates() -> str:
@@ -34,7 +44,28 @@ def estimates() -> str:
         f"estimate is {min(ratios):.2f} to {max(ratios):.2f} times what `size` finds, in the "
         f"middle {statistics.median(ratios):.2f} times:"
     )
-    return f"{said}\n\n{table(head, rows)}"
+    return f"{said}\n\n{table(head, rows)}\n\n{_discs()}"
+
+
+def _discs() -> str:
+    """Pins of several times their diameters: the largest stress over the largest mean pressure."""
+    rows = [
+        (name, pin, scale, f"{_over_pressure(name, pin, case, scale):.2f}")
+        for name, pin, case in DISCS
+        for scale in DISC_SCALES
+    ]
+    head = ("study", "pin", "times its diameters", "stress over mean pressure")
+    return f"The largest stress of surface, section and beneath contact:\n\n{table(head, rows)}"
+
+
+def _over_pressure(name: str, pin: str, case: str, scale: float) -> float:
+    study = resized_study(load_study(ROOT / "studies" / name), {pin: scale}, None, None)
+    row = run(study, pins=[pin], cases=[case])[pin, case]
+    assert row.joint is not None
+    assert row.places is not None
+    assert row.places.contact is not None
+    largest = max(row.max_von_mises or 0.0, row.places.contact.beneath)
+    return largest / max(band.mean_pressure for band in row.joint.bands)
 
 
 def _sized(study: Study, factor: float, names: list[str]) -> Mapping[str, SizingResult]:

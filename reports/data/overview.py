@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from assess.diameter_law import beneath_exponent, estimated_scale
+from assess.diameter_law import DiameterLaw, disc_factor
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, SAFE, YIELDS
 from reports.data.changes import unsized
 from reports.data.decision import beneath_factor, factor_ends, limit, utilisation
@@ -145,13 +145,14 @@ def _diameter(row: PinResult, shape: PinShape | None) -> Diameter | None:
     return Diameter(given, None if row.outcome == DEPENDS else needed, over_all, eye)
 
 
-def factor_at(row: PinResult, scale: float) -> float:
-    """Return the factor of a row with all its diameters scaled, by the laws of its section and of
-    what lies beneath contact.
-    """
+def diameter_law(row: PinResult) -> DiameterLaw:
+    """Return how the factors of a row, with its error, grow with all its diameters."""
     factor, beneath = factor_ends(row)[0], beneath_factor(row)
-    below = beneath_exponent(factor, beneath, row.exponent)
-    return float(min(factor * scale**row.exponent, beneath * scale**below))
+    pressure = (
+        max((band.mean_pressure for band in row.joint.bands), default=0.0) if row.joint else 0.0
+    )
+    disc = disc_factor(row.yield_strength or 0.0, pressure, min(factor, beneath))
+    return DiameterLaw(factor, beneath, row.exponent, disc)
 
 
 def _scale(row: PinResult, whatever: bool) -> float:
@@ -159,15 +160,12 @@ def _scale(row: PinResult, whatever: bool) -> float:
 
     whatever: over all that is open.
     """
-    factor, beneath, required = factor_ends(row)[0], beneath_factor(row), row.required or 1.0
-    scale = estimated_scale(factor, beneath, row.exponent, required)
+    law, required = diameter_law(row), row.required or 1.0
+    scale = law.scale(required)
     spread = factor_spread(row)
     if not whatever or spread is None:
         return scale
     share = spread[0] / (row.safety_factor or 1.0)
     lowest = min((d.factor for d in row.depends_on), default=math.inf)
-    return max(
-        scale,
-        estimated_scale(factor * share, beneath * share, row.exponent, required),
-        estimated_scale(math.inf, lowest, row.exponent, required),
-    )
+    over = DiameterLaw(math.inf, lowest, row.exponent)
+    return max(scale, law.times(share).scale(required), over.scale(required))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from html import escape
 
-from reports.data.overview import MAX_LUG_SHARE, PinLine, factor_at
+from reports.data.overview import MAX_LUG_SHARE, PinLine, diameter_law
 from reports.format.numbers import engineering, short
 from reports.tables.strength.overview import FactorAxis
 
@@ -26,7 +26,7 @@ def draw_factor_curve(line: PinLine, unit: str) -> str | None:
         return None
     most = REACH * d.needed / d.given
     scales = [most ** (k / (POINTS - 1)) for k in range(POINTS)]
-    factors = [factor_at(line.row, scale) for scale in scales]
+    factors = list(map(diameter_law(line.row).factor_at, scales))
     required = line.row.required or 1.0
     axis = FactorAxis(min(factors) / 1.1, max(factors) * 1.1, required)
     across = [WIDTH * k / (POINTS - 1) for k in range(POINTS)]

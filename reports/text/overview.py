@@ -24,7 +24,7 @@ MAX_NAMED_CASES = 4
 ROUND_OFF = 1e-9
 STRONGER = 3.0  # times the strength, which no other steel has
 ESTIMATES_TEXT = (
-    "Diameters are estimates: for five pins 0.6 to 1.1 times those that the command found."
+    "Diameters are estimates: for five pins 0.9 to 1.1 times those that the command found."
 )
 
 

@@ -94,7 +94,7 @@ def test_three_questions_are_answered_in_the_first_screen(page: Any) -> None:
     assert "Largest stress [psi]: E 195,000, J 152,000" in text
     assert "plastic bending and shear, ultimate load, landing" in text  # which J misses
     # Which diameter?
-    assert "2 → 3.44" in text
+    assert "2 → 2.74" in text
     assert "would not fit lugs of 5.00 in outer diameter" in text
     assert "pinstress size landing_gear.toml --pins E,J,A,D,G" in text
     # Is the error small enough?

@@ -10,11 +10,11 @@ from io import StringIO
 import pytest
 from rich.console import Console
 
-from assess.diameter_law import BEARING_EXPONENT, estimated_scale
+from assess.diameter_law import BEARING_EXPONENT, DiameterLaw, disc_factor
 from assess.margin import Margin, PinMargin
 from assess.strength.model_stress import YIELD_METHOD
 from fea.core.places import ContactPlace, Places, SurfacePlace
-from reports.data.overview import factor_at, pin_lines, quiet_cases
+from reports.data.overview import diameter_law, pin_lines, quiet_cases
 from reports.data.requirement_matrix import MatrixRow, matrix_rows, worst_cell
 from reports.data.requirements import RequirementRow, keys_in
 from reports.data.results import Results
@@ -144,18 +144,25 @@ def test_a_pin_without_a_solution_says_what_it_lacks(few: Results) -> None:
 
 
 def test_the_diameter_by_the_law_of_the_section(few: Results) -> None:
-    """Bending: the cube root; shear: the square root; twice the stress beneath: power 1.5."""
-    assert estimated_scale(1.2, math.inf, 3.0, 9.6) == pytest.approx(2.0)
-    assert estimated_scale(1.2, math.inf, 2.0, 4.8) == pytest.approx(2.0)
-    assert estimated_scale(1.2, 0.5, 3.0, 4.0) == pytest.approx(8.0 ** (1 / BEARING_EXPONENT))
+    """Bending: the cube root; shear: the square root; twice the stress beneath: power 1.5; a disc
+    by its pressure: in proportion.
+    """
+    assert DiameterLaw(1.2, math.inf, 3.0).scale(9.6) == pytest.approx(2.0)
+    assert DiameterLaw(1.2, math.inf, 2.0).scale(4.8) == pytest.approx(2.0)
+    assert DiameterLaw(1.2, 0.5, 3.0).scale(4.0) == pytest.approx(8.0 ** (1 / BEARING_EXPONENT))
     # The same stress counts by the law of the section alone.
-    assert estimated_scale(1.2, 1.2, 3.0, 9.6) == pytest.approx(2.0)
+    assert DiameterLaw(1.2, 1.2, 3.0).scale(9.6) == pytest.approx(2.0)
+    assert DiameterLaw(1.2, math.inf, 3.0, disc=2.4).scale(9.6) == pytest.approx(4.0)
+    assert disc_factor(600.0, 100.0, 2.0) == pytest.approx(5.0)
+    assert disc_factor(600.0, 500.0, 2.0) == 2.0  # as solved: it is less than a disc's
+    assert disc_factor(600.0, 0.0, 2.0) == math.inf
     line = pin_lines(few)[0]
     assert line.diameter is not None
     assert line.diameter.needed is not None
     scale = line.diameter.needed / line.diameter.given
-    assert factor_at(line.row, scale) == pytest.approx(1.5, rel=1e-9)
-    assert factor_at(line.row, 1.0) < 1.5
+    law = diameter_law(line.row)
+    assert law.factor_at(scale) == pytest.approx(1.5, rel=1e-9)
+    assert law.factor_at(1.0) < 1.5
     assert "→" in diameter_words(line)
     assert either_diameter_words(line) == diameter_words(line)
     # One that only depends is given with the diameter over all that is open: it read as "keep".
