@@ -23,17 +23,10 @@ from geometry.mesh.tet10 import find_facets, quadratic
 from pinbase.arrays import Floats
 from tests.support.each import each
 from tests.support.errors import raises
+from tests.support.pins.plain_pins import SHAFT
 
 STEEL = Material("steel", 2.1e11, 0.3, yield_strength=5e8)
 D, d = 0.02, 0.004
-SHAFT = Pin(
-    "shaft",
-    (
-        *(Segment(0.01, D, connection="A"), Segment(0.01, D), Segment(0.01, D, connection="B")),
-        Segment(0.1, D, name="middle"),
-        *(Segment(0.01, D, connection="C"), Segment(0.01, D), Segment(0.01, D, connection="E")),
-    ),
-)
 MIDDLE = 0.08
 NOMINAL = 38.197e6  # of 1.5 kN in four-point bending over arms of 20 mm
 
