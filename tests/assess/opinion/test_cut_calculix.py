@@ -14,8 +14,6 @@ from geometry import CutPin, Hole
 from tests.support.each import sampled
 from tests.support.pins.plain_pins import TWICE
 
-D = 0.02
-
 
 @pytest.mark.peers
 @pytest.mark.parametrize("z", sampled([0.04, 0.025], every=2))
