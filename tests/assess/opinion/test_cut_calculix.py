@@ -10,19 +10,9 @@ from benchmarks.random_pins import STEEL
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.solve.solve import solve_pin
-from geometry import CutPin, Hole, Pin, Segment
+from geometry import CutPin, Hole
 from tests.support.each import sampled
-
-D = 0.02
-FOOT = Segment(0.015, 0.026, name="root")
-TWICE = Pin(
-    "twice",
-    (
-        *(FOOT, Segment(0.02, D, name="a"), Segment(0.01, D, connection="B")),
-        *(Segment(0.02, D, name="b"), Segment(0.015, 0.026, name="tip")),
-    ),
-    fillet=0.003,
-)
+from tests.support.pins.plain_pins import TWICE
 
 
 @pytest.mark.peers

@@ -23,17 +23,10 @@ from geometry.mesh.tet10 import find_facets, quadratic
 from pinbase.arrays import Floats
 from tests.support.each import each
 from tests.support.errors import raises
+from tests.support.pins.plain_pins import SHAFT
 
 STEEL = Material("steel", 2.1e11, 0.3, yield_strength=5e8)
 D, d = 0.02, 0.004
-SHAFT = Pin(
-    "shaft",
-    (
-        *(Segment(0.01, D, connection="A"), Segment(0.01, D), Segment(0.01, D, connection="B")),
-        Segment(0.1, D, name="middle"),
-        *(Segment(0.01, D, connection="C"), Segment(0.01, D), Segment(0.01, D, connection="E")),
-    ),
-)
 MIDDLE = 0.08
 NOMINAL = 38.197e6  # of 1.5 kN in four-point bending over arms of 20 mm
 
@@ -274,18 +267,18 @@ def test_a_piece_of_a_cone_is_a_cone() -> None:
 
 @pytest.mark.slow
 def test_a_hole_in_a_cone_beside_the_whole_solid() -> None:
+    """To 2 %: the solid's second mesh changes its stress by 1 %."""
     pull = np.zeros((1, 2, 3))
     pull[0, :, 2] = -30e3, 30e3
     loads = PinLoads("pull", ("A", "B"), pull)
     pin = CutPin(CONE, (Hole(0.04, d),))
     local, solid = (
         solve_pin(pin, STEEL, (), (loads,), requirement)[0].peak
-        for requirement in (Requirement(), Requirement(tolerance=0.05, model="solid"))
+        for requirement in (Requirement(), Requirement(tolerance=0.05, model="solid", meshes=2))
     )
     assert (local.model, solid.model) == ("harmonic+local", "solid")
     assert local.max_von_mises is not None
     assert solid.max_von_mises is not None
-    apart = abs(local.max_von_mises - solid.max_von_mises)
-    assert apart <= (local.error_estimate or 0.0) + (solid.error_estimate or 0.0)
+    assert local.max_von_mises == pytest.approx(solid.max_von_mises, rel=0.02)
     area = np.pi * (0.9 * D) ** 2 / 4.0  # near the hole
     assert local.max_von_mises == pytest.approx(3.4 * 30e3 / area, rel=0.06)

@@ -25,17 +25,10 @@ from geometry import Bottom, Cut, CutPin, Flat, Hole, Passage, Pin, Segment, Slo
 from geometry.mesh.cut_piece import Piece, clipped, piece_mesh
 from pinbase.arrays import Floats
 from tests.support.each import sampled
+from tests.support.pins.plain_pins import SHAFT
 
 STEEL = Material("steel", 2.1e11, 0.3, yield_strength=5e8)
 D, R, MIDDLE = 0.02, 0.01, 0.08
-SHAFT = Pin(
-    "shaft",
-    (
-        *(Segment(0.01, D, connection="A"), Segment(0.01, D), Segment(0.01, D, connection="B")),
-        Segment(0.1, D, name="middle"),
-        *(Segment(0.01, D, connection="C"), Segment(0.01, D), Segment(0.01, D, connection="E")),
-    ),
-)
 NOMINAL = 38.197e6  # of 1.5 kN in four-point bending over arms of 20 mm
 HOLE = Hole(MIDDLE, 0.004)
 

@@ -20,6 +20,7 @@ from geometry import Cut, CutPin, Flat, Hole, Pin, Segment, Slot
 from geometry.mesh.cut_piece import piece_mesh
 from tests.support.each import each, sampled
 from tests.support.errors import raises
+from tests.support.pins.plain_pins import TWICE
 from tests.support.pins.section_grid import rectangle
 
 A, L = 0.01, 0.2
@@ -88,17 +89,6 @@ def test_a_load_on_what_is_cut_away_needs_its_band() -> None:
     held = LocalModel(piece, mesh, STEEL, (), bearings(piece, loaded_bands(HOLED, ("B",))))
     read = held.solve(stress, 0.0, [False])
     assert np.isfinite(read.stress).all()
-
-
-FOOT = Segment(0.015, 0.026, name="root")
-TWICE = Pin(
-    "twice",
-    (
-        *(FOOT, Segment(0.02, D, name="a"), Segment(0.01, D, connection="B")),
-        *(Segment(0.02, D, name="b"), Segment(0.015, 0.026, name="tip")),
-    ),
-    fillet=0.003,
-)
 
 
 @pytest.mark.slow

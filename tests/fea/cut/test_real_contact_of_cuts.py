@@ -29,21 +29,14 @@ from fea.support.contact.contact_state import ContactState
 from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from fea.support.support import PinProblem
-from geometry import Cut, CutPin, Flat, Hole, Pin, Segment, Slot
+from geometry import Cut, CutPin, Flat, Hole, Slot
 from geometry.mesh import cut_piece
 from geometry.mesh.cut_piece import Piece, piece_mesh
 from pinbase.arrays import Floats, Mask
+from tests.support.pins.plain_pins import CLEVIS
 
 D, F = 0.02, 50e3
 STEEL = Material("steel", 2.1e11, 0.3)
-CLEVIS = Pin(
-    "clevis",
-    (
-        *(Segment(0.002, D), Segment(0.01, D, connection="A"), Segment(0.001, D)),
-        *(Segment(0.02, D, connection="B"), Segment(0.001, D)),
-        *(Segment(0.01, D, connection="C"), Segment(0.002, D)),
-    ),
-)
 LUGS = tuple(
     Lug(n, 0.05, STEEL, 5e-5, 5e-4, t) for n, t in zip("ABC", (2.6e5, math.inf, 2.6e5), strict=True)
 )

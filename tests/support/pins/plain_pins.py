@@ -1,4 +1,6 @@
-"""Pins of one diameter: a bar with a band all along it, and a pin in double shear."""
+"""Pins that several rooms load, cut and hold: a bar with a band all along it, one in double shear,
+a clevis, a shaft in four-point bending, a pin between two feet.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +17,31 @@ SPIN, PULL, COUPLE = (
     UnitLoad("B", "moment", 0),
     UnitLoad("B", "force", 0),
     UnitLoad("B", "moment", 1),
+)
+CLEVIS = Pin(
+    "clevis",
+    (
+        *(Segment(0.002, d), Segment(0.01, d, connection="A"), Segment(0.001, d)),
+        *(Segment(0.02, d, connection="B"), Segment(0.001, d)),
+        *(Segment(0.01, d, connection="C"), Segment(0.002, d)),
+    ),
+)
+SHAFT = Pin(
+    "shaft",
+    (
+        *(Segment(0.01, d, connection="A"), Segment(0.01, d), Segment(0.01, d, connection="B")),
+        Segment(0.1, d, name="middle"),
+        *(Segment(0.01, d, connection="C"), Segment(0.01, d), Segment(0.01, d, connection="E")),
+    ),
+)
+TWICE = Pin(
+    "twice",
+    (
+        *(Segment(0.015, 0.026, name="root"), Segment(0.02, d, name="a")),
+        *(Segment(0.01, d, connection="B"), Segment(0.02, d, name="b")),
+        Segment(0.015, 0.026, name="tip"),
+    ),
+    fillet=0.003,
 )
 
 

@@ -22,17 +22,10 @@ from fea.support.contact.cut_in_lugs import (
 from fea.support.lugs.lug import Lug
 from fea.support.support import PinProblem
 from geometry import CutPin, Hole, Pin, Segment, Slot
+from tests.support.pins.plain_pins import CLEVIS
 
 D, F = 0.02, 50e3
 STEEL = Material("steel", 2.1e11, 0.3, 7850.0, yield_strength=9e8)
-CLEVIS = Pin(
-    "clevis",
-    (
-        *(Segment(0.002, D), Segment(0.01, D, connection="A"), Segment(0.001, D)),
-        *(Segment(0.02, D, connection="B"), Segment(0.001, D)),
-        *(Segment(0.01, D, connection="C"), Segment(0.002, D)),
-    ),
-)
 LUGS = tuple(Lug(n, 0.05, STEEL, 0.0, 0.0, 2.1e5) for n in "ABC")
 ONCE = Requirement(0.05, cells="usual", meshes=1)  # cells small beside cuts, on one mesh
 ROUGHLY = Requirement(0.05, cells="rough", meshes=1)

@@ -154,7 +154,7 @@ def test_edges_that_carry_nothing_have_none() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(("radius", "lugs"), sampled([(4e-4, ALUMINIUM), (5e-4, STEEL)], every=2))
 def test_resolved_rings_have_it(radius: float, lugs: Material) -> None:
-    resolved = contact(radius, Resolution(8, 24, 8, beside=0.006), lugs).largest_pressure[0]
+    resolved = contact(radius, replace(COARSE, beside=0.006), lugs).largest_pressure[0]
     for cells in (COARSE, Resolution()):
         rough = contact(radius, cells, lugs)
         for band, name in enumerate("LMR"):

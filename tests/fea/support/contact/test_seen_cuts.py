@@ -13,21 +13,14 @@ from fea.core.pin_loads import PinLoads
 from fea.support.contact.contact_state import ContactState
 from fea.support.contact.solve_joint import ContactModel, Resolution
 from fea.support.lugs.lug import Bushing, Lug
-from geometry import Cut, CutPin, Flat, Hole, Pin, Segment
+from geometry import Cut, CutPin, Flat, Hole
 from pinbase.arrays import Floats
 from pinbase.memo import Memo
 from tests.support.each import sampled
+from tests.support.pins.plain_pins import CLEVIS
 
 D, F = 0.02, 50e3
 STEEL, BRONZE = Material("steel", 2.1e11, 0.3), Material("bronze", 1.1e11, 0.34)
-CLEVIS = Pin(
-    "clevis",
-    (
-        *(Segment(0.002, D), Segment(0.01, D, connection="A"), Segment(0.001, D)),
-        *(Segment(0.02, D, connection="B"), Segment(0.001, D)),
-        *(Segment(0.01, D, connection="C"), Segment(0.002, D)),
-    ),
-)
 TIGHT = tuple(
     Lug(n, 0.05, STEEL, 0.0, 0.0, t) for n, t in zip("ABC", (2e5, math.inf, 2e5), strict=True)
 )

@@ -90,18 +90,6 @@ def test_two_mistakes_give_the_errors_of_both(tmp_path: Path) -> None:
         assert errors(path, one, other) == alone[one] | alone[other], (one, other)
 
 
-def test_lines_are_in_the_order_of_the_file(tmp_path: Path) -> None:
-    path = tmp_path / "bucket.toml"
-    path.write_text(
-        BUCKET.replace('"right cheek"]', '"x"]').replace("duration = 4", "duration = -4")
-    )
-    with pytest.raises(InputError) as error:
-        load_study(path)
-    lines = [int(line.removeprefix(f"{path}:").split(":")[0]) for line in error.value.lines]
-    assert len(lines) == 2
-    assert lines == sorted(lines)
-
-
 @pytest.mark.parametrize("seed", sampled(range(400), 20))
 def test_several_mutations_end_without_a_traceback(seed: int, tmp_path: Path) -> None:
     """Whatever remains of the study can be looked at."""

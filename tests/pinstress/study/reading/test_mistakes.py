@@ -160,14 +160,3 @@ def test_what_follows_from_a_mistake_is_not_reported(
     with pytest.raises(InputError) as error:
         parse_study(Path("s.toml"), text.replace(old, new, 1))
     assert re.fullmatch(rf"s\.toml:\d+: {re.escape(message)}", str(error.value))
-
-
-def test_the_whole_message() -> None:
-    """As the user reads it, of one family."""
-    with pytest.raises(InputError) as error:
-        parse_study(Path("s.toml"), ONE_PIN.replace('"225 ksi"', '"650 Mpa"'))
-    line = ONE_PIN[: ONE_PIN.index("yield_strength")].count("\n") + 1
-    assert str(error.value) == (
-        f"s.toml:{line}: material.AISI 4340.yield_strength: unknown unit 'Mpa' in '650 Mpa'; did "
-        "you mean 'MPa'?"
-    )

@@ -186,15 +186,6 @@ def test_a_beam_check_is_for_forces_alone(tmp_path: Path) -> None:
         prepare(load_study(write(tmp_path, text)))
 
 
-def test_all_mistakes_are_told_at_once(tmp_path: Path) -> None:
-    text = ONE_PIN.replace("diameter = 2.0", "diameter = -2.0").replace("0.30", "0.7")
-    with pytest.raises(InputError) as caught:
-        load_study(write(tmp_path, text))
-    assert caught.value.codes == ("out-of-range", "not-positive")
-    assert "poisson_ratio: " in caught.value.lines[0]
-    assert "diameter: " in caught.value.lines[1]
-
-
 @each(
     "force",
     [
