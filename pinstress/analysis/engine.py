@@ -30,6 +30,7 @@ from pinstress.analysis.scaled import (
     contact_changed,
     elastic_task,
     narrow_arcs,
+    same_ranges,
     same_shape,
     scalable,
     scaled_row,
@@ -218,6 +219,8 @@ class Engine:
         if name not in self._as_is:
             self._as_is[name] = self._both(name)
         tasks, before = self._as_is[name].tasks, self._as_is[name].rows
+        if not any(same_ranges(x, task) for x in tasks):
+            return None
         now = self._coarse(plan, task, any(same_shape(x, task) for x in tasks))
         if not now or not {row.case for row in now} <= before.keys():
             return None

@@ -19,7 +19,7 @@ from fea.core.peak import ErrorParts, Maximum
 from fea.core.places import BandPressure, ContactPlace, Place, Places
 from fea.core.requirement import Requirement
 from fea.support.contact.contact_place import reached
-from fea.support.lugs.lug import LugRange
+from fea.support.lugs.lug import Lug, LugRange
 from fea.support.records import JointRange, JointResult
 from geometry import Pin
 from pinbase.arrays import Floats
@@ -43,6 +43,7 @@ SPREAD_SHARE, MAX_SPREAD = 0.15, 0.4
 # cells, by which the error is found, as much.
 MIN_HALF_ARC = 25.0
 NOMINAL_STRENGTH = 1e9  # Pa: of what is solved for any strength
+CLEARANCE_DIGITS = 12  # of clearances in metres that are compared
 SCALED_CODE = "scaled"
 RANGE_REMARK = "the range is that of the joint as the study has it"
 
@@ -66,6 +67,23 @@ def coarse(requirement: Requirement, lasting: bool) -> Requirement:
 def same_shape(one: Task, other: Task) -> bool:
     """Return whether two tasks differ by loads, clearances and tilts only."""
     return _shape(one) == _shape(other)
+
+
+def same_ranges(one: Task, other: Task) -> bool:
+    """Return whether two tasks leave the same open of their joints: a range is scaled with its row,
+    so that a changed one is not known.
+    """
+    return _open_of_joint(one) == _open_of_joint(other)
+
+
+def _open_of_joint(task: Task) -> object:
+    """Return the ranges and the friction of lugs at the temperature of the study's dimensions."""
+
+    def cold(lug: Lug) -> LugRange:
+        ends = [round(x - lug.growth, CLEARANCE_DIGITS) for x in lug.range.clearance or ()]
+        return replace(lug.range, clearance=(ends[0], ends[1]) if ends else None)
+
+    return [(cold(lug), lug.friction) for lug in task.lugs]
 
 
 def _shape(task: Task) -> object:

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from fea.core.peak import meets_limit
+from fea.support.records import FRICTION
 from pinbase.records import plain
 from pinstress import Engine, changed_study, load_study, run, shipped_studies, study_from
 from pinstress.analysis import engine as engine_module
@@ -132,6 +133,24 @@ def test_it_is_within_its_error_of_a_run(engine: Engine, changes: dict[str, Any]
     assert abs(scaled.max_von_mises - anew.max_von_mises) <= (scaled.error_estimate or 0.0)
     assert (scaled.error_estimate or 0.0) < 0.25 * scaled.max_von_mises
     assert anew.max_von_mises != pytest.approx(engine.row({}, "P", "pull").max_von_mises, rel=1e-3)
+
+
+@pytest.mark.slow
+def test_what_is_open_of_the_joint_is_that_of_the_changed_study(engine: Engine) -> None:
+    """The range of the study as it is was scaled: without the friction that the change states."""
+    changes: dict[str, Any] = {"pin.P.lug.middle.friction": 0.3}
+    ours, theirs = (
+        quick(engine, changes),
+        run(changed_study(engine.study, changes))["P", "pull"],
+    )
+    over, of = (x.joint and x.joint.range for x in (ours, theirs))
+    assert over is not None
+    assert of is not None
+    rubbed, expected = (
+        {v.value: v.max_von_mises for v in x.variations if v.what == FRICTION} for x in (over, of)
+    )
+    assert len(expected) == 3
+    assert rubbed == pytest.approx(expected, rel=0.1)
 
 
 def test_ratios_that_spread_too_far_are_not_taken(
