@@ -45,6 +45,8 @@ class FirstMesh:
         new = loads if known is None else tuple(x for x in loads if x not in known.loads)
         if known is None or new:
             model = self._memo.get(("model", *key), make)
+            if known is not None:
+                known.derived.clear()  # they are replaced, and what is derived has their size
             fields = model.read(self._superposed(model, key, new), read, ends)
             known = self._fields[key] = fields if known is None else known.joined(fields)
         return known

@@ -14,6 +14,7 @@ from fea.harmonic.fields import MeridianFields
 from pinbase.arrays import Floats
 
 EVEN_COUNT = 3  # so many of the five numbers go as cos psi, the others as sin psi
+POINT_BATCH = 500  # points at a time
 COS, SIN = slice(0, EVEN_COUNT), slice(EVEN_COUNT, None)
 COSINE_COMPONENTS = np.array([True, True, True, False, True, False])  # stresses that go as cos psi
 
@@ -34,7 +35,13 @@ def numbers(fields: MeridianFields, at: tuple[int, ...]) -> Numbers:
     """The five numbers of some of the unit loads, by their positions; found once for a case."""
     known: Numbers | None = fields.derived.get(at)
     if known is None:
-        five = VON_MISES_ROOT @ fields.stress[:, :, at]
-        even, odd = (np.square(five[:, part]).sum(axis=1) for part in (COS, SIN))
-        known = fields.derived[at] = Numbers(five, np.sqrt(np.maximum(even, odd)))
+        five = np.empty((len(fields.stress), len(VON_MISES_ROOT), len(at)))
+        reach = np.empty((len(five), len(at)))
+        # In parts, for copies of the stress of many loads would take twice the memory of all this.
+        for k in range(0, len(five), POINT_BATCH):
+            part = slice(k, k + POINT_BATCH)
+            five[part] = VON_MISES_ROOT @ fields.stress[part][:, :, at]
+            even, odd = (np.square(five[part, half]).sum(axis=1) for half in (COS, SIN))
+            reach[part] = np.sqrt(np.maximum(even, odd))
+        known = fields.derived[at] = Numbers(five, reach)
     return known

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 from fea.beam.error_model import PLAIN_SECTION_ERROR
 from fea.beam.model import BeamField
 from fea.core.linear_solver import SolveError
+from fea.core.material import Material
 from fea.core.model import Model
 from fea.core.over_time import rise_between, through_time
 from fea.core.peak import NO_REASON, Reason
@@ -67,8 +68,14 @@ class Attempt:
 
     def refined(self, model: Model, why: Reason | None = None) -> dict[str, Solution]:
         """Solve the cases on finer and finer meshes of a model."""
-        why = why or chosen(self.requirement, model.name)
-        return refine(model, self.held, self.problem, self.requirement, why, self.progress)
+        problem, requirement, held = self.problem, self.requirement, self.held
+        if why is None:
+            zones = tuple[Zone, ...]()
+            if model.name == "harmonic":
+                cases = tuple(held.start(case.case) for case in problem.cases)
+                zones = zones_of(held.pin, held.clamps, problem.material, cases, requirement)
+            why = chosen(requirement, model.name, problem.material, zones)
+        return refine(model, held, problem, requirement, why, self.progress)
 
 
 @dataclass(frozen=True)
@@ -183,7 +190,12 @@ def beam_refused(requirement: Requirement, zones: Collection[Zone]) -> bool:
         return requirement.model != "beam"
     if requirement.goal == "value" and requirement.tolerance < PLAIN_SECTION_ERROR:
         return True
-    return any(zone.kind != "edge of a load" for zone in zones)
+    return bool(unseen_by_beams(zones))
+
+
+def unseen_by_beams(zones: Collection[Zone]) -> list[str]:
+    """The kinds of singularities that no beam sees."""
+    return sorted({zone.kind for zone in zones if zone.kind != "edge of a load"})
 
 
 def _beam_instead(at: Attempt) -> dict[str, Solution]:
@@ -329,8 +341,13 @@ def with_reason(solution: Solution, why: Reason) -> Solution:
     return replace(solution, peak=solution.peak.with_reason(why))
 
 
-def chosen(requirement: Requirement, model: str) -> Reason:
-    """The reason why this model, and no smaller one, is used."""
+def chosen(
+    requirement: Requirement, model: str, material: Material, zones: Collection[Zone]
+) -> Reason:
+    """The reason why this model, and no smaller one, is used.
+
+    zones: of a body of revolution under the loads.
+    """
     if requirement.model == model:
         return Reason(f"{model}: requested", ("requested",))
     if model == "solid":
@@ -338,6 +355,12 @@ def chosen(requirement: Requirement, model: str) -> Reason:
     if model == "harmonic+local":
         text = "only about its cuts the pin is not a body of revolution"
         return Reason(f"harmonic, with a local solid about the cuts: {text}", ("local-solid",))
+    if material.hardened:
+        text = "it has no stress beneath a hardened surface"
+        return Reason(f"harmonic: beam rejected: {text}", ("beam-hardened",))
+    if unseen := unseen_by_beams(zones):
+        text = f"it does not see the singularity at the {' and the '.join(unseen)}"
+        return Reason(f"harmonic: beam rejected: {text}", ("beam-singular",))
     if requirement.goal == "decide":
         text = "its error leaves open whether the required factor is reached"
         return Reason(f"harmonic: beam rejected: {text}", ("beam-open",))

@@ -180,7 +180,8 @@ def _judged(group: LoadGroup, k: int, seen: MeshHistory, section: FoundSection) 
     requirement, material, loads = group.requirement, group.problem.material, group.every[k]
     held = group.held[k]
     evidence = evidence_of(seen, group.meshes.zones, held.notes.get(seen.case, NO_REASON))
-    why = chosen(requirement, group.model.name) + met(requirement, material, seen)
+    why = chosen(requirement, group.model.name, material, group.meshes.zones)
+    why += met(requirement, material, seen)
     imbalance = held.imbalance.get(seen.case)
     evidence = replace(evidence, why=why, governing=loads, imbalance=imbalance)
     return row_of(evidence, section, material, requirement.tolerance)

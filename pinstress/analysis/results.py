@@ -188,7 +188,7 @@ def run(
 
     pins, cases: names; all by default.
     model, tolerance: override those of the study.
-    memory_limit: limit for a solid model in MB, by default most of the free memory.
+    memory_limit: limit for a mesh in MB, by default most of the free memory.
     limit_load: compute the limit load of every row that yields, however long it takes; otherwise
     the study decides, where "auto" gives each 20 s of processor time.
     fields: whether to keep every pin's field (about 10 MB each) for `to_pyvista` and `picture`,

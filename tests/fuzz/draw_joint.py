@@ -71,10 +71,10 @@ class Seat:
         lugs = {band: _lug(rng, diameter, couple, self.classes) for band in bands}
         self.table: Tree = {"material": "steel", "profile": profile, "lug": lugs}
         if rng.random() < 0.15 and not bored and widest[0] > 0.6 * diameter:
-            drill = 0.15 * diameter
-            hole = {"z": length(widest[1]), "diameter": length(drill),
+            across = 0.15 * diameter
+            hole = {"z": length(widest[1]), "diameter": length(across),
                     "angle": angle(rng.uniform(-3.0, 3.0))}  # fmt: skip
-            self.table["hole"] = [hole | aslant(f"{widest[1]} {drill}", diameter, drill, 0.35)]
+            self.table["hole"] = [hole | aslant(f"{widest[1]} {across}", diameter, across, 0.35)]
             self.classes.add("hole in a lug")
 
 

@@ -89,8 +89,10 @@ class CellFlexibility:
     def of(self, cells: Sectors) -> Floats:
         """The displacements (R C, R C), m/N."""
         if cells not in self._made:
-            out = cells.between(self._apart) / np.repeat(self._area, len(cells))
-            self._made[cells] = out if self._besides is None else out + self._besides
+            out = self._made[cells] = cells.between(self._apart)
+            out /= np.repeat(self._area, len(cells))  # in place: of many cells it has 250 MB
+            if self._besides is not None:
+                out += self._besides
         return self._made[cells]
 
     @cached_property

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fea.core.hardened import Hardened
 from fea.core.material import Material
 from fea.core.memory import solid_memory
 from fea.core.pin_loads import PinLoads
@@ -63,6 +64,22 @@ def test_a_wide_tolerance_is_a_beams_and_a_narrow_one_is_not(steel: Material) ->
     (narrow,) = solve_pin(BAR, steel, (), (BALANCED,), Requirement(tolerance=0.06))
     assert narrow.peak.model == "harmonic"
     assert "beam-inaccurate" in narrow.peak.reasons
+
+
+def test_a_singularity_that_no_beam_sees_is_the_reason_to_reject_it(steel: Material) -> None:
+    """It was said to be the beam's error, which is within this tolerance."""
+    requirement = Requirement(tolerance=0.9)
+    for goal in ("value", "decide"):
+        (found,) = solve_pin(BAR, steel, ("start",), (BALANCED,), replace(requirement, goal=goal))
+        assert found.peak.model == "harmonic"
+        assert found.peak.why.startswith(
+            "harmonic: beam rejected: it does not see the singularity at the edge of a clamp; "
+        )
+        assert "beam-singular" in found.peak.reasons
+    case = Hardened(0.0, BAR.length, 1.1 * YIELD, 0.9 * YIELD, 0.5e-3)
+    hard = replace(steel, hardened=(case,))
+    (found,) = solve_pin(BAR, hard, (), (BALANCED,), requirement)
+    assert "beam-hardened" in found.peak.reasons
 
 
 def test_a_strength_or_a_requirement_that_is_missing_decides_nothing(steel: Material) -> None:
