@@ -43,7 +43,7 @@ from loads.linkage.parts import (
     Teeth,
     Turn,
 )
-from loads.motion.lever import Lever
+from loads.motion.four_bar import Lever
 from loads.motion.mobility import mobility
 from loads.motion.motion import Course, Motion, at_rest, move
 from loads.motion.refine import Resolved, resolved

@@ -8,10 +8,9 @@ from typing import Self
 
 import numpy as np
 
-from geometry.shape.features import Cut, Off, SmoothPart, require
+from geometry.shape.features import Cut, Off, Require, SmoothPart
 from geometry.shape.profile import Arc, Edge, kind_of, off_edge
 from pinbase.arrays import Floats
-from pinbase.errors import Place
 
 FLAT_TIP_ANGLE = math.pi
 MIN_TIP_ANGLE = math.pi / 6.0  # rad
@@ -62,15 +61,14 @@ class Bottom:
         """Height of the cone below the full diameter (m), m."""
         return diameter / 2.0 / math.tan(self.tip / 2.0) if self.tip < FLAT_TIP_ANGLE else 0.0
 
-    def check(self, diameter: float, what: str, at: Place) -> None:
+    def check(self, diameter: float, require: Require) -> None:
         """Raises: GeometryError where the angle or the radius is not possible."""
         in_range = MIN_TIP_ANGLE <= self.tip <= FLAT_TIP_ANGLE + 1e-12
         require(
             in_range,
-            f"{what}: the tip angle is {math.degrees(self.tip):.4g} deg; it must be between 30 deg "
+            f"the tip angle is {math.degrees(self.tip):.4g} deg; it must be between 30 deg "
             "and 180 deg (flat)",
             "tip-angle",
-            at,
         )
         half = self.tip / 2.0
         # Length of the cone's side that roundings at its ends take, per radius.
@@ -78,10 +76,9 @@ class Bottom:
         max_radius = 0.98 * diameter / 2.0 / math.sin(half) / taken
         require(
             self.radius <= max_radius,
-            f"{what}: the radius of its bottom is {self.radius / max_radius:.4g} times the largest "
+            f"the radius of its bottom is {self.radius / max_radius:.4g} times the largest "
             "that fits; reduce it",
             "radius-too-large",
-            at,
         )
 
     def edges(self, a: float, floor: float) -> tuple[Edge, ...]:

@@ -13,6 +13,7 @@ from geometry.shape.pin import GeometryError, Pin
 from pinbase.arrays import Floats, Mask
 from pinbase.errors import Place
 
+Require = Callable[[bool, str, str], None]  # of `requirement`
 Off = Callable[[Floats], Floats]  # distances (P,) of points (P, 3) from a surface
 ANGLE_TOLERANCE = 1e-9  # rad
 
@@ -37,10 +38,12 @@ class Cut(ABC):
     """A volume that is removed from a profile. Lengths are in m.
 
     what: kind of the cut, as in names like "hole 1".
+    lengths: names of the fields that are lengths.
     angle: direction of the cut, rad from x.
     """
 
     what: ClassVar[str]
+    lengths: ClassVar[tuple[str, ...]]
     angle: float
 
     @property
@@ -59,9 +62,9 @@ class Cut(ABC):
         return False
 
     @property
-    @abstractmethod
     def half_turn(self) -> bool:
         """Whether half a turn about the pin's axis maps it to itself."""
+        return False
 
     @abstractmethod
     def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
@@ -70,10 +73,6 @@ class Cut(ABC):
     @abstractmethod
     def check(self, pin: Pin, name: str, at: Place) -> None:
         """Raises: GeometryError when it cannot be cut into a profile. name, at: for the message."""
-
-    @abstractmethod
-    def lengths(self) -> tuple[str, ...]:
-        """Names of the fields that are lengths."""
 
     @abstractmethod
     def along(self, change: Callable[[float, float], tuple[float, float]]) -> Self:
@@ -95,11 +94,11 @@ class Cut(ABC):
 
     def scaled(self, factor: float) -> Self:
         """The same cut in another unit of length: all lengths times `factor`."""
-        return self._with({key: _times(getattr(self, key), factor) for key in self.lengths()})
+        return self._with({key: _times(getattr(self, key), factor) for key in self.lengths})
 
     def rounded(self, digits: int) -> Self:
         """The same cut with its lengths rounded to so many digits, and its angle to nine."""
-        lengths = {key: getattr(self, key) for key in self.lengths()}
+        lengths = {key: getattr(self, key) for key in self.lengths}
         rounded = {k: None if x is None else round(x, digits) + 0.0 for k, x in lengths.items()}
         return self._with(rounded | {"angle": round(self.angle, 9) + 0.0})
 
@@ -165,10 +164,17 @@ def outer_radius(pin: Pin, z: float) -> float:
     return radii(pin, z - tolerance, z + tolerance)[1] if 0.0 <= z <= pin.length else 0.0
 
 
-def require(holds: bool, text: str, code: str, at: Place) -> None:
-    """Raises: GeometryError with this text, code and place unless a condition holds."""
-    if not holds:
-        raise GeometryError(text, code, at)
+def requirement(what: str, at: Place) -> Require:
+    """A function of a condition, a text and a code, which raises a GeometryError unless it holds.
+
+    what: on which the text is. at: its place, for the message.
+    """
+
+    def require(holds: bool, text: str, code: str) -> None:
+        if not holds:
+            raise GeometryError(f"{what}: {text}", code, at)
+
+    return require
 
 
 def positive(*values: float) -> bool:

@@ -19,7 +19,16 @@ from geometry.shape.drill import (
     turned_surfaces,
     wall_edges,
 )
-from geometry.shape.features import Cut, Off, SmoothPart, outer_radius, positive, radii, require
+from geometry.shape.features import (
+    Cut,
+    Off,
+    Require,
+    SmoothPart,
+    outer_radius,
+    positive,
+    radii,
+    requirement,
+)
 from geometry.shape.pin import Pin
 from geometry.shape.profile import Edge
 from pinbase.arrays import Floats, Mask
@@ -60,6 +69,7 @@ class Hole(Drilled):
     outer: float = 0.0
 
     what: ClassVar[str] = "hole"
+    lengths: ClassVar = ("z", "diameter", "depth", "chamfer", "mouth_radius", "offset", "outer")
 
     @property
     def extent(self) -> tuple[float, float]:
@@ -108,10 +118,6 @@ class Hole(Drilled):
     def plain(self) -> bool:
         """Whether it is a plain cylinder through the pin."""
         return self.depth is None and not self.chamfer and not self.mouth_radius
-
-    def lengths(self) -> tuple[str, ...]:
-        """Names of the fields that are lengths."""
-        return "z", "diameter", "depth", "chamfer", "mouth_radius", "offset", "outer"
 
     def along(self, change: Callable[[float, float], tuple[float, float]]) -> Hole:
         """The same hole midway between changed ends in z."""
@@ -167,65 +173,59 @@ class Hole(Drilled):
 
     def check(self, pin: Pin, name: str, at: Place) -> None:
         """Raises: GeometryError when this pin cannot have the hole. name, at: for the message."""
-        what, r = f"pin {pin.name}, {name}", self.diameter / 2
-        require(positive(r), f"{what}: the diameter must be positive", "not-positive", at)
+        require, r = requirement(f"pin {pin.name}, {name}", at), self.diameter / 2
+        require(positive(r), "the diameter must be positive", "not-positive")
         low, high = self.extent
         require(
             low > pin.tolerance and high < pin.length - pin.tolerance,
-            f"{what}: it extends past an end of the pin; its z must be more than half its diameter "
+            "it extends past an end of the pin; its z must be more than half its diameter "
             "from both ends",
             "beyond-end",
-            at,
         )
         least = radii(pin, low, high)[0]
         require(
             r < least - pin.tolerance,
-            f"{what}: its diameter is {r / least:.4g} times the pin's there and would cut the pin "
+            f"its diameter is {r / least:.4g} times the pin's there and would cut the pin "
             "in two; reduce it",
             "hole-too-large",
-            at,
         )
         require(
             self._mouth < least - pin.tolerance,
-            f"{what}: its mouth is {self._mouth / least:.4g} times as wide as the pin; reduce "
+            f"its mouth is {self._mouth / least:.4g} times as wide as the pin; reduce "
             "its chamfer or mouth_radius",
             "hole-too-large",
-            at,
         )
-        self._check_mouth(pin, least, what, at)
+        self._check_mouth(pin, least, require)
         if self.aslant:
-            self._check_aslant(pin, what, at)
+            self._check_aslant(pin, require)
         if self.depth is None:
             return
         outer = outer_radius(pin, self.z)
-        require(positive(self.depth), f"{what}: the depth must be positive", "not-positive", at)
+        require(positive(self.depth), "the depth must be positive", "not-positive")
         left = abs(outer - self.depth - self.bottom.height(self.diameter) - pin.radii(self.z)[0])
         require(
             left >= MIN_WALL_RATIO * self.diameter or not pin.radii(self.z)[0],
-            f"{what}: its bottom is less than {MIN_WALL_RATIO:g} times its diameter from the "
+            f"its bottom is less than {MIN_WALL_RATIO:g} times its diameter from the "
             "surface of the bore; deepen it into the bore, or reduce its depth",
             "thin-wall",
-            at,
         )
-        self.bottom.check(self.diameter, what, at)
+        self.bottom.check(self.diameter, require)
         sagitta = outer - math.sqrt(outer**2 - r**2)
         wall = self.depth - sagitta - self.chamfer - self.mouth_radius
         corner = self.bottom.radius * math.tan(self.bottom.tip / 4.0)
         require(
             wall > corner + pin.tolerance,
-            f"{what}: a depth of {self.depth / outer:.4g} times the pin's radius leaves no wall "
+            f"a depth of {self.depth / outer:.4g} times the pin's radius leaves no wall "
             "between its mouth and its bottom; deepen it",
             "cuts-nothing",
-            at,
         )
         deep = self.depth + self.bottom.height(self.diameter)
         beyond = outer - deep < -math.sqrt(outer**2 - r**2) + pin.tolerance
         require(
             not beyond,
-            f"{what}: with its tip it is {deep / outer / 2:.4g} times the pin's diameter deep and "
+            f"with its tip it is {deep / outer / 2:.4g} times the pin's diameter deep and "
             "comes out on the other side; reduce the depth, or leave it out for a hole through",
             "too-deep",
-            at,
         )
 
     def check_beside(self, other: Hole, names: tuple[str, str], pin: Pin, at: Place) -> None:
@@ -238,80 +238,71 @@ class Hole(Drilled):
             return
         wall = _apart(self, other) - 0.5 * (self.diameter + other.diameter)
         least = min(self.diameter, other.diameter)
-        require(
+        requirement(f"pin {pin.name}", at)(
             abs(wall) >= MIN_WALL_RATIO * least,
-            f"pin {pin.name}: {names[0]} and {names[1]} almost touch: the wall between them must "
+            f"{names[0]} and {names[1]} almost touch: the wall between them must "
             f"be at least {MIN_WALL_RATIO:g} times the smaller diameter; move them apart, or well "
             "into each other",
             "thin-wall",
-            at,
         )
 
-    def _check_aslant(self, pin: Pin, what: str, at: Place) -> None:
+    def _check_aslant(self, pin: Pin, require: Require) -> None:
         """Raises: GeometryError for an axis that such a hole, or this pin, cannot have."""
         require(
             self.plain,
-            f"{what}: offset and tilt are for holes through the pin without chamfer, mouth_radius "
-            "and depth",
+            "offset and tilt are for holes through the pin without chamfer, mouth_radius and depth",
             "key-not-applicable",
-            at,
         )
         require(
             abs(self.tilt) <= MAX_TILT,
-            f"{what}: its tilt is {math.degrees(self.tilt):.4g} deg; at most 60 deg is possible",
+            f"its tilt is {math.degrees(self.tilt):.4g} deg; at most 60 deg is possible",
             "too-oblique",
-            at,
         )
         low, high = self.extent
         inner, outer = pin.radii(self.z)
         require(
             math.isclose(*radii(pin, low, high), rel_tol=1e-12),
-            f"{what}: offset and tilt need a cylindrical part of the pin, here from z = {low:.4g} "
+            f"offset and tilt need a cylindrical part of the pin, here from z = {low:.4g} "
             f"to {high:.4g} m",
             "mouth-not-on-cylinder",
-            at,
         )
         # Where a side of the hole touches the surface or the bore, its walls end in an edge.
         sides = [abs(self.offset + side * self.diameter / 2.0) for side in (1.0, -1.0)]
         walls = [outer - max(sides), *(abs(s - inner) for s in sides if inner)]
         require(
             min(walls) >= MIN_WALL_RATIO * self.diameter,
-            f"{what}: its side is less than {MIN_WALL_RATIO:g} times its diameter from the surface "
+            f"its side is less than {MIN_WALL_RATIO:g} times its diameter from the surface "
             "of the pin or of the bore; change its offset",
             "thin-wall",
-            at,
         )
 
-    def _check_mouth(self, pin: Pin, least: float, what: str, at: Place) -> None:
+    def _check_mouth(self, pin: Pin, least: float, require: Require) -> None:
         """Raises: GeometryError for a chamfer or rounding that does not fit.
 
         least: smallest outer radius of the pin at the hole, m.
         """
         r = self.diameter / 2.0
         if self.chamfer and self.mouth_radius:
-            require(False, f"{what}: give either chamfer or mouth_radius", "key-not-applicable", at)
+            require(False, "give either chamfer or mouth_radius", "key-not-applicable")
         sagitta = least - math.sqrt(least**2 - r**2)
         if self.chamfer:
             require(
                 self.chamfer > 1.05 * sagitta,
-                f"{what}: the chamfer is {self.chamfer / sagitta:.4g} times the drop of the "
+                f"the chamfer is {self.chamfer / sagitta:.4g} times the drop of the "
                 "mouth's edge around the pin; it must be larger to reach the whole edge",
                 "chamfer-too-small",
-                at,
             )
         if self.mouth_radius:
             low, high = self.extent
             require(
                 math.isclose(*radii(pin, low, high), rel_tol=1e-12),
-                f"{what}: a mouth can only be rounded on a cylindrical part of the pin",
+                "a mouth can only be rounded on a cylindrical part of the pin",
                 "mouth-not-on-cylinder",
-                at,
             )
             require(
                 self.mouth_radius < 0.9 * (least - r),
-                f"{what}: the radius of its mouth does not fit beside the hole; reduce it",
+                "the radius of its mouth does not fit beside the hole; reduce it",
                 "radius-too-large",
-                at,
             )
 
 

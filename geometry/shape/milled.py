@@ -9,7 +9,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from geometry.shape.features import Cut, Off, SmoothPart, positive, radii, require
+from geometry.shape.features import Cut, Off, Require, SmoothPart, positive, radii, requirement
 from geometry.shape.pin import Pin
 from geometry.shape.tolerance import snapped
 from pinbase.arrays import Floats, Mask
@@ -69,20 +69,12 @@ class Flat(Milled):
     radius: float = 0.0
 
     what: ClassVar[str] = "flat"
+    lengths: ClassVar[tuple[str, ...]] = ("z0", "z1", "distance", "radius")
 
     @property
     def size(self) -> float:
         """Infinity: a flat has no width of its own."""
         return math.inf
-
-    @property
-    def half_turn(self) -> bool:
-        """Whether half a turn maps it to itself: never."""
-        return False
-
-    def lengths(self) -> tuple[str, ...]:
-        """Names of the fields that are lengths."""
-        return "z0", "z1", "distance", "radius"
 
     def takes(self, x: Floats, radius: float) -> Mask:
         """Mask (P,) of the points x (P, 3) beyond the distance, between its ends."""
@@ -98,28 +90,21 @@ class Flat(Milled):
 
     def check(self, pin: Pin, name: str, at: Place) -> None:
         """Raises: GeometryError when it cuts nothing, or reaches the axis."""
-        what = f"pin {pin.name}, {name}"
-        _check_ends(self, pin, what, at)
-        require(
-            self.distance > 0.0,
-            f"{what}: the distance from the axis must be positive",
-            "not-positive",
-            at,
-        )
+        require = requirement(f"pin {pin.name}, {name}", at)
+        _check_ends(self, pin, require)
+        require(self.distance > 0.0, "the distance from the axis must be positive", "not-positive")
         outer = radii(pin, self.z0, self.z1)[1]
         require(
             self.distance < outer - pin.tolerance,
-            f"{what}: its distance from the axis is {self.distance / outer:.4g} times the pin's "
+            f"its distance from the axis is {self.distance / outer:.4g} times the pin's "
             "radius there, so it cuts nothing; reduce the distance",
             "cuts-nothing",
-            at,
         )
         require(
             2.0 * self.radius < self.z1 - self.z0,
-            f"{what}: its radius is {self.radius / (self.z1 - self.z0):.4g} times its length and "
+            f"its radius is {self.radius / (self.z1 - self.z0):.4g} times its length and "
             "must be less than half of it",
             "radius-too-large",
-            at,
         )
 
 
@@ -144,6 +129,7 @@ class Slot(Milled):
     round_ends: bool = True
 
     what: ClassVar[str] = "slot"
+    lengths: ClassVar[tuple[str, ...]] = ("z0", "z1", "width", "depth", "radius")
 
     @property
     def size(self) -> float:
@@ -159,10 +145,6 @@ class Slot(Milled):
     def middle(self) -> float:
         """Position z of its middle, m."""
         return 0.5 * (self.z0 + self.z1)
-
-    def lengths(self) -> tuple[str, ...]:
-        """Names of the fields that are lengths."""
-        return "z0", "z1", "width", "depth", "radius"
 
     def floor(self, pin: Pin) -> float:
         """Distance of its bottom from the axis, m."""
@@ -205,40 +187,34 @@ class Slot(Milled):
 
     def check(self, pin: Pin, name: str, at: Place) -> None:
         """Raises: GeometryError when this pin cannot have the slot. name, at: for the message."""
-        what, length = f"pin {pin.name}, {name}", self.z1 - self.z0
-        _check_ends(self, pin, what, at)
-        require(positive(self.width), f"{what}: the width must be positive", "not-positive", at)
+        require, length = requirement(f"pin {pin.name}, {name}", at), self.z1 - self.z0
+        _check_ends(self, pin, require)
+        require(positive(self.width), "the width must be positive", "not-positive")
         tolerance = pin.tolerance
         if self.depth is None:
             inside = self.z0 > tolerance and self.z1 < pin.length - tolerance
             require(
                 inside,
-                f"{what}: a slot through the pin must end before the pin does, or it would split "
-                "the pin",
+                "a slot through the pin must end before the pin does, or it would split the pin",
                 "beyond-end",
-                at,
             )
         least, most = radii(pin, self.z0, self.z1)
         require(
             self.width / 2.0 < least - tolerance,
-            f"{what}: its width is {self.width / (2.0 * least):.4g} times the pin's diameter there "
+            f"its width is {self.width / (2.0 * least):.4g} times the pin's diameter there "
             "and would cut the pin in two; reduce it",
             "slot-too-wide",
-            at,
         )
         if self.round_ends:
             require(
                 length >= self.width - tolerance,
-                f"{what}: with round ends its length, {length / self.width:.4g} times the width, "
+                f"with round ends its length, {length / self.width:.4g} times the width, "
                 'must be at least the width; lengthen it, or drill a hole (or ends = "square")',
                 "slot-too-short",
-                at,
             )
-        self._check_depth(least, most, what, tolerance, at)
+        self._check_depth(least, most, require, tolerance)
 
-    def _check_depth(
-        self, least: float, most: float, what: str, tolerance: float, at: Place
-    ) -> None:
+    def _check_depth(self, least: float, most: float, require: Require, tolerance: float) -> None:
         """Raises: GeometryError for a depth or radius that does not fit.
 
         least, most: smallest and largest outer radius of the pin at the slot, m.
@@ -246,43 +222,39 @@ class Slot(Milled):
         if self.depth is None:
             require(
                 self.radius == 0.0,
-                f"{what}: it goes through and has no bottom; give a depth, or no radius",
+                "it goes through and has no bottom; give a depth, or no radius",
                 "no-bottom",
-                at,
             )
             return
-        require(positive(self.depth), f"{what}: the depth must be positive", "not-positive", at)
+        require(positive(self.depth), "the depth must be positive", "not-positive")
         side = math.sqrt(max(least**2 - (self.width / 2.0) ** 2, 0.0))
         require(
             most - self.depth < side - tolerance,
-            f"{what}: a depth of {self.depth / (most - side):.4g} times the sagitta of the surface "
+            f"a depth of {self.depth / (most - side):.4g} times the sagitta of the surface "
             "over its width leaves no wall; deepen it, or mill a flat",
             "cuts-nothing",
-            at,
         )
         require(
             self.depth < most - tolerance,
-            f"{what}: its depth is {self.depth / most:.4g} times the pin's radius, and it must not "
+            f"its depth is {self.depth / most:.4g} times the pin's radius, and it must not "
             "reach the axis; reduce it, or leave it out for a slot through the pin",
             "too-deep",
-            at,
         )
         limit = min(MAX_BOTTOM_RADIUS_RATIO * self.width, 0.9 * (self.depth - (most - side)))
         require(
             self.radius <= limit + tolerance,
-            f"{what}: the radius of its bottom is {self.radius / limit if limit else 0:.4g} times "
+            f"the radius of its bottom is {self.radius / limit if limit else 0:.4g} times "
             f"the largest that fits, {MAX_BOTTOM_RADIUS_RATIO:g} of the width and within the "
             "height of its walls",
             "radius-too-large",
-            at,
         )
 
 
-def _check_ends(cut: Flat | Slot, pin: Pin, what: str, at: Place) -> None:
+def _check_ends(cut: Flat | Slot, pin: Pin, require: Require) -> None:
     """Raises: GeometryError unless the ends are in order and the cut is on the pin."""
-    require(cut.z1 - cut.z0 > pin.tolerance, f"{what}: z = [a, b] requires a < b", "z-reversed", at)
+    require(cut.z1 - cut.z0 > pin.tolerance, "z = [a, b] requires a < b", "z-reversed")
     inside = cut.z1 > pin.tolerance and cut.z0 < pin.length - pin.tolerance
-    require(inside, f"{what}: it lies entirely beyond an end of the pin", "beyond-end", at)
+    require(inside, "it lies entirely beyond an end of the pin", "beyond-end")
 
 
 def _rounded(cut: Flat | Slot, aside: Off, floor: float) -> tuple[Off, Off, Off]:

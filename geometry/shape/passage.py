@@ -18,7 +18,7 @@ from geometry.shape.drill import (
     drill_outline,
     turned_surfaces,
 )
-from geometry.shape.features import SmoothPart, positive, radii, require
+from geometry.shape.features import SmoothPart, positive, radii, requirement
 from geometry.shape.pin import END_FACES, Pin
 from geometry.shape.profile import Edge
 from pinbase.arrays import Floats, Mask
@@ -47,6 +47,7 @@ class Passage(Drilled):
     bottom: Bottom = SQUARE_BOTTOM
 
     what: ClassVar[str] = "passage"
+    lengths: ClassVar[tuple[str, ...]] = ("z0", "z1", "diameter", "offset")
 
     @property
     def extent(self) -> tuple[float, float]:
@@ -54,11 +55,6 @@ class Passage(Drilled):
         tip = self.bottom.height(self.diameter)
         down, up = (tip if self.mouth == end else 0.0 for end in ("end", "start"))
         return self.z0 - down, self.z1 + up
-
-    @property
-    def half_turn(self) -> bool:
-        """Whether half a turn maps it to itself: never; on the axis it is `round`."""
-        return False
 
     @property
     def round(self) -> bool:
@@ -79,10 +75,6 @@ class Passage(Drilled):
         """Mask (P,) without any point: it removes nothing of the outer surface."""
         del radius
         return np.zeros(len(x), dtype=bool)
-
-    def lengths(self) -> tuple[str, ...]:
-        """Names of the fields that are lengths."""
-        return "z0", "z1", "diameter", "offset"
 
     def along(self, change: Callable[[float, float], tuple[float, float]]) -> Passage:
         """The same hole with its two ends in z changed; exchanging them reverses it."""
@@ -112,11 +104,12 @@ class Passage(Drilled):
 
     def check(self, pin: Pin, name: str, at: Place) -> None:
         """Raises: GeometryError when this pin cannot have the passage. name, at: for messages."""
-        what, r, near = f"pin {pin.name}, {name}", self.diameter / 2, pin.tolerance
-        require(positive(r), f"{what}: the diameter must be positive", "not-positive", at)
-        require(self.offset >= 0.0, f"{what}: the offset must not be negative", "negative", at)
-        require(self.z1 - self.z0 > near, f"{what}: the depth must be positive", "not-positive", at)
-        self.bottom.check(self.diameter, what, at)
+        require, r = requirement(f"pin {pin.name}, {name}", at), self.diameter / 2
+        near = pin.tolerance
+        require(positive(r), "the diameter must be positive", "not-positive")
+        require(self.offset >= 0.0, "the offset must not be negative", "negative")
+        require(self.z1 - self.z0 > near, "the depth must be positive", "not-positive")
+        self.bottom.check(self.diameter, require)
         low, high = self.extent
         deep = self.mouth != "both" and not (
             (self.mouth == "start" or low > near)
@@ -124,24 +117,21 @@ class Passage(Drilled):
         )
         require(
             not deep,
-            f"{what}: with its tip it is as deep as the pin is long; reduce the depth, or leave it "
+            "with its tip it is as deep as the pin is long; reduce the depth, or leave it "
             "out for one through the pin",
             "too-deep",
-            at,
         )
         least, _ = radii(pin, low, high)
         require(
             self.offset + r < least - near,
-            f"{what}: its wall reaches {(self.offset + r) / least:.4g} times the pin's radius and "
+            f"its wall reaches {(self.offset + r) / least:.4g} times the pin's radius and "
             "breaks out of its surface; reduce the offset or the diameter",
             "breaks-out",
-            at,
         )
         ends = zip(pin.segments, pin.stations, pin.stations[1:], strict=False)
         bores = [max(s.bores) / 2.0 for s, a, b in ends if b > low and a < high]
         require(
             not max(bores, default=0.0) or self.offset - r > max(bores) + near,
-            f"{what}: it meets the pin's bore; increase the offset",
+            "it meets the pin's bore; increase the offset",
             "meets-bore",
-            at,
         )

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -68,14 +68,7 @@ class ForceTable:
         at = np.clip(at, low, high)
         if self.interpolation == "linear":
             return np.interp(at, self.x, self.y)
-        # Cubic Hermite polynomial of the interval: s from 0 to 1, slopes per interval.
-        k = np.clip(np.searchsorted(self.x, at, side="right") - 1, 0, len(self.x) - 2)
-        x, y, slopes = np.array(self.x), np.array(self.y), self._slopes
-        h = x[k + 1] - x[k]
-        s = (at - x[k]) / h
-        rise, start, end = y[k + 1] - y[k], slopes[k] * h, slopes[k + 1] * h
-        bend = (3.0 * rise - 2.0 * start - end) + s * (start + end - 2.0 * rise)
-        return np.asarray(y[k] + s * (start + s * bend))
+        return np.asarray(self._cubic(at))
 
     def knots(self, low: float, high: float) -> Floats:
         """Values of x between `low` and `high` at which the curve has kinks: those of its rows."""
@@ -105,37 +98,13 @@ class ForceTable:
         return f"{value / factor:.6g} {unit}".rstrip()
 
     @cached_property
-    def _slopes(self) -> Floats:
-        """Slopes dy/dx of the cubic at the rows, (N,); where the table repeats, both ends agree."""
+    def _cubic(self) -> Any:
+        """The monotone cubic, a SciPy PchipInterpolator."""
+        from scipy.interpolate import PchipInterpolator
+
         x, y = np.array(self.x), np.array(self.y)
-        h, rise = np.diff(x), np.diff(y)
-        d = rise / h
-        if self.outside == "repeat":
-            inner = _harmonic(np.append(h[-1], h), np.append(d[-1], d))
-            return np.append(inner, inner[0])
-        if len(d) == 1:
-            return np.array([d[0], d[0]])
-        ends = _end_slope(h[0], h[1], d[0], d[1]), _end_slope(h[-1], h[-2], d[-1], d[-2])
-        return np.concatenate([ends[:1], _harmonic(h, d), ends[1:]])
-
-
-def _harmonic(h: Floats, d: Floats) -> Floats:
-    """Slopes at the inner rows, (N - 2,): the harmonic mean of both sides, zero at an extreme.
-
-    h, d: (N - 1,) widths and slopes of the intervals.
-    """
-    w1, w2 = 2.0 * h[1:] + h[:-1], h[1:] + 2.0 * h[:-1]
-    same = d[:-1] * d[1:] > 0.0
-    safe = [np.where(same, part, 1.0) for part in (d[:-1], d[1:])]
-    return np.where(same, (w1 + w2) / (w1 / safe[0] + w2 / safe[1]), 0.0)
-
-
-def _end_slope(h0: float, h1: float, d0: float, d1: float) -> float:
-    """Slope at the end row, of a parabola through three rows, limited so as not to overshoot.
-
-    h0, d0: width and slope of the interval at the end; h1, d1: of the next.
-    """
-    slope = ((2.0 * h0 + h1) * d0 - h0 * d1) / (h0 + h1)
-    if slope * d0 <= 0.0:
-        return 0.0
-    return 3.0 * d0 if d0 * d1 <= 0.0 and abs(slope) > 3.0 * abs(d0) else slope
+        if self.outside == "repeat":  # with a row of the neighbours, so that the slopes agree there
+            period = x[-1] - x[0]
+            x = np.concatenate([x[-2:-1] - period, x, x[1:2] + period])
+            y = np.concatenate([y[-2:-1], y, y[1:2]])
+        return PchipInterpolator(x, y)

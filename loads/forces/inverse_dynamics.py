@@ -9,8 +9,7 @@ vectors of J^T undetermined; the linkage's sharing rule determines them.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,7 +17,7 @@ from loads.forces.acting import Load
 from loads.forces.contact_forces import sources_of, with_contacts
 from loads.forces.force_balance import ForceBalance
 from loads.forces.holding import require_closed
-from loads.forces.reactions import Reactions
+from loads.forces.reactions import Reactions, joined
 from loads.linkage.parts import GROUND, Point, Slider, Turn
 from loads.motion.complex_points import cross, number, pairs
 from loads.motion.motion import Motion, side_by_side
@@ -108,21 +107,8 @@ def motion_reactions(
     )
     # Each batch's motion, with its matrices, is released before the next is solved.
     parts = [replace(dynamics, motion=motion) for dynamics in solved]
-    return parts[0] if len(parts) == 1 else _joined(parts)
-
-
-def _joined(parts: Sequence[Any]) -> Any:
-    """One result from those of successive batches in time.
-
-    Arrays are joined along time, also those inside dataclasses; anything else is the same in all.
-    """
-    first: Any = parts[0]
-    if isinstance(first, np.ndarray):
-        return np.concatenate(parts)
-    if isinstance(first, (Reactions, SliderForces, Dynamics)):
-        keys = [field.name for field in fields(first)]
-        return replace(first, **{key: _joined([getattr(p, key) for p in parts]) for key in keys})
-    return first
+    whole: Dynamics = joined(parts)
+    return whole
 
 
 def _dynamics(balance: ForceBalance, case: str, timed: bool) -> Dynamics:

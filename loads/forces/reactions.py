@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from loads.tables.csv_table import TableError
 from loads.tables.force_columns import Layout, Unit
 from loads.tables.force_table import TabledForces, read_forces
-from pinbase.arrays import Floats
+from pinbase.arrays import Floats, Ints
 
 TIME_TOLERANCE = 1e-9  # of the largest time: files of one run state times with 9 digits or more
 Components = dict[str, tuple[float, ...]]
@@ -47,6 +48,12 @@ class Reactions:
     def __len__(self) -> int:
         return len(self.forces)
 
+    def at(self, rows: Ints) -> Reactions:
+        """The same at some of the instants."""
+        arrays = (self.forces[rows], self.moments[rows], self.turn[rows])
+        times = None if self.times is None else self.times[rows]
+        return Reactions(self.case, times, self.connections, self.bodies, *arrays)
+
     @property
     def magnitudes(self) -> Floats:
         """Magnitudes of the forces, (T, C) N."""
@@ -72,6 +79,25 @@ class Reactions:
         cos, sin = np.cos(turn), np.sin(turn)
         x, y, z = vectors.T
         return np.stack([cos * x + sin * y, cos * y - sin * x, z], axis=1)
+
+
+def joined(parts: Sequence[Any]) -> Any:
+    """One result from those of successive instants.
+
+    Arrays are joined along time, also those inside dataclasses and dicts; anything else is the same
+    in all.
+    """
+    first: Any = parts[0]
+    if all(part is first for part in parts):
+        return first
+    if isinstance(first, np.ndarray):
+        return np.concatenate(parts)
+    if isinstance(first, dict):
+        return {key: joined([part[key] for part in parts]) for key in first}
+    if is_dataclass(first) and not isinstance(first, type):
+        keys = [field.name for field in fields(first)]
+        return replace(first, **{key: joined([getattr(p, key) for p in parts]) for key in keys})
+    return first
 
 
 def given_reactions(case: str, forces: Components, moments: Components | None = None) -> Reactions:

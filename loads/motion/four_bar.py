@@ -1,4 +1,6 @@
-"""Four-bar linkages: their recognition, class after Grashof, and whether they are crossed."""
+"""Four-bar linkages: their recognition, class after Grashof, and whether they are crossed; and the
+closed form of a lever that a slider turns.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +10,7 @@ import numpy as np
 
 from loads.linkage.linkage import Linkage
 from loads.linkage.parts import GROUND, Point
+from pinbase.arrays import Floats
 
 CHANGE_POINT_TOLERANCE = 1e-9  # of the perimeter: shortest + longest equal the other two
 
@@ -103,3 +106,39 @@ def _intersect(p: Point, q: Point, r: Point, s: Point) -> bool:
 def _side(p: Point, q: Point, at: Point) -> float:
     """Twice the area of the triangle p, q, at; positive where `at` is left of p to q."""
     return (q[0] - p[0]) * (at[1] - p[1]) - (q[1] - p[1]) * (at[0] - p[0])
+
+
+@dataclass(frozen=True)
+class Lever:
+    """A lever on a fixed pivot, turned by a slider by the law of cosines.
+
+    base: distance from the slider's fixed end to the pivot, m.
+    arm: distance from the pivot to the slider's moving end, m.
+    """
+
+    base: float
+    arm: float
+
+    def turn(self, length: Floats, speed: Floats, rate: Floats) -> tuple[Floats, Floats, Floats]:
+        """Angle at the pivot (rad) and its first two rates, (T,) each.
+
+        They follow from length^2 = base^2 + arm^2 - 2 base arm cos(angle), differentiated twice.
+        length, speed, rate: (T,) of the slider, m, m/s and m/s^2.
+        """
+        k = self.base * self.arm
+        angle = np.arccos((self.base**2 + self.arm**2 - length**2) / (2.0 * k))
+        sine, cosine = np.sin(angle), np.cos(angle)
+        first = length * speed / (k * sine)
+        second = (speed**2 + length * rate - k * cosine * first**2) / (k * sine)
+        return angle, first, second
+
+    def point(
+        self, radius: float, length: Floats, speed: Floats, rate: Floats
+    ) -> tuple[Floats, Floats]:
+        """Speed (m/s) and acceleration (m/s^2) of a point, magnitudes, (T,) each.
+
+        radius: distance of the point from the pivot, m.
+        length, speed, rate: as of `turn`.
+        """
+        _, first, second = self.turn(length, speed, rate)
+        return radius * np.abs(first), radius * np.hypot(second, first**2)

@@ -26,6 +26,7 @@ MAXIMUM_TOLERANCE = 1e-12  # of a maximum: a value larger by no more is not larg
 MAX_PANEL_HALVINGS = 24
 # Of the largest of all quantities: the tolerance of a smaller quantity is relative to this.
 MIN_RESOLVED_SHARE = 1e-6
+BISECTION_STEPS = 60  # until the last digit of a time is known
 SEARCH_POINTS = 33  # of a search for a maximum, in a panel, then between two of these points
 
 At = Callable[[Floats], Floats]
@@ -121,6 +122,17 @@ class Resolved:
         """Values (T, K) at times (T,) s; at a corner those before it."""
         which = np.searchsorted(self.ends, times, side="left") - 1
         return self.panels.at(np.clip(which, 0, len(self.panels.low) - 1), times)
+
+    def crossings(self, column: int, level: float = 0.0) -> Floats:
+        """Times (N,) s at which the quantity in a column passes a level, by bisection."""
+        deviation = self.values[:, column] - level
+        turns = np.flatnonzero(deviation[:-1] * deviation[1:] < 0.0)
+        low, high, sign = self.times[turns], self.times[turns + 1], np.sign(deviation[turns])
+        for _ in range(BISECTION_STEPS if len(turns) else 0):
+            middle = 0.5 * (low + high)
+            same = np.sign(self.interpolate(middle)[:, column] - level) == sign
+            low, high = np.where(same, middle, low), np.where(same, high, middle)
+        return np.asarray(0.5 * (low + high))
 
     def mean(self, of: Callable[[Floats], Floats] = lambda values: values) -> Floats:
         """Mean over time, (M,). of: function of values (T, K) that gives (T, M)."""

@@ -10,11 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
-from loads.forces.reactions import Reactions
+from loads.forces.reactions import Reactions, joined
 from loads.linkage.friction import JammingError, contact_sizes
 from loads.space.acting import SpaceLoad, power
 from loads.space.conditions import axes_of
@@ -100,27 +99,8 @@ def space_reactions(
         replace(_Balance(part, tuple(loads)).dynamics(case, timed), motion=motion)
         for part in motion.parts
     ]
-    return parts[0] if len(parts) == 1 else _joined(parts)
-
-
-def _joined(parts: Sequence[SpaceDynamics]) -> SpaceDynamics:
-    """One result from those of successive batches in time."""
-
-    def reactions(several: Sequence[Reactions]) -> Reactions:
-        first = several[0]
-        keys = ["forces", "moments", "turn"] + ["times"] * (first.times is not None)
-        arrays: dict[str, Any] = {
-            key: np.concatenate([getattr(r, key) for r in several]) for key in keys
-        }
-        return replace(first, **arrays)
-
-    return replace(
-        parts[0],
-        reactions=reactions([p.reactions for p in parts]),
-        drive=np.concatenate([p.drive for p in parts]),
-        friction=np.concatenate([p.friction for p in parts]),
-        range={key: reactions([p.range[key] for p in parts]) for key in parts[0].range},
-    )
+    whole: SpaceDynamics = joined(parts)
+    return whole
 
 
 @dataclass(frozen=True)

@@ -332,17 +332,15 @@ def _body_contradictions(body: RigidBody) -> Iterator[Contradiction]:
 def _measured_contradictions(m: Measured, linkage: SpaceLinkage) -> Iterator[Contradiction]:
     """Contradictions of one measured coordinate."""
     at = ("drive", m.name)
-    if isinstance(m, PointDistance):
-        for body in m.bodies:
+    if isinstance(m, PointDistance | BodyAngle):
+        for body in m.bodies if isinstance(m, PointDistance) else (m.base, m.moving):
             if body not in linkage.index:
                 yield f"{m.name}: there is no body {body!r}", "unknown-body", at
+    if isinstance(m, PointDistance):
         if m.drawn <= MIN_DIRECTION:
             yield f"{m.name}: its two points coincide as drawn", "no-direction", at
         return
     if isinstance(m, BodyAngle):
-        for body in (m.base, m.moving):
-            if body not in linkage.index:
-                yield f"{m.name}: there is no body {body!r}", "unknown-body", at
         if m.base == m.moving:
             yield f"{m.name}: {m.base} cannot turn against itself", "same-body", at
         if not _has_direction(m.axis):

@@ -44,22 +44,31 @@ class TableLine:
 
     def number(self, column: str) -> float:
         """The number in a cell. Raises: TableError unless finite and at most MAX_CELL_VALUE."""
-        text = self.cells[column]
-        what = f"{self.where}: {column} = {text[:MAX_SHOWN_CHARACTERS]}"
+        text, what = self.cells[column], f"{self.where}: {column}"
         try:
             value = float(text)
         except ValueError:
-            what = f"{self.where}: {column} = {text[:MAX_SHOWN_CHARACTERS]!r} is not a number"
-            code = "decimal-comma" if DECIMAL_COMMA_PATTERN.fullmatch(text) else "not-a-number"
-            raise TableError(f"{what}{remedy(text)}", code) from None
-        if not math.isfinite(value):
-            raise TableError(f"{what} is not finite", "not-finite")
-        if abs(value) > MAX_CELL_VALUE:
-            raise TableError(f"{what} exceeds the limit of {MAX_CELL_VALUE:g}", "too-large")
+            raise not_a_number(what, text) from None
+        require_in_range(f"{what} = {text[:MAX_SHOWN_CHARACTERS]}", value)
         return value
 
 
-def remedy(text: str) -> str:
+def require_in_range(what: str, value: float) -> None:
+    """Raises: TableError unless a value is finite and at most MAX_CELL_VALUE. what: it is."""
+    if not math.isfinite(value):
+        raise TableError(f"{what} is not finite", "not-finite")
+    if abs(value) > MAX_CELL_VALUE:
+        raise TableError(f"{what} exceeds the limit of {MAX_CELL_VALUE:g}", "too-large")
+
+
+def not_a_number(what: str, text: str) -> TableError:
+    """The error of a cell with a text. what: the place and column of the cell."""
+    code = "decimal-comma" if DECIMAL_COMMA_PATTERN.fullmatch(text) else "not-a-number"
+    shown = text[:MAX_SHOWN_CHARACTERS]
+    return TableError(f"{what} = {shown!r} is not a number{_remedy(text)}", code)
+
+
+def _remedy(text: str) -> str:
     """The end of a message: the right way to write a cell that is not a number, if known."""
     point = text.replace(",", ".")
     if THOUSANDS_PATTERN.fullmatch(text):
@@ -147,7 +156,7 @@ def _rows(
     for count, (line, cells) in enumerate(lines, 1):
         where = f"{path}, line {line}"
         if len(cells) != len(columns):
-            raise _cell_count(where, cells, columns)
+            raise cell_count(where, cells, len(columns))
         if count > MAX_ROWS:
             raise TableError(
                 f"{where}: the table has more than {MAX_ROWS:,} rows, the limit; give fewer",
@@ -197,9 +206,10 @@ def _require_commas(path: Path, columns: list[str], needed: Sequence[str]) -> No
             )
 
 
-def _cell_count(where: str, cells: list[str], columns: list[str]) -> TableError:
+def cell_count(where: str, cells: Sequence[object], width: int) -> TableError:
     """The error of a row that is longer or shorter than the header."""
-    what = f"{where}: {len(cells)} cells, but the header has {len(columns)}"
-    if len(cells) > len(columns) and sum(map(str.isdigit, cells)) > 1:
-        return TableError(f"{what}; decimals are written with a point: 1.5", "cell-count")
+    what = f"{where}: {len(cells)} cells, but the header has {width}"
+    whole = sum(isinstance(cell, str) and cell.strip().isdigit() for cell in cells)
+    if len(cells) > width and whole > 1:
+        what += "; decimals are written with a point: 1.5"
     return TableError(what, "cell-count")

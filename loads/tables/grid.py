@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from loads.tables.csv_table import MAX_COLUMNS, MAX_SHOWN_CHARACTERS, TableError
+from loads.tables.csv_table import MAX_COLUMNS, MAX_SHOWN_CHARACTERS, TableError, cell_count
 from pinbase.arrays import Floats
 
 MAX_TABLE_ROWS = 250_000
@@ -190,13 +190,8 @@ def _require_cells(where: str, cells: Sequence[Cell], width: int) -> None:
     """Raises: TableError for a row that is longer or shorter than the header, but for an empty
     cell after a last separator.
     """
-    count = len(cells)
-    if count == width or (count == width + 1 and cells[-1] == ""):
-        return
-    what = f"{where}: {count} cells, but the header has {width}"
-    if count > width and sum(isinstance(c, str) and c.strip().isdigit() for c in cells) > 1:
-        what += "; decimals are written with a point: 1.5"
-    raise TableError(what, "cell-count")
+    if len(cells) != width and not (len(cells) == width + 1 and cells[-1] == ""):
+        raise cell_count(where, cells, width)
 
 
 def bare_unit(cell: Cell) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Sequence
 from functools import cached_property
@@ -14,7 +13,8 @@ from loads.tables.csv_table import (
     MAX_CELL_VALUE,
     MAX_SHOWN_CHARACTERS,
     TableError,
-    remedy,
+    not_a_number,
+    require_in_range,
 )
 from loads.tables.grid import Cell, Column, Decimal, TableGrid, Unreadable
 from pinbase.arrays import Floats
@@ -113,7 +113,7 @@ class TableNumbers:
                 raise ValueError(text)
             return float(text)
         except ValueError:
-            raise _not_a_number(what, cell.strip()) from None
+            raise not_a_number(what, cell.strip()) from None
 
     def _with_point(self, what: str, text: str) -> str:
         """The text of a number with a decimal point and without groups of thousands.
@@ -127,7 +127,7 @@ class TableNumbers:
             return text.replace(",", "") if by_commas else text
         if self.decimal == ",":
             if "." in text and not by_points:
-                raise _not_a_number(what, text)
+                raise not_a_number(what, text)
             return text.replace(".", "").replace(",", ".")
         if not self.grid.comma or not self._has_commas:
             return text
@@ -152,9 +152,7 @@ class TableNumbers:
         what = f"{self.grid.where(row, index)}: {self.grid.name(index)}"
         cell = self.grid.columns[index][row]
         shown = cell.strip()[:MAX_SHOWN_CHARACTERS] if isinstance(cell, str) else f"{value:g}"
-        if not math.isfinite(value):
-            raise TableError(f"{what} = {shown} is not finite", "not-finite")
-        raise TableError(f"{what} = {shown} exceeds the limit of {MAX_CELL_VALUE:g}", "too-large")
+        require_in_range(f"{what} = {shown}", value)
 
 
 def shows_decimal_comma(text: str) -> bool:
@@ -164,12 +162,6 @@ def shows_decimal_comma(text: str) -> bool:
     short = text.strip()[:MAX_SHOWN_CHARACTERS]
     decimal = DECIMAL_COMMA_PATTERN.fullmatch(short)
     return decimal is not None and not COMMA_GROUPS_PATTERN.fullmatch(short)
-
-
-def _not_a_number(what: str, text: str) -> TableError:
-    code = "decimal-comma" if DECIMAL_COMMA_PATTERN.fullmatch(text) else "not-a-number"
-    shown = text[:MAX_SHOWN_CHARACTERS]
-    return TableError(f"{what} = {shown!r} is not a number{remedy(text)}", code)
 
 
 def _joined(cells: Column) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Sized
 from dataclasses import dataclass
 from functools import partial
 
@@ -12,6 +11,7 @@ from geometry import PinLike
 from loads import Linkage, jump_times
 from loads.forces.sharing import undetermined
 from loads.motion.four_bar import four_bar
+from loads.motion.mobility import Mobility
 from loads.space.linkage import SpaceLinkage
 from pinstress.explore.sweep.correlations import correlations_of
 from pinstress.explore.sweep.parameters import parameters_of, require_laws
@@ -210,13 +210,8 @@ def _form(pin: PinTable) -> str:
     if pin.geometry is not None:
         return f"from {pin.geometry}"
     shape = (pin.profile, "segment") if pin.meridian is None else (pin.meridian, "corner")
-    cuts: dict[str, Sized] = {
-        "hole": pin.hole,
-        "flat": pin.flat,
-        "slot": pin.slot,
-        "passage": pin.passage,
-    }
-    counted = ((len(shape[0] or ()), shape[1]), *((len(cut), what) for what, cut in cuts.items()))
+    cuts = ((len(getattr(pin, what)), what) for what in ("hole", "flat", "slot", "passage"))
+    counted = ((len(shape[0] or ()), shape[1]), *cuts)
     return ", ".join(f"{n} {what}{'s' * (n > 1)}" for n, what in counted if n)
 
 
@@ -229,9 +224,7 @@ def _mechanism(study: Study, mechanism: AnyLinkage) -> list[str]:
         f"{len(mechanism.connections)} connections{_teeth(mechanism)}, "
         + (f"driven by {', '.join(mechanism.driven)}" if mechanism.driven else "no drive")
     ]
-    counted = f"mobility {mobility.degrees}"
-    if mobility.kutzbach != mobility.degrees:
-        counted += f" by rank, {mobility.kutzbach} by count (Kutzbach)"
+    counted = _counted(mobility)
     if ring := four_bar(mechanism):
         drawn = "crossed" if ring.crossed else "open"
         counted += f"; four-bar {'-'.join(ring.joints)}: {ring.kind}, drawn {drawn}"
@@ -241,11 +234,7 @@ def _mechanism(study: Study, mechanism: AnyLinkage) -> list[str]:
         error = undetermined(mechanism, mobility)
         raise study.error(f"mechanism: {error}{fit_offer(study, error)}", code=error.code)
     rule = ", ".join(f"{'/'.join(s.connections)}" for s in mechanism.sharing)
-    return [
-        *lines,
-        f"{counted}; {mobility.redundant} redundant: the forces at "
-        f"{', '.join(mobility.shared)} follow the sharing rule for {rule}",
-    ]
+    return [*lines, counted + _redundant(mobility, f"the sharing rule for {rule}")]
 
 
 def _in_space(study: Study, linkage: SpaceLinkage) -> list[str]:
@@ -253,20 +242,22 @@ def _in_space(study: Study, linkage: SpaceLinkage) -> list[str]:
     assert mechanism is not None
     kinds = Counter(joint.kind for joint in linkage.joints)
     joints = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
-    line = f"mobility {mobility.degrees}"
-    if mobility.kutzbach != mobility.degrees:
-        line += f" by rank, {mobility.kutzbach} by count (Kutzbach)"
-    if mobility.redundant:
-        rule = "a sharing rule" if linkage.sharing else "the stiffness of the links"
-        line += (
-            f"; {mobility.redundant} redundant: the forces at {', '.join(mobility.shared)} follow "
-            f"{rule}"
-        )
+    rule = "a sharing rule" if linkage.sharing else "the stiffness of the links"
     return [
         f"mechanism in space: {len(mechanism.body)} bodies, joints: {joints}, "
         + (f"driven by {', '.join(linkage.driven)}" if linkage.driven else "no drive"),
-        line,
+        _counted(mobility) + _redundant(mobility, rule) * bool(mobility.redundant),
     ]
+
+
+def _counted(mobility: Mobility) -> str:
+    by_count = f" by rank, {mobility.kutzbach} by count (Kutzbach)"
+    return f"mobility {mobility.degrees}" + by_count * (mobility.kutzbach != mobility.degrees)
+
+
+def _redundant(mobility: Mobility, rule: str) -> str:
+    shared = ", ".join(mobility.shared)
+    return f"; {mobility.redundant} redundant: the forces at {shared} follow {rule}"
 
 
 def _teeth(mechanism: Linkage) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from pinbase.records import in_units
-from pinstress.analysis.gather.gather import shape_of_task
+from pinstress.analysis.gather.gather import shape_of_task, units_of
 from pinstress.analysis.mechanics.gather_motion import linkage_motion
 from pinstress.analysis.mechanics.gather_space import skeleton_in_space
 from pinstress.cli.check import Examination, support_of
@@ -16,7 +16,6 @@ from pinstress.study.model.tasks import Task
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from reports.data.check import CheckedPin, CheckedStudy, PlannedRow
-from reports.data.row import Units
 from reports.page.check import write_check
 
 HTML_HEAD = b"<!doctype html"
@@ -42,12 +41,11 @@ def write_check_page(study: Study, examination: Examination, path: Path) -> None
 
     Raises: OSError.
     """
-    s = study.system
     first = {task.pin.name: task for task in reversed(examination.tasks)}
     in_si = CheckedStudy(
         title=study.table.title,
         study=study.path.name,
-        units=Units(s.length, s.force, s.stress, s.time),
+        units=units_of(study),
         summary=tuple(examination.lines[1:]),
         problems=(
             *examination.unheld,
@@ -77,7 +75,7 @@ def write_check_page(study: Study, examination: Examination, path: Path) -> None
             _row(study, task, k) for task in examination.tasks for k in range(len(task.loads))
         ),
     )
-    write_check(in_units(in_si, s.factor), path)
+    write_check(in_units(in_si, study.system.factor), path)
 
 
 def _row(study: Study, task: Task, k: int) -> PlannedRow:

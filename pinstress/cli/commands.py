@@ -16,13 +16,14 @@ from pinbase.processes.interrupts import EXIT_INTERRUPTED, Unfinished
 from pinbase.processes.threads import hold_threads
 from pinstress.cli.design_commands import cluster_keys, reliability, sweep
 from pinstress.cli.export import export
-from pinstress.cli.lookup_commands import fits, materials
 from pinstress.cli.more_commands import (
     compare_runs,
     completion,
     curve,
+    fits,
     import_,
     init,
+    materials,
     pdf_of,
     plots,
     schema,

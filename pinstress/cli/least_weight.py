@@ -74,12 +74,8 @@ def require_aim(goal: SizingGoal, wishes: Wishes, step: float | None) -> WeightG
             "--step rounds diameters, which --vary leaves as they are; leave out one of them",
             code="contradiction",
         )
-    usual = Proportions()
-    limits = Proportions(
-        usual.wall if wishes.wall is None else wishes.wall,
-        usual.shoulder if wishes.shoulder is None else wishes.shoulder,
-    )
-    return WeightGoal(goal.required, vary, limits, step, goal.more)
+    stated = {key: value for key in ("wall", "shoulder") if (value := getattr(wishes, key))}
+    return WeightGoal(goal.required, vary, Proportions(**stated), step, goal.more)
 
 
 def lighten_and_write(

@@ -156,11 +156,7 @@ def report_failed(directory: Path, failed: dict[str, Failed]) -> int:
     ordered = sorted(failed.items(), key=lambda item: item[0] != PDF_FILE)
     by_reason = grouped((failure.reason, name) for name, failure in ordered)
     said = "; ".join(f"{_listed(names)}: {why}" for why, names in by_reason.items())
-    ways = [
-        w
-        for w, failures in (("pdf", PDF_FILE in failed), ("plots", set(failed) - {PDF_FILE}))
-        if failures
-    ]
+    ways = ["pdf"] * (PDF_FILE in failed) + ["plots"] * bool(failed.keys() - {PDF_FILE})
     again = " and ".join(f"`pinstress {way} {directory}`" for way in ways)
     click.echo(
         f"Error: not drawn: {said}. All other results in {directory} are complete; {again} "

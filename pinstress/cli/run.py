@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, Unpack
+from typing import TYPE_CHECKING, Any, Unpack
 
 import click
 from rich.console import Console
@@ -16,7 +16,7 @@ from rich.console import Console
 from pinbase.platform import portable
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel, preload, processes
 from pinstress.analysis.cache import Cache, user_cache
-from pinstress.analysis.gather.gather import loads_only, results_of
+from pinstress.analysis.gather.gather import loads_only, results_of, units_of
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.solve import entry_keys, solve_tasks
 from pinstress.cli.closing import (
@@ -54,6 +54,10 @@ from reports.text.second_opinion import print_second_opinion
 from reports.text.work import print_work
 from reports.vtk.fields import surface, write_flow, write_pin
 from reports.vtk.index import identify_files
+
+if TYPE_CHECKING:
+    from rich.progress import Progress as Bar
+    from rich.progress import ProgressColumn
 
 FILE_COLUMNS = 120  # of output that is no terminal and has no width
 # What solving a pin imports on demand: libraries of nearly all pins, and models
@@ -128,7 +132,7 @@ def run_and_write(
     with replacing(directory) as staging:
         if wanted.vtk != "none":
             (staging / "vtk").mkdir()
-        keep = partial(_keep, staging, _units(study), wanted.vtk)
+        keep = partial(_keep, staging, units_of(study), wanted.vtk)
         with progress_bar(alone=most == 1, quiet=wanted.quiet) as progress:
             _preload_for(plan, cache)
             outcomes = solve_tasks(plan, keep, progress, jobs=most, cache=cache, **ask)
@@ -226,11 +230,6 @@ def _silent(_: str) -> None:
     pass
 
 
-def _units(study: Study) -> Units:
-    s = study.system
-    return Units(s.length, s.force, s.stress, s.time)
-
-
 def _keep(staging: Path, units: Units, vtk: str, field: Field) -> None:
     """Write the requested output of a field."""
     if vtk != "none":
@@ -285,6 +284,19 @@ def console() -> Console:
 
 
 @contextmanager
+def bar_on_stderr(*columns: ProgressColumn, alone: bool, quiet: bool) -> Iterator[Bar]:
+    """Show a progress bar of these columns on stderr if it is a terminal; alone: as of
+    `progress_bar`.
+    """
+    from rich.progress import Progress as Bar
+
+    stderr = Console(stderr=True)
+    silent = quiet or not stderr.is_terminal
+    with Bar(*columns, console=stderr, transient=True, disable=silent, auto_refresh=alone) as bar:
+        yield bar
+
+
+@contextmanager
 def progress_bar(alone: bool = True, quiet: bool = False) -> Iterator[Progress]:
     """Show a progress bar on stderr if it is a terminal.
 
@@ -300,14 +312,7 @@ def progress_bar(alone: bool = True, quiet: bool = False) -> Iterator[Progress]:
         rich.TextColumn("left"),
         rich.TimeRemainingColumn(),
     )
-    console = Console(stderr=True)
-    with rich.Progress(
-        *columns,
-        console=console,
-        transient=True,
-        disable=quiet or not console.is_terminal,
-        auto_refresh=alone,
-    ) as bar:
+    with bar_on_stderr(*columns, alone=alone, quiet=quiet) as bar:
         task = bar.add_task("reactions", total=1.0)
 
         def show(message: str, part: float) -> None:

@@ -10,6 +10,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from pinbase.processes import interrupts
+from pinbase.processes.interrupts import Unfinished
+from pinstress.study.reading.errors import InputError
+
 if TYPE_CHECKING:
     from pinstress.explore.sweep.cluster import Cluster
     from pinstress.explore.sweep.connection import ClusterConnection
@@ -109,6 +113,25 @@ def connected(connection: ClusterConnection | None) -> Iterator[Cluster | None]:
 
     with cluster_at(connection, lambda message: click.echo(f"Warning: {message}", err=True)) as it:
         yield it
+
+
+@contextmanager
+def resumable(kept: Callable[[], str]) -> Iterator[None]:
+    """Say that a command can be resumed where an error or an interruption ends it.
+
+    kept: returns what it has finished, as "2 pins are"; empty for nothing.
+    """
+    try:
+        yield
+    except BaseException as error:
+        if not (finished := kept()):
+            raise
+        text = f"{finished} kept: the same command with --resume goes on"
+        if isinstance(error, KeyboardInterrupt) or interrupts.came():
+            raise Unfinished(text) from None
+        if isinstance(error, InputError):
+            raise InputError(f"{error}\n{text}", code=error.code) from None
+        raise
 
 
 def read_study(path: Path) -> Study:

@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING
 import click
 
 from pinbase.grouped import grouped
-from pinbase.processes import interrupts
-from pinbase.processes.interrupts import Unfinished
 from pinbase.processes.pool import preload, processes
+from pinstress.analysis.gather.gather import units_of
 from pinstress.analysis.plan import prepare
 from pinstress.cli.new_file import require_new
 from pinstress.cli.run import RUN_LIBRARIES, RUN_MODELS, console, progress_bar
-from pinstress.cli.shared import connected
+from pinstress.cli.shared import connected, resumable
 from pinstress.cli.streams import unneeded
 from pinstress.explore.size.scaled_study import moved
 from pinstress.explore.size.size_pin import SizingGoal, SizingResult
@@ -28,7 +27,6 @@ from pinstress.study.model.requirements import sizing_factor
 from pinstress.study.reading.choices import require_positive
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
-from reports.data.row import Units
 from reports.format.numbers import DASH, short
 from reports.text.sizes import SizeRow, print_sizes
 
@@ -72,7 +70,7 @@ def size_and_write(study: Study, goal: SizingGoal, options: SizeOptions) -> int:
     sizing = _Sizing(study, goal, target, state)
     sizing.start(options.resume)
     jobs = 1 if options.connection else processes(options.jobs)
-    try:
+    with resumable(sizing.stop):
         with (
             progress_bar(alone=jobs == 1, quiet=options.quiet) as progress,
             connected(options.connection) as cluster,
@@ -81,19 +79,10 @@ def size_and_write(study: Study, goal: SizingGoal, options: SizeOptions) -> int:
                 preload(*RUN_LIBRARIES, *RUN_MODELS)
             sized = size_pins(plan, goal, sizing.pins, sizing.finish, jobs, progress, cluster)
         new = sizing.write(sized)
-    except BaseException as error:
-        kept = sizing.stop()
-        if kept and (isinstance(error, KeyboardInterrupt) or interrupts.came()):
-            raise Unfinished(kept) from None
-        if kept and isinstance(error, InputError):
-            raise InputError(f"{error}\n{kept}", code=error.code) from None
-        raise
     state.end()
     rows = [_row(study, new, result) for result in sized]
-    s = study.system
     with unneeded(target):
-        units = Units(s.length, s.force, s.stress, s.time)
-        print_sizes(rows, goal.written, units, console(), sizing.written)
+        print_sizes(rows, goal.written, units_of(study), console(), sizing.written)
     if not options.quiet:
         close(study, new, target if sizing.written else None)
     missed = grouped(((row.result.capitalize(), row.why), row.pin) for row in rows if row.why)
@@ -155,13 +144,12 @@ class _Sizing:
         return new
 
     def stop(self) -> str:
-        """Return how to go on; where no pin is finished, nothing is left."""
+        """Return what is finished, as of `resumable`; where no pin is, nothing is left."""
         if not self._pins:
             self._state.end()
             return ""
         count = len(self._pins)
-        many = "1 pin is" if count == 1 else f"{count} pins are"
-        return f"{many} kept: the same command with --resume goes on"
+        return "1 pin is" if count == 1 else f"{count} pins are"
 
     def _text(self, sized: list[SizingResult]) -> bytes:
         text = new_study(self._study, self._goal, sized).text

@@ -12,16 +12,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-from rich.console import Console
 
-from pinbase.processes import interrupts
 from pinbase.processes.folder_lock import Release, lock
-from pinbase.processes.interrupts import Unfinished
 from pinbase.processes.pool import cores
 from pinstress.cli import manifest
 from pinstress.cli.output_folder import require_replaceable
-from pinstress.cli.run import console
-from pinstress.cli.shared import open_page
+from pinstress.cli.run import bar_on_stderr, console
+from pinstress.cli.shared import open_page, resumable
 from pinstress.cli.streams import unneeded
 from pinstress.explore.sweep.connection import ClusterConnection
 from pinstress.explore.sweep.design_columns import designs_of
@@ -92,16 +89,9 @@ def sweep_and_write(
             if not way.quiet:
                 count = len(sweep.values)
                 click.echo(f"Continued from {before:,} designs to {count:,}.", err=True)
-        try:
-            alone = way.connection is not None or (way.jobs or cores()) == 1
-            with progress(way.quiet, alone) as report:
-                table = solved(sweep, parts, way.jobs, way.connection, report, _warn)
-        except BaseException as error:
-            if parts.count and (isinstance(error, KeyboardInterrupt) or interrupts.came()):
-                raise Unfinished(_kept(parts)) from None
-            if parts.count and isinstance(error, InputError):
-                raise InputError(f"{error}\n{_kept(parts)}", code=error.code) from None
-            raise
+        alone = way.connection is not None or (way.jobs or cores()) == 1
+        with resumable(lambda: _finished(parts)), progress(way.quiet, alone) as report:
+            table = solved(sweep, parts, way.jobs, way.connection, report, _warn)
         _write(directory, table)
         parts.finish()
     return _told(directory, table, way)
@@ -199,11 +189,11 @@ def _remove(directory: Path, parts: BatchFolder, existed: bool) -> None:
             directory.rmdir()
 
 
-def _kept(parts: BatchFolder) -> str:
-    """Explain how to resume; the command itself may have options that would have to be repeated."""
-    count = parts.count
-    many = "1 batch is" if count == 1 else f"{count} batches are"
-    return f"{many} kept: the same command with --resume goes on"
+def _finished(parts: BatchFolder) -> str:
+    """Return what is finished, as of `resumable`."""
+    if not parts.count:
+        return ""
+    return "1 batch is" if parts.count == 1 else f"{parts.count} batches are"
 
 
 @contextmanager
@@ -215,7 +205,6 @@ def progress(quiet: bool, alone: bool = True) -> Iterator[Report]:
     """
     from rich import progress as rich
 
-    shown = Console(stderr=True)
     columns = (
         rich.TextColumn("designs"),
         rich.BarColumn(),
@@ -224,14 +213,8 @@ def progress(quiet: bool, alone: bool = True) -> Iterator[Report]:
         rich.TextColumn("left"),
         rich.TimeRemainingColumn(elapsed_when_finished=False),
     )
-    lines = _Lines(quiet or shown.is_terminal)
-    with rich.Progress(
-        *columns,
-        console=shown,
-        transient=True,
-        disable=quiet or not shown.is_terminal,
-        auto_refresh=alone,
-    ) as bar:
+    with bar_on_stderr(*columns, alone=alone, quiet=quiet) as bar:
+        lines = _Lines(quiet or bar.console.is_terminal)
         task = bar.add_task("designs", total=None)
 
         def report(count: int, total: int) -> None:

@@ -122,7 +122,7 @@ def results_of(plan: Plan, outcomes: list[PinOutcome]) -> Results:
 
 def rows_of(plan: Plan, outcomes: list[PinOutcome]) -> dict[tuple[str, str], PinResult]:
     """Return the rows of a plan, as `results_of` has them, by pin and case."""
-    study, factor, units = plan.study, plan.study.system.factor, _units(plan.study)
+    study, factor, units = plan.study, plan.study.system.factor, units_of(plan.study)
     rows = (
         _completed(study, plan.loads[row.case], task, row, plan.published)
         for task, outcome in zip(plan.tasks, outcomes, strict=True)
@@ -153,10 +153,11 @@ def _in_order(
 
 
 def _in_study_units(results: Results, study: Study) -> Results:
-    return results.in_units(_units(study), study.system.factor)
+    return results.in_units(units_of(study), study.system.factor)
 
 
-def _units(study: Study) -> Units:
+def units_of(study: Study) -> Units:
+    """Return the units of a study's results."""
     s = study.system
     return Units(s.length, s.force, s.stress, s.time)
 

@@ -116,10 +116,10 @@ def _shared(study: Study, task: Task, case: PinLoads, balance: Balance) -> str:
          "the largest)"),
     )  # fmt: skip
     parts = [text for share, text in residuals if share > MIN_REPORTED_SHARE]
-    where = "links" if task.lugs else "bands"
+    where, left = "links" if task.lugs else "bands", " and ".join(parts)
     return (
         f"case.{case.case}: the loads on pin {task.pin.name} are not quite in equilibrium"
-        f"{_when(case, balance)}: {_and(parts)} {'are' if len(parts) > 1 else 'is'} left over, "
+        f"{_when(case, balance)}: {left} {'are' if len(parts) > 1 else 'is'} left over, "
         f"which its {where} share{_closed_by(study, task.pin, case, balance)}"
     )
 
@@ -148,8 +148,4 @@ def _closed_by(study: Study, pin: PinLike, case: PinLoads, balance: Balance) -> 
         x, y, z = ((now[0] + by[0]) / size, (now[1] + by[1]) / size, now[2] / size)
         shown = ", ".join(f"{v + 0.0:.6g}" for v in ((x, y, z) if z else (x, y)))
         parts.append(f"{name} = [{shown}] {unit}")
-    return f"; in equilibrium with, for example, {_and(parts)}"
-
-
-def _and(parts: list[str]) -> str:
-    return " and ".join(parts)
+    return f"; in equilibrium with, for example, {' and '.join(parts)}"

@@ -127,11 +127,7 @@ def at_time(case: CaseLoads, time: float) -> CaseLoads | None:
     k = int(np.abs(times - time).argmin())
     if abs(times[k] - time) > near:
         return None
-    r = case.reactions
-    parts = (x[k : k + 1] for x in (r.forces, r.moments, r.turn))
-    forces, moments, turn = parts
-    one = replace(r, times=times[k : k + 1], forces=forces, moments=moments, turn=turn)
-    return replace(case, reactions=one)
+    return replace(case, reactions=case.reactions.at(np.array([k])))
 
 
 def case_loads(
@@ -276,12 +272,16 @@ def _on_ground(
         mechanism, drives = _locked(mechanism, hold)
     motion = move(mechanism, drives, np.zeros(1))
     solved = motion_reactions(name, motion, loads, timed=False, hold=hold)
-    note, others = ground.note(study), dict[str, Dynamics]()
-    if side := sideways(study, case, mechanism, acting):
-        note, others = side.noted(note), side.others(solved)
-        solved = side.completed(solved)
-    shared = _each(others)
-    return CaseLoads(solved.reactions, solved, note, ground=ground, shared=shared, side=side)
+    side = sideways(study, case, mechanism, acting)
+    return replace(_with_side(solved, ground.note(study), side), ground=ground)
+
+
+def _with_side(solved: Dynamics, note: str, side: Sideways | None) -> CaseLoads:
+    """Return the loads of a case at one instant, with what it has out of the plane."""
+    if side is None:
+        return CaseLoads(solved.reactions, solved, note)
+    whole, shared = side.completed(solved), _each(side.others(solved))
+    return CaseLoads(whole.reactions, whole, side.noted(note), shared=shared, side=side)
 
 
 def _locked(mechanism: Linkage, hold: Sequence[str]) -> tuple[Linkage, tuple[Law, ...]]:
@@ -344,16 +344,10 @@ def _at_instant(
     applied, note = applied_loads(study, name, case, mechanism)
     motion = move(mechanism, drives, np.zeros(1))
     solved = motion_reactions(name, motion, applied, timed=False, hold=hold)
-    others: Mapping[str, Dynamics] = {}
-    if side := sideways(study, case, mechanism, side_loads(study, name, case, mechanism)):
-        note = side.noted(note)
-        solved, others = side.completed(solved), side.others(solved)
-    return CaseLoads(
-        solved.reactions,
-        solved,
-        note,
-        range=over_range(study, name, case, partial(with_size, study, name, motion)),
-        impulse=with_impulse(case, partial(with_size, study, name, motion)),
-        shared=_each(others),
-        side=side,
+    side = sideways(study, case, mechanism, side_loads(study, name, case, mechanism))
+    of_size = partial(with_size, study, name, motion)
+    return replace(
+        _with_side(solved, note, side),
+        range=over_range(study, name, case, of_size),
+        impulse=with_impulse(case, of_size),
     )

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from loads import Linkage, Load, Motion, Reactions, impulse_force, motion_reactions
+from loads.forces.reactions import joined
 from loads.space.out_of_plane import SideLoad
 from pinbase.arrays import Floats
 from pinstress.study.model.mechanism.forces import load, springs
@@ -189,12 +190,8 @@ def with_impulse(case: StaticCase | InstantCase, of_size: OfSize) -> ImpulseShar
 
 def _of_sizes(of_size: OfSize, which: int, sizes: Floats) -> Reactions:
     """Return the reactions to an impulse of these sizes (P,) N, an instant each."""
-    reactions = [of_size(which, size) for size in sizes.tolist()]
-    forces, moments, turn = (
-        np.concatenate([getattr(r, key) for r in reactions])
-        for key in ("forces", "moments", "turn")
-    )
-    return replace(reactions[0], forces=forces, moments=moments, turn=turn)
+    reactions: Reactions = joined([of_size(which, size) for size in sizes.tolist()])
+    return reactions
 
 
 def with_size(study: Study, name: str, motion: Motion, which: int, size: float) -> Reactions:

@@ -155,16 +155,12 @@ def _drop(
 def _strut(table: StrutTable) -> Strut:
     spring: GasSpring | LinearSpring
     if table.gas is not None:
-        gas = table.gas
-        spring = GasSpring(gas.pressure, gas.volume, gas.area, gas.exponent, gas.ambient)
+        spring = GasSpring(**dict(table.gas))
     else:
         assert table.spring is not None
-        spring = LinearSpring(table.spring.stiffness, table.spring.preload)
-    oil = table.oil
-    damper = None
-    if oil is not None:
-        damper = Oil(oil.density, oil.area, oil.orifice, oil.discharge, oil.rebound)
-    return Strut(spring, table.stroke, damper, table.friction)
+        spring = LinearSpring(**dict(table.spring))
+    oil = None if table.oil is None else Oil(**dict(table.oil))
+    return Strut(spring, table.stroke, oil, table.friction)
 
 
 def _tyre(table: TyreTable) -> PowerTyre | TableTyre:

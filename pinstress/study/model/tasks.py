@@ -15,7 +15,6 @@ from fea.core.pin_loads import Distribution, Floats, PinLoads
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, PinLike
 from loads import Reactions
-from pinbase.arrays import Ints
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.clevis import Ears, on_ears
 from pinstress.study.model.hardened import pin_material
@@ -202,7 +201,7 @@ def _shared(given: CaseLoads, applied: list[str], build: Callable[..., PinLoads]
         which = [reactions.connections.index(c) for c in applied]
         sizes = [np.linalg.norm(x[:, which], axis=2) for x in (reactions.forces, reactions.moments)]
         rows = np.unique(np.concatenate([size.argmax(axis=0) for size in sizes]))
-        parts.append(build(_rows(reactions, rows), accelerations[rows]))
+        parts.append(build(reactions.at(rows), accelerations[rows]))
         what += [text] * len(rows)
     forces, moments, body = (
         np.concatenate([getattr(part, key) for part in parts])
@@ -210,13 +209,6 @@ def _shared(given: CaseLoads, applied: list[str], build: Callable[..., PinLoads]
     )
     loads = replace(parts[0], forces=forces, moments=moments, body=body, times=None)
     return SharedLoads(tuple(what), loads)
-
-
-def _rows(reactions: Reactions, rows: Ints) -> Reactions:
-    """Return reactions at some instants."""
-    times = None if reactions.times is None else reactions.times[rows]
-    forces, moments, turn = (x[rows] for x in (reactions.forces, reactions.moments, reactions.turn))
-    return replace(reactions, times=times, forces=forces, moments=moments, turn=turn)
 
 
 def _shanks(

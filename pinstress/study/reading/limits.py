@@ -15,6 +15,9 @@ from pinstress.study.schema.tables import StudyTable
 CONTROL_CHARACTER_PATTERN = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]")
 
 MAX_PINS = MAX_CASES = 1000
+PIN_PARTS = {"profile": "segments", "meridian": "corners", "bore_meridian": "corners"} | {
+    key: f"{key}s" for key in ("hole", "flat", "slot", "passage", "band")
+}
 MAX_PIN_PARTS = 1000  # of a pin: a profile of so many segments takes half a minute
 MAX_CASE_LOADS = 1000  # of a case
 MAX_SLENDERNESS = 1000.0  # length over diameter: beyond it the numerics fail, after many minutes
@@ -71,14 +74,8 @@ def _counted(table: StudyTable) -> Iterator[tuple[str, str, Sized, int]]:
     yield "pin", "pins", table.pin, MAX_PINS
     yield "case", "cases", table.case, MAX_CASES
     for name, pin in table.pin.items():
-        yield f"pin.{name}.profile", "segments", pin.profile or (), MAX_PIN_PARTS
-        yield f"pin.{name}.meridian", "corners", pin.meridian or (), MAX_PIN_PARTS
-        yield f"pin.{name}.bore_meridian", "corners", pin.bore_meridian or (), MAX_PIN_PARTS
-        yield f"pin.{name}.hole", "holes", pin.hole, MAX_PIN_PARTS
-        yield f"pin.{name}.flat", "flats", pin.flat, MAX_PIN_PARTS
-        yield f"pin.{name}.slot", "slots", pin.slot, MAX_PIN_PARTS
-        yield f"pin.{name}.passage", "passages", pin.passage, MAX_PIN_PARTS
-        yield f"pin.{name}.band", "bands", pin.band, MAX_PIN_PARTS
+        for key, what in PIN_PARTS.items():
+            yield f"pin.{name}.{key}", what, getattr(pin, key) or (), MAX_PIN_PARTS
     for name, case in table.case.items():
         yield f"case.{name}.apply", "loads", getattr(case, "apply", ()), MAX_CASE_LOADS
     if (mechanism := table.mechanism) is not None:

@@ -86,20 +86,13 @@ class GivenCase(CaseTable):
 
     @model_validator(mode="after")
     def _one_source(self) -> "GivenCase":
-        stated = {"forces": self.forces, "moments": self.moments}
         if (self.forces is None and self.moments is None) == (self.table is None):
             raise ArgumentError(
                 'give either forces = { ... }, moments = { ... } or both, or table = "file.csv"',
                 "give-one",
             )
-        of_table: dict[str, object] = {
-            "table_case": self.table_case,
-            "columns": self.columns,
-            "labels": self.labels,
-            "time_step": self.time_step,
-            "table_units": self.table_units,
-        }
-        for key, value in of_table.items():
+        for key in ("table_case", "columns", "labels", "time_step", "table_units"):
+            value = getattr(self, key)
             if value and not isinstance(self.table, str | None) and key not in KEYS_OF_ANY_TABLE:
                 raise ArgumentError(
                     f"{key} is for a table that is only a file name; state columns in the table",
@@ -107,8 +100,8 @@ class GivenCase(CaseTable):
                 )
             if value and self.table is None:
                 raise ArgumentError(f'{key} describes a table; give table = "file.csv"', "no-table")
-        for key, given in stated.items():
-            if given is not None and not given:
+        for key in ("forces", "moments"):
+            if getattr(self, key) == {}:
                 raise ArgumentError(f"{key} is empty; give at least one connection", "empty")
         return self
 

@@ -29,9 +29,9 @@ from pinstress.study.schema.types import (
     StrictTable,
     Switch,
     Weight,
+    both_or_none,
     exactly_one,
     one_or_several,
-    require_both,
     require_one,
 )
 
@@ -115,10 +115,7 @@ class JointTable(StrictTable):
             )
         return data
 
-    @model_validator(mode="after")
-    def _with_diameter(self) -> "JointTable":
-        require_both("friction and diameter", self.friction, self.diameter)
-        return self
+    _with_diameter = both_or_none("friction", "diameter")
 
     @property
     def origins(self) -> tuple[str, ...]:

@@ -14,8 +14,10 @@ from pinstress.study.schema.drives import LawTable, require_few_turns
 from pinstress.study.schema.forces import LineLawTable, TorsionLawTable
 from pinstress.study.schema.mechanism import BarTable, Ratios, require_one_mass
 from pinstress.study.schema.types import (
+    BY_NAME_OR_PLACE,
     Acceleration,
     Angle,
+    Joint,
     Length,
     Mass,
     Number,
@@ -31,10 +33,7 @@ from pinstress.study.schema.types import (
 
 Point3 = tuple[Length, Length, Length]
 Direction = tuple[Number, Number, Number]
-JointOrPoint3 = Annotated[
-    Annotated[str, Tag("<joint>")] | Annotated[Point3, Tag("<point>")],
-    Discriminator(lambda value: "<joint>" if isinstance(value, str) else "<point>"),
-]
+JointOrPoint3 = Annotated[Joint | Annotated[Point3, Tag("<point>")], BY_NAME_OR_PLACE]
 
 # Nearer to each other, the axes of a universal joint do not say which second axis was meant.
 MAX_COSINE_OF_SKEW = math.cos(math.radians(1.0))

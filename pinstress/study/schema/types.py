@@ -248,16 +248,12 @@ ThermalExpansion = Annotated[
 ]
 TiltStiffness = Annotated[Annotated[float, Quantity("torsional stiffness")], POSITIVE]
 
-JointOrPoint = Annotated[
-    Annotated[str, Tag("<joint>")] | Annotated[Point, Tag("<point>")],
-    Discriminator(lambda value: "<joint>" if isinstance(value, str) else "<point>"),
-]
+Joint = Annotated[str, Tag("<joint>")]
+BY_NAME_OR_PLACE = Discriminator(lambda x: "<joint>" if isinstance(x, str) else "<point>")
+JointOrPoint = Annotated[Joint | Annotated[Point, Tag("<point>")], BY_NAME_OR_PLACE]
 
 Place3 = Annotated[list[Length], Field(min_length=2, max_length=3)]
-JointOrPlace = Annotated[
-    Annotated[str, Tag("<joint>")] | Annotated[Place3, Tag("<point>")],
-    Discriminator(lambda value: "<joint>" if isinstance(value, str) else "<point>"),
-]
+JointOrPlace = Annotated[Joint | Annotated[Place3, Tag("<point>")], BY_NAME_OR_PLACE]
 
 LimitLoads = Annotated[
     Annotated[Literal["auto", "always", "never"], Tag("<way>")]
