@@ -1,5 +1,5 @@
-"""The estimated diameters of a run's first screen, beside those that `pinstress size` finds, and the
-stress over mean pressure of pins with large diameters, which the estimates take.
+"""The estimated diameters of a run, beside those that `pinstress size` finds, and the stress over
+mean pressure of pins with large diameters, which the estimates take.
 """
 
 from __future__ import annotations

@@ -143,7 +143,7 @@ def test_what_is_open_of_the_joint_is_that_of_the_changed_study(engine: Engine) 
         quick(engine, changes),
         run(changed_study(engine.study, changes))["P", "pull"],
     )
-    over, of = (x.joint and x.joint.range for x in (ours, theirs))
+    over, of = (x.joint.range if x.joint else None for x in (ours, theirs))
     assert over is not None
     assert of is not None
     rubbed, expected = (
