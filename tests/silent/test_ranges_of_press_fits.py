@@ -63,7 +63,7 @@ def test_a_pin_that_may_be_pressed_in_does_not_relieve_its_bushing() -> None:
         ring(clearance=-0.0003, range={"clearance": [-0.0003, 0.0]}),
     )
     assert pressed_bushing(least)[0].demand == pytest.approx(BORE, abs=1.0)
-    assert (pressed_bushing(most)[0].demand or 24e3) < 24e3
+    assert (pressed_bushing(most)[0].demand or 0.0) < 24e3
     for wall in (0, 1):
         ends = [pressed_bushing(x)[wall].demand or 0.0 for x in (least, most)]
         assert pressed_bushing(over)[wall].demand == pytest.approx(max(ends), rel=1e-9)

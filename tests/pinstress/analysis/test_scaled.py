@@ -143,12 +143,13 @@ def test_what_is_open_of_the_joint_is_that_of_the_changed_study(engine: Engine) 
         quick(engine, changes),
         run(changed_study(engine.study, changes))["P", "pull"],
     )
-    over, of = (x.joint.range if x.joint else None for x in (ours, theirs))
-    assert over is not None
-    assert of is not None
-    rubbed, expected = (
-        {v.value: v.max_von_mises for v in x.variations if v.what == FRICTION} for x in (over, of)
-    )
+    every: list[dict[str, float]] = []
+    for row in (ours, theirs):
+        assert row.joint is not None
+        assert row.joint.range is not None
+        over = row.joint.range.variations
+        every.append({v.value: v.max_von_mises for v in over if v.what == FRICTION})
+    rubbed, expected = every
     assert len(expected) == 3
     assert rubbed == pytest.approx(expected, rel=0.1)
 
