@@ -168,12 +168,12 @@ class Scene:
     @cached_property
     def levers(self) -> list[int | None]:
         """The joint by which each applied load is joined to its body: the nearest one at first;
-        None for a load at a joint, and for a body without joints.
+        None for a load at a joint, and for a body without any.
         """
         first = self.skeleton.position[self.instants[0]]
         nearest = list[int | None]()
         for load, (point, _) in zip(self.skeleton.applied, self.applied, strict=True):
-            joints = self.members[self.skeleton.bodies.index(load.body)]
+            joints = [self.skeleton.joints.index(x) for x in self.skeleton.joints_of(load.body)]
             away = np.linalg.norm(first[joints] - point[0], axis=1)
             off = bool(joints) and away.min() > MIN_LEVER * self.size
             nearest.append(joints[int(away.argmin())] if off else None)

@@ -74,6 +74,10 @@ class Skeleton:
         """The forces, those across the plane last."""
         return (*self.applied, *self.aside)
 
+    def joints_of(self, body: str) -> tuple[str, ...]:
+        """Return the joints on a body; none of a floating pin, which is not drawn as a body."""
+        return self.links[self.bodies.index(body)] if body in self.bodies else ()
+
 
 def planar_skeleton(motion: LinkageMotion) -> Skeleton:
     """Return the skeleton of a planar linkage, which lies at z = 0 with its pins along z."""

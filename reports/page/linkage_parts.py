@@ -127,7 +127,7 @@ def levers(at: Instant, panel: LinkagePanel, points: Points) -> Iterable[str]:
     """Yield a line from every force to the nearest joint of the body on which it acts."""
     skeleton = at.skeleton
     for load in skeleton.forces:
-        joints = skeleton.links[skeleton.bodies.index(load.body)]
+        joints = skeleton.joints_of(load.body)
         acting = panel.pixels(load.position[min(at.k, len(load.position) - 1)])
         away = [points[joint] - acting for joint in joints]
         nearest = min(away, key=lambda d: float(np.hypot(*d)), default=np.zeros(2))

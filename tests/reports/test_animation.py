@@ -133,9 +133,10 @@ def test_a_load_off_the_joints_is_joined_to_the_nearest_of_its_body(pushed: Resu
     load = motion.applied[0]
     there = motion.joint_position[:, 1] * 0.9 + motion.joint_position[:, 0] * 0.1
     off = replace(load, position=there)
-    aside = Reader(render(replace(pushed, motion=(replace(motion, applied=(load, off)),))))
+    pin = replace(off, body="pin C")  # a weight of a floating pin, which is no body here
+    aside = Reader(render(replace(pushed, motion=(replace(motion, applied=(load, off, pin)),))))
     levers = [a["lever"] for a in aside.data["applied"]]
-    assert levers == [None, 1]
+    assert levers == [None, 1, None]
     assert [a["data-lever"] for a in aside.having("data-lever") if "d" in a] == ["1"]
 
 

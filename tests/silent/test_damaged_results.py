@@ -97,7 +97,7 @@ def engineless(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(view_command, "render_pin", drawn)
     monkeypatch.setattr(plots_command, "draw_plot", lambda *_: [])
     monkeypatch.setattr(plots_command, "typeset", lambda *_: b"%PDF")
-    monkeypatch.setattr(compare_command, "svg", lambda _: "<svg></svg>")
+    monkeypatch.setattr(plots_command, "svg", lambda _: "<svg></svg>")
 
 
 def require_said(made: subprocess.CompletedProcess[str], about: object) -> None:
