@@ -29,7 +29,7 @@ from fea.core.requirement import DECIDED_TEXT, Requirement, decided
 from fea.core.zone import Zone
 from fea.harmonic.evaluate import Harmonic
 from fea.harmonic.first_mesh import FirstMesh
-from fea.solve.refine import refine, zones_of
+from fea.solve.refine import posed_for, refine, zones_of
 from fea.support.prescribed import PrescribedSupport
 from fea.support.support import HeldPin, PinProblem, Progress, Solution, StressReading, Support
 from geometry import ArgumentError, CutPin, Pin, body_of_revolution
@@ -68,14 +68,10 @@ class Attempt:
 
     def refined(self, model: Model, why: Reason | None = None) -> dict[str, Solution]:
         """Solve the cases on finer and finer meshes of a model."""
-        problem, requirement, held = self.problem, self.requirement, self.held
-        if why is None:
-            zones = tuple[Zone, ...]()
-            if model.name == "harmonic":
-                cases = tuple(held.start(case.case) for case in problem.cases)
-                zones = zones_of(held.pin, held.clamps, problem.material, cases, requirement)
-            why = chosen(requirement, model.name, problem.material, zones)
-        return refine(model, held, problem, requirement, why, self.progress)
+        problem, requirement = self.problem, self.requirement
+        posed = posed_for(model, self.held, problem, requirement)
+        why = why or chosen(requirement, model.name, problem.material, posed.zones)
+        return refine(model, posed, self.held, problem, requirement, why, self.progress)
 
 
 @dataclass(frozen=True)

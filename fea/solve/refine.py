@@ -83,6 +83,7 @@ def zones_of(
 
 def refine(
     model: Model,
+    posed: MeshProblem,
     held: HeldPin,
     problem: PinProblem,
     requirement: Requirement,
@@ -91,12 +92,12 @@ def refine(
 ) -> dict[str, Solution]:
     """Solve finer and finer meshes until every case is converged or decided, or a limit is reached.
 
+    posed: the problem of the held pin as the model takes it (`posed_for`).
     why: the reason for the model.
 
     Raises: MeshError, SolveError.
     """
     meshes, material = model.meshes, problem.material
-    posed = posed_for(model, held, problem, requirement)
     seen = {
         c.case: MeshHistory(held.pin.name, c.case, model.name, (), (), meshes) for c in posed.cases
     }
