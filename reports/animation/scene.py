@@ -18,7 +18,6 @@ from reports.format.drawing.projection import PLANE, Projection, isometric, thre
 from reports.format.drawing.svg_labels import label_offsets
 
 MAX_ARROW_LENGTH, MAX_SPACE_ARROW_LENGTH = 120.0, 80.0  # arrow; in space, which needs room
-MIN_LEVER = 1e-6  # of the linkage's size: a load is nearer to its joint than round-off
 APPLIED_GAP = 9.0  # between the tip of an applied load and its point, at which a joint may be
 LABELLED_LENGTH_FACTOR = 1.2  # of an applied load's arrow with the room for its size
 AXIS_REACH, PIN_REACH = 34.0, 20.0  # from a joint: its axis, and the pin about it
@@ -167,17 +166,9 @@ class Scene:
 
     @cached_property
     def levers(self) -> list[int | None]:
-        """The joint by which each applied load is joined to its body: the nearest one at first;
-        None for a load at a joint, and for a body without any.
-        """
-        first = self.skeleton.position[self.instants[0]]
-        nearest = list[int | None]()
-        for load, (point, _) in zip(self.skeleton.applied, self.applied, strict=True):
-            joints = [self.skeleton.joints.index(x) for x in self.skeleton.joints_of(load.body)]
-            away = np.linalg.norm(first[joints] - point[0], axis=1)
-            off = bool(joints) and away.min() > MIN_LEVER * self.size
-            nearest.append(joints[int(away.argmin())] if off else None)
-        return nearest
+        """The joint by which each applied load is joined to its body, at first; None without."""
+        first = self.instants[0]
+        return [self.skeleton.lever(load, first) for load in self.skeleton.applied]
 
     @cached_property
     def couples(self) -> list[tuple[Floats, Floats]]:

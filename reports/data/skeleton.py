@@ -11,6 +11,7 @@ from pinbase.dimensions import Floats, Lengths, Moments, Times
 from reports.data.motion import AppliedForce, LinkageMotion, PitchCurve
 
 Vector = tuple[float, float, float]
+MIN_LEVER = 1e-6  # of the linkage's size: a load is nearer to its joint than round-off
 
 
 @dataclass(frozen=True)
@@ -74,9 +75,18 @@ class Skeleton:
         """The forces, those across the plane last."""
         return (*self.applied, *self.aside)
 
-    def joints_of(self, body: str) -> tuple[str, ...]:
-        """Return the joints on a body; none of a floating pin, which is not drawn as a body."""
-        return self.links[self.bodies.index(body)] if body in self.bodies else ()
+    def lever(self, load: AppliedForce, k: int) -> int | None:
+        """Return the number of the joint by which a force is joined to its body, the nearest at an
+        instant; None for a force at a joint, and on a floating pin, which is not drawn as a body.
+        """
+        on_body = self.links[self.bodies.index(load.body)] if load.body in self.bodies else ()
+        joints, places = [self.joints.index(name) for name in on_body], self.position[k]
+        acting = load.position[min(k, len(load.position) - 1)]
+        away = {j: float(np.linalg.norm(places[j] - acting)) for j in joints}
+        nearest = min(away, key=away.__getitem__, default=None)
+        if nearest is None or away[nearest] <= MIN_LEVER * np.ptp(places, axis=0).max():
+            return None
+        return nearest
 
 
 def planar_skeleton(motion: LinkageMotion) -> Skeleton:

@@ -127,12 +127,9 @@ def levers(at: Instant, panel: LinkagePanel, points: Points) -> Iterable[str]:
     """Yield a line from every force to the nearest joint of the body on which it acts."""
     skeleton = at.skeleton
     for load in skeleton.forces:
-        joints = skeleton.joints_of(load.body)
-        acting = panel.pixels(load.position[min(at.k, len(load.position) - 1)])
-        away = [points[joint] - acting for joint in joints]
-        nearest = min(away, key=lambda d: float(np.hypot(*d)), default=np.zeros(2))
-        if nearest.any():
-            yield line("lever", acting + nearest, acting)
+        if (joint := skeleton.lever(load, at.k)) is not None:
+            acting = panel.pixels(load.position[min(at.k, len(load.position) - 1)])
+            yield line("lever", points[skeleton.joints[joint]], acting)
 
 
 def support(at: Floats, scale: float = 1.0) -> str:
