@@ -40,28 +40,30 @@ FACE_FORMULA = f"√(({BENDING_TERM})² + 3 × ({{T}} / {{W_t}} + 1.5 × {{V}} /
 )  # fmt: skip
 def lug_out_of_plane(text: CheckText, s: Situation) -> list[Margin]:
     """The margins of lugs with a shank whose links have such loads; for others, what they lack."""
-    margins, lacking = list[Margin](), list[str]()
-    for k in _bent(s):
-        lug = s.lug(s.loads.surfaces[k])
-        angle = shank_angle(s, lug) if lug is not None else None
-        if lug is None or lug.shank is None:
-            lacking.append(f"lug.{s.loads.surfaces[k]}.shank")
+    margins, lacking, bent = list[Margin](), list[str](), _bent(s)
+    for k, lug in bent:
+        angle = shank_angle(s, lug)
+        if lug.shank is None:
+            lacking.append(f"lug.{lug.connection}.shank")
         elif angle is None:
             lacking.append(f"lug.{lug.connection}.shank.angle")
         else:
             margins += _of_lug(text, s, lug, lug.shank, _Actions.on(s, k, angle))
-    if _bent(s) and _structure_reacts(s):
+    if bent and _structure_reacts(s):
         lacking.append(STRUCTURE_NEED)
     return [*margins, text.lacks(s, *lacking)] if lacking else margins
 
 
-def _bent(s: Situation) -> list[int]:
-    """The numbers of the loaded lugs that have a force along the pin or a moment across it."""
+def _bent(s: Situation) -> list[tuple[int, Lug]]:
+    """The lugs that have a force along the pin or a moment across it, with the numbers of their
+    loads.
+    """
     least = MIN_SHARE * float(np.abs(s.loads.forces).max(initial=0.0))
     along = np.abs(s.loads.forces[..., 2]).max(axis=0, initial=0.0)
     turning = np.abs(_moments(s)[..., :2]).max(axis=(0, 2), initial=0.0)
     bent = (along > least) | (turning > least * s.pin.length)
-    return [k for k, name in enumerate(s.loads.surfaces) if bent[k] and s.lug(name) is not None]
+    lugs = map(s.lug, s.loads.surfaces)
+    return [(k, lug) for k, lug in enumerate(lugs) if bent[k] and lug is not None]
 
 
 def _moments(s: Situation) -> Floats:
