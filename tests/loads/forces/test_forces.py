@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.interpolate import PchipInterpolator
@@ -63,6 +65,23 @@ def test_the_monotone_cubic_is_that_of_scipy() -> None:
     np.testing.assert_allclose(ours, PchipInterpolator(*ROWS)(at), atol=1e-13)
     two = ForceTable((0.0, 2.0), (1.0, 5.0), interpolation="monotone")
     np.testing.assert_allclose(two(at[:51]), 1.0 + 2.0 * at[:51], atol=1e-14)
+
+
+def test_the_monotone_cubic_neither_overshoots_nor_turns_between_rows() -> None:
+    """By properties that need no second program: the values of the rows, flat beside extremes, and,
+    inside a rise, the slope that Fritsch and Carlson's weighted harmonic mean has.
+    """
+    flat = ForceTable(*ROWS, interpolation="monotone")
+    np.testing.assert_allclose(flat(np.array(ROWS[0])), ROWS[1], atol=1e-14)
+    for x, y in zip(pairwise(ROWS[0]), pairwise(ROWS[1]), strict=True):
+        between = flat(np.linspace(*x, 50))
+        assert min(y) - 1e-12 <= between.min() <= between.max() <= max(y) + 1e-12
+        assert (np.diff(between) * (y[1] - y[0]) >= -1e-12).all()
+    rising = ForceTable((0.0, 1.0, 3.0), (0.0, 1.0, 7.0), interpolation="monotone")
+    step = 1e-6
+    slope = float(np.diff(rising(np.array([1.0 - step, 1.0 + step])))[0]) / (2.0 * step)
+    w1, w2 = 2.0 * 2.0 + 1.0, 2.0 + 2.0 * 1.0  # widths 1 and 2, slopes 1 and 3
+    assert slope == pytest.approx((w1 + w2) / (w1 / 1.0 + w2 / 3.0), rel=1e-6)
 
 
 @each("interpolation", ["linear", "monotone"])

@@ -95,16 +95,9 @@ forces = { one = [10000, 0], other = [-10000, 0] }
 tolerance = 0.05
 joints = "contact"
 """
-ON_STRUCTURE = """
-title = "An eye beside the middle of a clevis that holds still"
-units = "mm-N-s"
-[material.steel]
-youngs_modulus = "210 GPa"
-poisson_ratio = 0.3
-yield_strength = "500 MPa"
-[pin.P]
-material = "steel"
-profile = [
+ON_STRUCTURE = (
+    SINGLE_SHEAR.partition("  {")[0]
+    + """
   { length = 20, diameter = 20, name = "left" },
   { length = 2, diameter = 20 },
   { length = 20, diameter = 20, connection = "eye" },
@@ -126,6 +119,7 @@ forces = { eye = [0, 10000] }
 tolerance = 0.05
 joints = "contact"
 """
+)
 NOTHING_HOLDS = QUICK.replace('clamp = ["start"]', "").replace("clamp", "# clamp")
 
 
