@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -55,6 +55,12 @@ class MeridianSide:
         """Whether it is parallel to the axis."""
         (r0, z0), (r1, z1) = self.start, self.end
         return self.centre is None and abs(r1 - r0) <= FACE_TOLERANCE * abs(z1 - z0)
+
+    def passes(self, at: RZ, near: float) -> bool:
+        """Whether it is across the axis and passes a point, at a distance from its ends."""
+        (r0, z0), (r1, z1) = sorted((self.start, self.end))
+        level = self.centre is None and max(abs(z0 - z1), abs(z0 - at[1])) <= near
+        return level and r0 + near < at[0] < r1 - near
 
     @property
     def radius(self) -> float:
@@ -148,7 +154,7 @@ def outlines(sides: Sequence[MeridianSide], near: float) -> tuple[list[Bend], li
     Raises: ValueError where the sides do not form one outline.
     """
     # The outer surface runs between the outermost points of both end faces.
-    chain = _chain(_connected(sides, near))
+    chain = _chain(_connected(_without_overhang(sides, near), near))
     places = [chain[0].start, *(side.end for side in chain)]
     low, high = min(z for _, z in places), max(z for _, z in places)
     first = max((p for p in places if p[1] - low <= near), key=lambda p: p[0])
@@ -165,6 +171,30 @@ def outlines(sides: Sequence[MeridianSide], near: float) -> tuple[list[Bend], li
         return _bends(shaft, near), _bends(_without_end_faces(core, low, high, near), near)
     before, after = _reversed(chain[:i]), _reversed(chain[j:])
     return _bends(chain[i:j], near), _blind(before, after, low, high, near)
+
+
+def _without_overhang(sides: Sequence[MeridianSide], near: float) -> list[MeridianSide]:
+    """The sides, of which plane faces end where others do.
+
+    A flat of a thinner part lets the face of the shoulder beside it reach further in, and a keyway
+    in a bore lets one reach further out.
+    """
+
+    def shared(at: RZ, among: Iterable[RZ]) -> bool:
+        return any(math.dist(at, other) <= 10.0 * near for other in among)
+
+    out = []
+    for side in sides:
+        ends = [p for other in sides if other is not side for p in (other.start, other.end)]
+        between = [p for p in ends if side.passes(p, 10.0 * near)]
+        start, end = (
+            min(between, key=lambda p: math.dist(p, at), default=at)
+            if at[0] > near and not shared(at, ends)
+            else at
+            for at in (side.start, side.end)
+        )
+        out.append(replace(side, start=start, end=end))
+    return out
 
 
 def _reversed(sides: Sequence[MeridianSide]) -> list[MeridianSide]:

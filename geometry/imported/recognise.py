@@ -1,8 +1,9 @@
 """Recognition of a CAD body as a turned profile with drilled and milled cuts.
 
 Faces of revolution about one axis give straight and circular parts of the section's outline, which
-is a chain of them from end to end. All other faces must be those of cuts. If the volume of the
-result agrees with that of the body, nothing was overlooked.
+is a chain of them from end to end; a prism gives the cylinder through its edges. All other faces
+must be those of cuts. If the volume of the result agrees with that of the body, nothing was
+overlooked.
 """
 
 from __future__ import annotations
@@ -16,7 +17,9 @@ import numpy as np
 
 from geometry.imported.body_file import BodyFile
 from geometry.imported.cad_mesh import face_names, solids_of
+from geometry.imported.drilled_faces import near
 from geometry.imported.outline_chain import MeridianSide, outlines
+from geometry.imported.prisms import corner_side, prisms
 from geometry.imported.recognised_cuts import CutFaces
 from geometry.imported.sampled_face import FACE_TOLERANCE, Axis, SampledFace, sampled_face
 from geometry.imported.solid_volume import solid_volume
@@ -155,6 +158,7 @@ def _recognised(
                 file, f"{face.name} is neither plane, cylinder, cone, torus nor sphere"
             )
         sides.append(side)
+    sides += [corner_side(prism) for prism in prisms(rest, near(size))]
     try:
         outside, bore = outlines(sides, FACE_TOLERANCE * size)
     except ValueError as error:

@@ -23,6 +23,7 @@ from geometry.imported.drilled_faces import (
     near,
     rounds_mouth,
 )
+from geometry.imported.prisms import prisms
 from geometry.imported.sampled_face import FACE_TOLERANCE, Axis, SampledFace
 from geometry.shape.drill import FLAT_TIP_ANGLE, Bottom
 from geometry.shape.features import Cut, outer_radius, radii
@@ -46,7 +47,10 @@ class CutFaces:
 
     def cuts(self, pin: Pin) -> tuple[Cut, ...]:
         """The cuts in a profile. Raises: ValueError with the name of a face of no known cut."""
-        planes = [f for f in self.faces if f.plane]
+        of_prisms = [p.face for prism in prisms(self.faces, self.near) for p in prism]
+        sides, _ = self._flats(of_prisms, ())
+        taken = {f.tag for f in of_prisms}
+        planes = [f for f in self.faces if f.plane and f.tag not in taken]
         # Cylinders first; then slots, which use some of them; then each remaining face belongs to a
         # cylinder, and what still remains must be flats with their fillets.
         across, along, bent = self._cylinders([f for f in self.faces if not f.plane])
@@ -64,7 +68,7 @@ class CutFaces:
         holes = [self._hole(pin, c) for c in across]
         left = [f for f in bent if f.tag not in used and not rounds_mouth(pin, f, holes)]
         passages = [self._passage(pin, c) for c in along]
-        return _once([*holes, *holes_aslant(left, self.size), *flats, *slots, *passages])
+        return _once([*holes, *holes_aslant(left, self.size), *sides, *flats, *slots, *passages])
 
     @property
     def near(self) -> float:
@@ -188,7 +192,7 @@ class CutFaces:
             f
             for f in planes
             if abs(abs(f.normals[0] @ k) - 1.0) < FACE_TOLERANCE
-            and float((f.points @ k).mean()) < float((rim @ k).max())
+            and self.near < float((f.points @ k).mean()) < float((rim @ k).max()) - self.near
             and np.abs(f.rim @ walls[0].normals[0]).max() <= h + self.near
             and f.rim[:, 2].max() > z0 + self.near
             and f.rim[:, 2].min() < z1 - self.near
