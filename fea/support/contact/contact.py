@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 
@@ -35,13 +35,13 @@ from fea.core.pin_loads import Floats
 from fea.support.bands import Bands
 from fea.support.contact.contact_answer import AdjointContact, Answer
 from fea.support.contact.contact_state import ContactState, wide_gap_half_angle
-from fea.support.contact.least_energy import any_forces, least_energy_cells, unsettled
+from fea.support.contact.least_energy import least_energy_cells, require_forces, unsettled
 from fea.support.contact.sectors import CellFlexibility, Sectors
 from pinbase.arrays import Mask
 
 # Limits of the iteration and of the descent, chosen by judgement. They decide how soon contact is
 # found; the contact itself is unique.
-MAX_ACTIVE_SET_STEPS = 60
+MAX_ACTIVE_SET_STEPS = 30
 # Of the loads: force of the first springs when they give as much as the largest gap. Their
 # softening where they pass on too little. Of 400 random light loads in loose lugs none took more
 # than five rounds.
@@ -59,6 +59,7 @@ SIGN_TOLERANCE = 1e-12  # of the largest pressure or gap: a wrong sign below it 
 SOFT_SPRING_STIFFNESS = 1e-13
 # Numbers kept of the responses of sets of cells, counted by one value of each cell and motion.
 MAX_KEPT_NUMBERS = 4_000_000
+MAX_KEPT_STATES = 64  # of loads: those of single instants are asked for again and again
 
 
 class ContactProblem:
@@ -138,6 +139,7 @@ class ContactProblem:
         largest = np.abs(self._motions).max(axis=0)  # a turn counts as the shift at the far end
         self._reach = np.where(largest > 0.0, largest, 1.0)
         self._answers: dict[bytes, Answer] = {}
+        self._states: dict[bytes, ContactState] = {}
         for made in ("_compliance", "mirrored"):
             self.__dict__.pop(made, None)
 
@@ -201,11 +203,16 @@ class ContactProblem:
             required = required[ALONG_X]
         elif self._even and self._along_x(required):
             return self.mirrored.solve(forces, couple, start, moments)
+        if (known := self._states.get(required.tobytes())) is not None:
+            return known
         acting = self._acting(forces, moments)
         first = self._facing(acting) if start is None else self._cells.first(start)
-        state = self._settled(required, first) or self._by_energy(required)
+        state = self._settled(required, first) or self._by_energy(required, first)
         if state is None:
             raise unsettled()
+        if len(self._states) == MAX_KEPT_STATES:
+            self._states.clear()
+        self._states[required.tobytes()] = state
         return state
 
     def _along_x(self, required: Floats) -> bool:
@@ -256,22 +263,24 @@ class ContactProblem:
             out[rows[ring] * len(self._cells) + k] = True
         return out & among
 
-    def _by_energy(self, required: Floats) -> ContactState | None:
+    def _by_energy(self, required: Floats, first: Mask) -> ContactState | None:
         """The contact found by descent of the energy, which finds every contact that exists; None
         where round-off hides it.
+
+        first: cells with which to begin.
         """
         size = float(np.abs(required / self._reach).max())
-        # Any pressures with the resultants are a start; without any there is no contact.
-        scaled = required / self._reach / (size or 1.0)
-        force = size * any_forces((self._motions / self._reach).T, scaled)
+        require_forces((self._motions / self._reach).T, required / self._reach / (size or 1.0))
         # The descent holds the pin by springs, whose far ends move by the loads: by all that the
         # springs have not passed on, until they have passed on everything (the method of
         # multipliers). Small parts of the loads need softer springs to get as far as the gaps.
         give = float(np.abs(self.bands.gap).max()) + size * self._softest
         spring, pull, missing = SPRING_FORCE * (size or 1.0) / give, required, required
+        force = np.maximum(self._answer(first).on_springs(pull, spring)[0], 0.0)
         for _ in range(MAX_SPRING_ROUNDS):
             least = partial(self._on_springs, pull=pull, spring=spring)
-            cells, force = least_energy_cells(force, least, self._chosen)
+            energy = partial(self._energy, pull=pull, spring=spring)
+            cells, force = least_energy_cells(force, least, energy, self._chosen)
             if (state := self._settled(required, cells)) is not None:
                 return state
             before, missing = missing, required - self._motions.T @ force
@@ -280,8 +289,18 @@ class ContactProblem:
                 spring *= SPRING_SOFTENING
         return None
 
-    def _on_springs(self, active: Mask, pull: Floats, spring: float) -> tuple[Floats, Floats]:
+    def _on_springs(
+        self, active: Mask, pull: Floats, spring: float
+    ) -> tuple[Floats, Callable[[], Floats]]:
         return self._answer(active).on_springs(pull, spring)
+
+    def _energy(self, force: Floats, pull: Floats, spring: float) -> float:
+        """The energy, N m, of forces (U,) on springs, N/m, which is least where these press."""
+        rows = np.flatnonzero(force)
+        some = force[rows]
+        stretched = (self._motions[rows].T @ some - pull) / self._reach
+        elastic = 0.5 * float(some @ (self._compliance[np.ix_(rows, rows)] @ some))
+        return elastic + float(self._open[rows] @ some + 0.5 * stretched @ stretched / spring)
 
     def _answer(self, active: Mask) -> Answer:
         """The response of given cells in contact, kept for later instants."""
@@ -300,18 +319,14 @@ class ContactProblem:
         force, yielding = np.zeros(len(active)), np.zeros(G.shape)
         soft = SOFT_SPRING_STIFFNESS / self._softest
         system, right = soft * np.diag(self._reach**2), np.zeros(G.shape[1])
-        C = C[rows]  # symmetric
         if len(rows):
-            factor = cho_factor(C[:, rows], lower=True, check_finite=False, overwrite_a=True)
+            between = C[np.ix_(rows, rows)]
+            factor = cho_factor(between, lower=True, check_finite=False, overwrite_a=True)
             given = np.column_stack([G[rows], -self._open[rows]])
             solved = cho_solve(factor, given, check_finite=False)
             yielding[rows], force[rows] = solved[:, :-1], solved[:, -1]
             system, right = system + G[rows].T @ solved[:, :-1], G[rows].T @ solved[:, -1]
-        both = np.column_stack([yielding[rows], force[rows]])
-        change = (both.T @ C).T
-        gap, moving = self._open + change[:, -1], G - change[:, :-1]
-        gap[rows], moving[rows] = 0.0, 0.0
-        return Answer(force, yielding, gap, moving, system, right, G, self._reach)
+        return Answer(rows, force, yielding, system, right, self._open, C, G, self._reach)
 
     def required_resultants(
         self,

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from fea.core.pin_loads import Floats
+from pinbase.arrays import Floats, Ints
 
 
 @dataclass(frozen=True)
@@ -30,25 +31,28 @@ class AdjointContact:
 class Answer:
     """The linear response of one active set of cells to the rigid motions.
 
-    force, gap: (U,) N and (U,) m without rigid motions.
-    yielding, moving: how much each rigid motion takes off the forces and adds to the gaps, (U, Y).
+    rows: numbers of the cells in contact, (A,).
+    force: (U,) N without rigid motions.
+    yielding: how much each rigid motion takes off the forces, (U, Y).
     system, right: equations (Y, Y), (Y,) of the motions, without the required resultants.
+    open: (U,) m, the gaps before any load. compliance: (U, U) m/N.
     motions: change of the gap by each motion, (U, Y).
     reach: the largest change of a gap by each motion, (Y,), 1 where it moves nothing.
     """
 
+    rows: Ints
     force: Floats
     yielding: Floats
-    gap: Floats
-    moving: Floats
     system: Floats
     right: Floats
+    open: Floats
+    compliance: Floats
     motions: Floats
     reach: Floats
 
-    def on_springs(self, pull: Floats, stiffness: float) -> tuple[Floats, Floats]:
-        """The forces and gaps where springs, N/m of what each motion moves at most, hold the lugs
-        and the pin, and pull with given resultants as long as nothing moves.
+    def on_springs(self, pull: Floats, stiffness: float) -> tuple[Floats, Callable[[], Floats]]:
+        """The forces, and what gives the gaps, where springs, N/m of what each motion moves at
+        most, hold the lugs and the pin, and pull with given resultants as long as nothing moves.
         """
         springs = stiffness * self.reach**2
         scale = np.outer(self.reach, self.reach)
@@ -58,7 +62,23 @@ class Answer:
             motion += np.linalg.solve(system, lost / self.reach) / self.reach
             force = self.force - self.yielding @ motion
             lost = self.motions.T @ force - pull - springs * motion
-        return force, self.gap + self.moving @ motion
+
+        def gaps() -> Floats:
+            pressed = force[self.rows] @ self.compliance[self.rows]
+            gap = self.open + pressed + self.motions @ motion
+            gap[self.rows] = 0.0
+            return np.asarray(gap)
+
+        return force, gaps
+
+    @cached_property
+    def _gaps(self) -> tuple[Floats, Floats]:
+        """The gaps (U,) without rigid motions, and what each of these adds to them, (U, Y)."""
+        both = np.column_stack([self.yielding[self.rows], self.force[self.rows]])
+        change = (both.T @ self.compliance[self.rows]).T  # symmetric
+        gap, moving = self.open + change[:, -1], self.motions - change[:, :-1]
+        gap[self.rows], moving[self.rows] = 0.0, 0.0
+        return gap, moving
 
     def motion(self, lost: Floats) -> Floats:
         """The motions (Y,) of least size that make up for lost resultants."""
@@ -85,4 +105,5 @@ class Answer:
             motion += self.motion(lost)
             force = self.force - self.yielding @ motion
             lost = self.motions.T @ force - required
-        return force, self.gap + self.moving @ motion, motion
+        gap, moving = self._gaps
+        return force, gap + moving @ motion, motion

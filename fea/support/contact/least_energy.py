@@ -8,7 +8,7 @@ fea.support.contact.contact, which may run in circles where hardly more cells to
 pin.
 
 Source: Lawson & Hanson, Solving Least Squares Problems (1974), chapter 23 (nonnegative least
-squares), here with several cells a step.
+squares), here with several cells a step, as long as they take energy away.
 """
 
 from __future__ import annotations
@@ -29,17 +29,22 @@ MAX_MINIMA_PER_CELL = 1.0
 FEASIBLE_RESIDUAL = 1e-6  # of the largest resultant: ten times the tolerance of HiGHS
 
 
+# Forces (U,), N, over given cells in contact, and what gives the gaps (U,), m, under them.
+Least = Callable[[Mask], tuple[Floats, Callable[[], Floats]]]
+
+
 def unsettled() -> SolveError:
     """The error that no set of cells in contact was found."""
     return SolveError("contact does not settle", "contact-unsettled")
 
 
-def any_forces(resultants: Floats, required: Floats) -> Floats:
-    """Forces of the cells (U,), none of them negative, that have the required resultants (Y,).
+def require_forces(resultants: Floats, required: Floats) -> None:
+    """Raise unless some forces of the cells, none of them negative, have the required resultants.
 
-    resultants: of a unit force of each cell, (Y, U). The largest one required is 1.
+    resultants: of a unit force of each cell, (Y, U).
+    required: (Y,), the largest of them 1.
 
-    Raises: SolveError where there are none.
+    Raises: SolveError.
     """
     from scipy.optimize import linprog  # takes long to import
 
@@ -59,25 +64,26 @@ def any_forces(resultants: Floats, required: Floats) -> Floats:
         raise SolveError(
             "the links leave a couple on the pin that no lug reacts", "couple-not-reacted"
         )
-    return np.asarray(np.maximum(least.x[:cells], 0.0))
 
 
 def least_energy_cells(
     force: Floats,
-    least: Callable[[Mask], tuple[Floats, Floats]],
+    least: Least,
+    energy: Callable[[Floats], float],
     chosen: Callable[[Floats, Mask, Mask], Mask],
 ) -> tuple[Mask, Floats]:
     """The cells (U,) in contact where the energy is least, and their forces (U,), N.
 
     force: any to begin with, (U,) N, none of them negative.
-    least: forces (U,) N and gaps (U,) m with which the energy is least over given cells in contact,
-    their forces of any sign.
+    least: forces (U,) N, of any sign, with which the energy is least over given cells in contact,
+    and what gives their gaps (U,) m.
+    energy: of forces (U,).
     chosen: which of the cells that overlap to close at once, by gaps, overlapping cells and cells
     in contact.
 
     Raises: SolveError where round-off hides the minimum.
     """
-    active, force, gap = _descent(force > 0.0, force, least)
+    active, force, gap = _descent(force > 0.0, force, least, energy)
     minima = {active.tobytes()}
     while len(minima) < MAX_MINIMA_PER_CELL * len(force):
         overlaps = ~active & (gap < -ROUND_OFF * np.abs(gap).max())
@@ -88,7 +94,7 @@ def least_energy_cells(
         # Closing the deepest cell alone always takes energy away; closing several may not, where
         # all of them open again.
         for closing in (chosen(gap, overlaps, active), deepest):
-            next_active, next_force, gap = _descent(active | closing, force, least)
+            next_active, next_force, gap = _descent(active | closing, force, least, energy)
             if next_active.tobytes() not in minima:
                 break
         else:
@@ -99,18 +105,23 @@ def least_energy_cells(
 
 
 def _descent(
-    active: Mask, force: Floats, least: Callable[[Mask], tuple[Floats, Floats]]
+    active: Mask, force: Floats, least: Least, energy: Callable[[Floats], float]
 ) -> tuple[Mask, Floats, Floats]:
     """The cells, forces and gaps of a minimum over some of the given cells, reached from forces
     that are not negative.
     """
-    active = active.copy()
+    active, now = active.copy(), energy(force)
     while True:
-        minimum, gap = least(active)
+        minimum, gaps = least(active)
         opening = np.flatnonzero(active & (minimum <= 0.0))
         if not len(opening):
-            return active, minimum, gap
-        # As far towards the minimum as no cell pulls; the first one that would is opened.
+            return active, minimum, gaps()
+        # All cells that would pull open at once where that takes energy away.
+        clipped = np.maximum(minimum, 0.0)
+        if (after := energy(clipped)) < now:
+            active[opening], force, now = False, clipped, after
+            continue
+        # Else as far towards the minimum as no cell pulls; the first one that would is opened.
         step = np.zeros(len(opening))
         loaded = force[opening] > 0.0
         at = opening[loaded]
@@ -118,3 +129,4 @@ def _descent(
         force = np.maximum(force + step.min() * (minimum - force), 0.0)
         opened = opening[step <= step.min() + ROUND_OFF]
         active[opened], force[opened] = False, 0.0
+        now = energy(force)
