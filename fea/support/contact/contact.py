@@ -203,7 +203,7 @@ class ContactProblem:
             required = required[ALONG_X]
         elif self._even and self._along_x(required):
             return self.mirrored.solve(forces, couple, start, moments)
-        if (known := self._states.get(required.tobytes())) is not None:
+        if start is None and (known := self._states.get(required.tobytes())) is not None:
             return known
         acting = self._acting(forces, moments)
         first = self._facing(acting) if start is None else self._cells.first(start)

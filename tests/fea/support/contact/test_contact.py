@@ -187,11 +187,11 @@ def test_without_clearance_forces_in_proportion_give_pressures_in_proportion() -
 
 
 def test_any_start_leads_to_the_same_answer() -> None:
-    cold = three(0.2).solve(FORK)
+    contact = three(0.2)
+    cold = contact.solve(FORK)
     for start in (np.ones((6, 32), bool), np.roll(cold.active, 9, axis=1)):
-        pressure = three(0.2).solve(FORK, start=start).pressure
-        assert pressure == pytest.approx(cold.pressure, abs=1e-9)
-    assert three(0.2).solve(FORK, start=cold.active).steps == 1
+        assert contact.solve(FORK, start=start).pressure == pytest.approx(cold.pressure, abs=1e-9)
+    assert contact.solve(FORK, start=cold.active).steps == 1
 
 
 def test_a_lug_that_carries_nothing_is_left_alone() -> None:
