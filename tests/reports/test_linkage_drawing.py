@@ -39,7 +39,7 @@ def centres(drawing: ET.Element) -> np.ndarray:
     )
 
 
-def linked(results: Results) -> tuple[Instant, tuple[Mark, ...]]:
+def linked(results: Results) -> tuple[Instant, list[Mark]]:
     """The linkage of the results and their pins on it, with links to their parts of the page."""
     at = governing_instant(results, pin_lines(results))
     assert at is not None
