@@ -101,7 +101,7 @@ def test_three_questions_are_answered_in_the_first_screen(page: Any) -> None:
     assert "Error of the maxima up to 1.8 %." in text
     assert "Even G would pass only if its stress were overestimated by 150 %" in text
     assert "Measure first: force over time at landing" in text
-    assert "not checked, needs ultimate_strength" in text
+    assert "ultimate load, not checked: rupture, 3 more need ultimate_strength; bearing" in text
 
 
 def test_the_linkage_shows_each_pin_with_its_factor_and_the_load(page: Any) -> None:

@@ -289,15 +289,16 @@ def test_the_matrix_hides_nothing_that_is_not_met() -> None:
     rows += [requirement(pin, "c0", "met", "bending", stated=False) for pin in "AB"]
     matrix = matrix_rows(rows)
     assert [(m.check, m.case) for m in matrix] == [
-        ("yield", "c3"), ("yield", "8 other cases"), ("shear", "c0"), ("other checks (1)", ""),
-        ("rupture", ""),
+        ("yield", "c3"), ("rupture", ""), ("yield", "8 other cases"), ("shear", "c0"),
+        ("other checks (1)", ""), ("", ""),
     ]  # fmt: skip
     assert matrix[0].cells == {"A": "missed", "B": "met"}
-    assert matrix[1].cells == {"A": "met", "B": "met"}
-    assert matrix[2].cells == {"A": "missed", "B": "met"}
-    assert matrix[3].cells == {"A": "met", "B": "met"}
-    assert matrix[4].needs == ("material.x.ultimate_strength",)
-    assert "met" not in matrix[4].cells.values()
+    assert matrix[1].cells == {"A": "not checked"}
+    assert matrix[2].cells == {"A": "met", "B": "met"}
+    assert matrix[3].cells == {"A": "missed", "B": "met"}
+    assert matrix[4].cells == {"A": "met", "B": "met"}
+    assert matrix[5].needs == {("ultimate_strength",): ["rupture"]}
+    assert "met" not in matrix[5].cells.values()
     worst = {p: min(r.outcome == "met" for r in rows if r.pin == p) for p in "AB"}
     shown = {p: min(m.cells.get(p, "met") == "met" for m in matrix) for p in "AB"}
     assert shown == worst
@@ -329,7 +330,31 @@ def test_a_comma_in_the_name_of_a_material_does_not_split_what_is_needed() -> No
     assert keys_in(needs) == keys
     assert keys_in("") == []
     row = RequirementRow("A", "c", "limit", "shear", 1.5, None, "not checked", needs)
-    assert list(matrix_rows([row])[0].needs) == keys
+    needed = ("shear_strength", "ultimate_strength", "shank")
+    assert matrix_rows([row])[-1].needs == {needed: ["shear"]}
+    without = replace(row, needs='analysis.limit_load other than "never", fatigue')
+    (words,) = matrix_rows([without])[-1].needs
+    assert words == ('analysis.limit_load other than "never"', "[fatigue]")
+
+
+def test_a_stated_requirement_is_in_the_matrix_where_it_was_not_checked(results: Results) -> None:
+    """Its cell was empty for a pin without a strength, as if nothing were required of it, and its
+    row was missing where no pin had one.
+    """
+    steel = "material.steel.shear_strength"
+    rows = [requirement("A", "c0", "met", "shear"), requirement("A", "c1", "met", "shear")]
+    rows += [requirement("B", c, "not checked", "shear", steel) for c in ("c0", "c1")]
+    rows += [requirement(p, c, "not checked", "rupture", "material.steel.ultimate_strength")
+             for p in "AB" for c in ("c0", "c1")]  # fmt: skip
+    *stated, last = matrix_rows(rows)
+    assert [(m.check, m.case, m.required, m.cells) for m in stated] == [
+        ("shear", "c0", 10.0, {"A": "met", "B": "not checked"}),
+        ("shear", "c1", 10.0, {"A": "met", "B": "not checked"}),
+        ("rupture", "", 10.0, {"A": "not checked", "B": "not checked"}),
+    ]
+    assert last.needs == {("shear_strength",): ["shear"], ("ultimate_strength",): ["rupture"]}
+    lacking = overview_part(results, {}, "")["matrix"][-1]
+    assert all(" need" in text for text in lacking["needs"])
 
 
 def test_columns_without_any_content_are_left_out(few: Results) -> None:
