@@ -34,6 +34,7 @@ from reports.text.certainty import (
     flips_words,
     given_words,
     measure_first,
+    needed_error,
     range_words,
     skipped_checks,
 )
@@ -161,7 +162,8 @@ def _about(results: Results, pins: Sequence[str]) -> str:
 
 
 def _accurate(lines: Sequence[PinLine]) -> list[str]:
-    return [f"Error of the maxima {text}" for text in accuracy(lines)]
+    told = [*(f"Error of the maxima {text}" for text in accuracy(lines)), *needed_error(lines)]
+    return [" ".join(told)] if told else []
 
 
 def _nothing(lines: Sequence[PinLine]) -> str:
