@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 from pinbase.grouped import grouped
 from reports.data.requirements import MET, NOT_CHECKED, OUTCOMES, RequirementRow, keys_in
@@ -18,7 +18,8 @@ class MatrixRow:
     check, level, case: of the requirement; the first names several checks.
     required: the factor; None where it differs.
     cells: by pin its outcome, the worst of several; a pin without the requirement is left out.
-    needs: what is missing, where it was not checked.
+    needs: what is missing, where nothing of it was checked, with the checks that lack it; a key
+    without the pin, lug or material that has it.
     """
 
     check: str
@@ -26,16 +27,15 @@ class MatrixRow:
     case: str
     required: float | None
     cells: dict[str, str]
-    needs: tuple[str, ...] = ()
+    needs: dict[tuple[str, ...], list[str]] = field(default_factory=dict)
 
 
 def matrix_rows(rows: Sequence[RequirementRow]) -> list[MatrixRow]:
     """Return stated requirements, then the other checks that are not met, all others in one row,
-    and what was not checked.
+    and for each level what was not checked, stated or not, with what it needs.
     """
-    checked = [row for row in rows if row.outcome != NOT_CHECKED]
-    stated = _by_case(row for row in checked if row.stated)
-    derived = [r for r in checked if not r.stated]
+    stated = _by_case(row for row in rows if row.stated)
+    derived = [r for r in rows if not r.stated and r.outcome != NOT_CHECKED]
     by_check = grouped(((r.check, r.level), r) for r in derived).items()
     missed = [x for x in by_check if any(r.outcome != MET for r in x[1])]
     unmet = [_together(check, level, _case(some), some) for (check, level), some in missed]
@@ -43,15 +43,22 @@ def matrix_rows(rows: Sequence[RequirementRow]) -> list[MatrixRow]:
     levels = " and ".join(dict.fromkeys(r.level for r in rest))
     count = len({r.check for r in rest})
     others = [_together(f"other checks ({count})", levels, "", rest)] if rest else []
-    open_ = [
-        _together(
-            ", ".join(dict.fromkeys(r.check for r in some)), level, "", some,
-            tuple(dict.fromkeys(part for r in some for part in keys_in(r.needs))),
-        )
-        for level, some in grouped((r.level, r) for r in rows
-                                   if r.outcome == NOT_CHECKED).items()
-    ]  # fmt: skip
+    unchecked = grouped((r.level, r) for r in rows if r.outcome == NOT_CHECKED)
+    open_ = [replace(_together("", level, "", some), needs=_needs(some))
+             for level, some in unchecked.items()]  # fmt: skip
     return [*stated, *unmet, *others, *open_]
+
+
+def _needs(rows: Iterable[RequirementRow]) -> dict[tuple[str, ...], list[str]]:
+    """Return the checks of rows by what they need."""
+    bare = ((tuple(dict.fromkeys(map(_bare, keys_in(r.needs)))), r.check) for r in rows)
+    return {k: [*dict.fromkeys(v)] for k, v in grouped(bare).items()}
+
+
+def _bare(key: str) -> str:
+    """Return the last part of a key, a table in brackets, and other words as they are."""
+    name = key.rpartition(".")[2]
+    return key if not name.isidentifier() else name if name != key else f"[{key}]"
 
 
 def worst_cell(row: MatrixRow, pins: Iterable[str]) -> str:
@@ -71,7 +78,9 @@ def _by_case(rows: Iterable[RequirementRow]) -> list[MatrixRow]:
     for (check, level), of_check in grouped(((r.check, r.level), r) for r in rows).items():
         by_case = [*grouped((r.case, r) for r in of_check).items()]
         shown, met = by_case, []
-        if len(by_case) > MAX_CASE_ROWS:
+        if all(r.outcome == NOT_CHECKED for r in of_check):
+            shown = [("", of_check)]
+        elif len(by_case) > MAX_CASE_ROWS:
             shown = [x for x in by_case if any(r.outcome != MET for r in x[1])]
             met = [r for _, some in by_case for r in some if all(q.outcome == MET for q in some)]
         matrix += [_together(check, level, case, some) for case, some in shown]
@@ -86,14 +95,11 @@ def _rank(outcome: str) -> int:
     return OUTCOMES.index(outcome)
 
 
-def _together(
-    check: str, level: str, case: str, rows: Sequence[RequirementRow], needs: tuple[str, ...] = ()
-) -> MatrixRow:
+def _together(check: str, level: str, case: str, rows: Sequence[RequirementRow]) -> MatrixRow:
     cells: dict[str, str] = {}
     for row in rows:
         known = cells.get(row.pin, row.outcome)
         cells[row.pin] = min(known, row.outcome, key=_rank)
     required = {row.required for row in rows}
-    return MatrixRow(
-        check, level, case, required.pop() if len(required) == 1 else None, cells, needs
-    )
+    factor = required.pop() if len(required) == 1 else None
+    return MatrixRow(check, level, case, factor, cells)

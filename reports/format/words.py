@@ -17,6 +17,7 @@ from reports.format.ranges import factor_range, factor_text
 from reports.format.units import unit_name
 
 BEYOND_YIELD = "beyond yield"
+WITHIN_ERROR = "within its error"  # of a limit, so that a row is not decided
 MAX_NAMED_PINS = 6  # in the first sentence; of more, their number is given
 MAX_NAMED_PROPERTIES = 4  # properties of a range; of more, their number is given
 
@@ -54,7 +55,8 @@ OUTCOME_MEANINGS = {
     DEPENDS: "the pin meets its required safety factor as the study describes it, but not within "
     "the range of its joint or of its landing, where the value at which it fails is named, or not "
     "beneath its contact with lugs, where the depth is named.",
-    FAILS: "the pin does not meet its required safety factor.",
+    FAILS: "the pin does not meet its required safety factor as the study describes it, whether or "
+    "not it would elsewhere within these ranges.",
     NOT_DECIDED: "the results do not show whether the pin meets it; the verdict gives the reason, "
     "or the factor is within its error of the required one, or the material has no yield strength.",
 }
@@ -86,7 +88,7 @@ def undecided_because(pin: PinResult) -> str:
         return "no stress"
     if pin.verdict == "converged" and pin.safety_factor is not None:
         limit = "yield" if pin.required is None else "the required factor"
-        return f"within its error of {limit}"
+        return f"{WITHIN_ERROR} of {limit}"
     reasons = {
         "unconverged": "not converged",
         "converged": "no yield strength",
@@ -101,7 +103,8 @@ def result_words(pin: PinResult) -> str:
     "depends: joint".
     """
     if pin.outcome == NOT_DECIDED:
-        return f"{pin.outcome}: {undecided_because(pin)}"
+        why = undecided_because(pin)
+        return f"{pin.outcome}: {WITHIN_ERROR if why.startswith(WITHIN_ERROR) else why}"
     if pin.outcome == DEPENDS:
         return f"{pin.outcome}: {over_words(pin.depends_on)}"
     return pin.outcome

@@ -34,6 +34,7 @@ from reports.text.certainty import (
     flips_words,
     given_words,
     measure_first,
+    needed_error,
     range_words,
     skipped_checks,
 )
@@ -44,7 +45,7 @@ MAX_PEAKS = 5  # pins whose largest stress the page tells
 MAX_UNKNOWNS = 6  # rows of the table of what is open
 LABEL_AT_END = 12.0  # per cent of the axis: nearer to its left end, the label begins at its line
 LABEL_WIDTH = 20.0  # of "1.5 required", per cent of the axis: no tick is written so near to it
-MAX_CHECKS = 3  # of a row of the matrix by name
+MAX_CHECKS = 1  # with one need, of a row of the matrix, by name
 MAX_MATRIX_PINS = 14  # columns of the matrix of requirements; of more pins the best share the last
 LONG_NAME = 16  # characters: longer names wrap, or stand upright above a column
 MARKS = {
@@ -161,7 +162,8 @@ def _about(results: Results, pins: Sequence[str]) -> str:
 
 
 def _accurate(lines: Sequence[PinLine]) -> list[str]:
-    return [f"Error of the maxima {text}" for text in accuracy(lines)]
+    told = [*(f"Error of the maxima {text}" for text in accuracy(lines)), *needed_error(lines)]
+    return [" ".join(told)] if told else []
 
 
 def _nothing(lines: Sequence[PinLine]) -> str:
@@ -240,14 +242,15 @@ def _columns(pins: Sequence[str]) -> dict[str, Sequence[str]]:
 
 
 def _matrix_row(row: MatrixRow, columns: Iterable[Sequence[str]]) -> dict[str, Any]:
-    needs = [need.rpartition(".")[2] for need in row.needs]
+    needs = [(_few(checks), keys, len(checks) > 1) for keys, checks in row.needs.items()]
+    told = [f"{checks} need{'s' * (not many)} {' and '.join(k)}" for checks, k, many in needs]
     return {
-        "check": _few(row.check.split(", ")) if needs else row.check,
+        "check": row.check,
         "level": row.level,
         "case": row.case,
         "required": "" if row.required is None else short(row.required),
-        "needs": list(dict.fromkeys(needs)),
-        "title": row.check,
+        "needs": told,
+        "title": ", ".join(check for checks in row.needs.values() for check in checks),
         "cells": [
             (MARKS.get(state, ""), _css(CLASSES.get(state, state)), state)
             for state in (worst_cell(row, pins) for pins in columns)

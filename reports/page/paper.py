@@ -113,7 +113,7 @@ def _styled(drawing: str | None, style: str) -> str | None:
     """Return an SVG drawing without links and with its style."""
     if not drawing:
         return None
-    plain = re.sub(r'<a href="[^"]*">|</a>', "", drawing)
+    plain = re.sub(r"</?a\b[^>]*>", "", drawing)
     return plain.replace(">", f"><style>{style}</style>", 1)
 
 

@@ -36,28 +36,41 @@ def accuracy(lines: Sequence[PinLine]) -> Content:
     return [f"up to {engineering(100.0 * most, 2)} %." if most >= 1e-4 else "below 0.01 %."]
 
 
-def certainty(lines: Sequence[PinLine]) -> Content:
-    """Return sentences on the pins that fail whatever is open, and on the error with which the one
-    nearest to the factor would not.
+def needed_error(lines: Sequence[PinLine]) -> Content:
+    """Return a sentence on the error with which the failing pin nearest to its factor would pass;
+    nothing where none fails.
     """
-    rows = [x.row for x in lines if x.row.decided is False and x.row.safety_factor]
+    rows = _failing(lines)
     if not rows:
         return []
     nearest = max(rows, key=lambda r: r.safety_factor or 0.0)
     needed = (nearest.required or 1.0) / (nearest.safety_factor or 1.0) - 1.0
-    even = "Even " if len(rows) > 1 else ""
+    which = f"{'even ' * (len(rows) > 1)}{nearest.pin}"
+    return [f"To pass, {which} would need an error of {engineering(100.0 * needed, 2)} %."]
+
+
+def certainty(lines: Sequence[PinLine]) -> Content:
+    """Return a sentence on the pins that fail whatever is open, those that do as described but not
+    for all of it, and those that are safe as described but fail for some of it.
+    """
+    rows = _failing(lines)
     whatever = [r.pin for r in rows if not r.depends_on and factor_spread(r)]
     within = [r.pin for r in rows if r.depends_on]
+    depending = [x.pin for x in lines if x.check.row is not None and x.outcome == DEPENDS]
     parts = []
     if whatever:
-        parts.append(f"{names(whatever)} {state(FAILS, whatever)} whatever the open values are")
+        parts.append(f"{names(whatever)} {state(FAILS, whatever)} at all open values")
     if within:
-        parts.append(f"{names(within)} {'are' if len(within) > 1 else 'is'} safe at some of them")
-    return [
-        *([f"{'; '.join(parts)}."] if parts else []),
-        f"{even}{nearest.pin} would pass only if its stress were overestimated by "
-        f"{engineering(100.0 * needed, 2)} %.",
-    ]
+        fail, are = ("fail", "are") if len(within) > 1 else ("fails", "is")
+        parts.append(f"{names(within)} {fail} as described and {are} safe at some")
+    if rows and depending:
+        are, fail = ("are", "fail") if len(depending) > 1 else ("is", "fails")
+        parts.append(f"{names(depending)} {are} safe as described and {fail} at some")
+    return [f"{'; '.join(parts)}."] if parts else []
+
+
+def _failing(lines: Sequence[PinLine]) -> list[PinResult]:
+    return [x.row for x in lines if x.row.decided is False and x.row.safety_factor]
 
 
 def skipped_checks(results: Results, lines: Sequence[PinLine], formulas: bool = True) -> Content:

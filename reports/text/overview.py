@@ -11,10 +11,11 @@ from reports.data.changes import Remedy, command
 from reports.data.decision import largest_factor, limit
 from reports.data.overview import GOOD, PinLine, QuietCase, quiet_cases
 from reports.data.results import PinShape, Results
+from reports.data.row import PinResult
 from reports.format.numbers import engineering, short
 from reports.format.place_words import action, place_words
 from reports.format.ranges import factor_range
-from reports.format.words import undecided_because
+from reports.format.words import WITHIN_ERROR, undecided_because
 from reports.tables.strength.changes import singularity_remedies, unsized_notes
 from reports.text.certainty import Content, flips, state
 from reports.text.load_path import load_path, names
@@ -86,12 +87,12 @@ def actions(results: Results, lines: Sequence[PinLine], study: str = "") -> Acti
     study: its path, by default its name.
     """
     repairs = [*lug_advice(results, lines), *_exceeded(lines), *_singular(lines)]
-    repairs += unsized_notes(results)
+    repairs += [*unsized_notes(results), *_near(lines)]
     if not results.changes:
         return Actions(repairs, [], "")
     needed = [line for line in lines if line.diameter and line.diameter.needed]
     remarks = [ESTIMATES_TEXT] if needed else []
-    remarks += [*_eyes(results, needed), *_other_ways(results)]
+    remarks += [*_eyes(results, needed), *_other_ways(results, "Or a" if needed else "A")]
     sizing = command(results.changes, study or results.study, largest_factor(results.pins))
     return Actions(repairs, remarks, sizing)
 
@@ -193,18 +194,27 @@ def _peaks(results: Results, lines: Sequence[PinLine], shapes: dict[str, PinShap
     """
     unit = results.units.stress
     single = len(lines) == 1
+    limits = [_permitted(line.row) for line in lines]
+    common = len(set(limits)) == 1
     told = [
         f"{x.pin}{' reaches' * single} {engineering(x.row.max_von_mises, 3)}{f' {unit}' * single}"
-        f"{_place(x, shapes)}"
-        for x in lines
+        f"{_place(x, shapes)}{'' if common or not limit else f' of {limit}'}"
+        for x, limit in zip(lines, limits, strict=True)
     ]
     if single:
         return f"{told[0]}."
-    first = lines[0].row
-    permitted = (first.yield_strength or 0.0) / limit(first)
-    word = "permitted" if first.required else "the yield strength"
-    end = f"; {engineering(permitted, 3)} is {word}" if permitted else ""
+    end = f"; {limits[0].replace(' ', ' is ', 1)}" if common and limits[0] else ""
     return f"Largest stress [{unit}]: {', '.join(told)}{end}."
+
+
+def _permitted(row: PinResult) -> str:
+    """Return the stress that the yield strength permits in a row: "22,500 permitted"."""
+    if not row.yield_strength:
+        return ""
+    word = "permitted" if row.required else "yield strength"
+    # The strength is factor times stress: of one material it differs in its last digits.
+    permitted = float(f"{row.yield_strength / limit(row):.9g}")
+    return f"{engineering(permitted, 3)} {word}"
 
 
 def _place(line: PinLine, shapes: dict[str, PinShape]) -> str:
@@ -245,8 +255,18 @@ def _eyes(results: Results, lines: Sequence[PinLine]) -> Content:
     ]
 
 
-def _other_ways(results: Results) -> Content:
-    """Return sentences on a stronger material and a longer impulse for the worst pin."""
+def _near(lines: Sequence[PinLine]) -> Content:
+    """Return a sentence on the pins that are within their error of a limit."""
+    rows = [x.row for x in lines if x.outcome == NOT_DECIDED and x.check.row is not None]
+    near = [row.pin for row in rows if undecided_because(row).startswith(WITHIN_ERROR)]
+    return [f"A smaller tolerance may decide {names(near)}."] if near else []
+
+
+def _other_ways(results: Results, article: str) -> Content:
+    """Return sentences on a stronger material and a longer impulse for the worst pin.
+
+    article: of the strength, "Or a" after another way.
+    """
     worst: Remedy = results.changes[0]
     row = results[worst.pin, worst.case]
     strength = f"{engineering(worst.yield_strength, 3)} {results.units.stress}"
@@ -259,7 +279,7 @@ def _other_ways(results: Results) -> Content:
     if worst.yield_strength > STRONGER * given:
         parts.append(f"No stronger material: {worst.pin} needs a yield strength of {strength}.")
     else:
-        parts.append(f"Or a yield strength of {strength} for {worst.pin}.")
+        parts.append(f"{article} yield strength of {strength} for {worst.pin}.")
     if worst.impulse_time and worst.given_time:
         needed, unit = engineering(worst.impulse_time, 3), results.units.time
         longest = float(row.landing.impulse_time.max()) if row.landing else worst.impulse_time

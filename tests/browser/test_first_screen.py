@@ -99,9 +99,11 @@ def test_three_questions_are_answered_in_the_first_screen(page: Any) -> None:
     assert "pinstress size landing_gear.toml --pins E,J,A,D,G" in text
     # Is the error small enough?
     assert "Error of the maxima up to 1.8 %." in text
-    assert "Even G would pass only if its stress were overestimated by 150 %" in text
+    assert "To pass, even G would need an error of 150 %." in text
+    assert "E, J and A fail at all open values; D and G fail as described and are safe at" in text
+    assert "F and H are safe as described and fail at some." in text
     assert "Measure first: force over time at landing" in text
-    assert "not checked, needs ultimate_strength" in text
+    assert "ultimate load, not checked: rupture, 3 more need ultimate_strength; bearing" in text
 
 
 def test_the_linkage_shows_each_pin_with_its_factor_and_the_load(page: Any) -> None:

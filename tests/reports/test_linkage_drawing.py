@@ -17,6 +17,8 @@ from reports.format.drawing.projection import isometric, three_views
 from reports.page.linkage_drawing import draw_linkage
 from reports.page.linkage_panel import Instant, Mark
 from reports.page.linkage_parts import ARROW_CLEARANCE, ARROW_LENGTHS, AXIS_REACH
+from reports.page.overview import overview_part
+from reports.page.paper import document
 from reports.page.pin_marks import governing_instant, pin_marks
 from tests.support.results.space_results import landing_gear, rssr
 
@@ -37,8 +39,8 @@ def centres(drawing: ET.Element) -> np.ndarray:
     )
 
 
-def test_pins_stand_at_their_joints(results: Results) -> None:
-    """Every symbol is at the centre of the ring of its joint, and links to its part of the page."""
+def linked(results: Results) -> tuple[Instant, list[Mark]]:
+    """The linkage of the results and their pins on it, with links to their parts of the page."""
     at = governing_instant(results, pin_lines(results))
     assert at is not None
     assert at.table is not None
@@ -46,10 +48,15 @@ def test_pins_stand_at_their_joints(results: Results) -> None:
     ends = zip(at.table.connections, joints * len(at.table.connections), strict=False)
     connected = tuple((name, at.skeleton.bodies[0], joint) for name, joint in ends)
     at = replace(at, skeleton=replace(at.skeleton, connections=connected))
-    marks = pin_marks(at, pin_lines(results), {p.pin: f"pin-{p.pin}" for p in results.pins})
+    return at, pin_marks(at, pin_lines(results), {p.pin: f"pin-{p.pin}" for p in results.pins})
+
+
+def test_pins_stand_at_their_joints(results: Results) -> None:
+    """Every symbol is at the centre of the ring of its joint, and links to its part of the page."""
+    at, marks = linked(results)
     assert marks
     drawing = ET.fromstring(draw_linkage(at, marks, "a < b", "lbf"))
-    pixels = dict(zip(joints, centres(drawing), strict=True))
+    pixels = dict(zip(at.skeleton.joints, centres(drawing), strict=True))
     groups = [g for g in drawing.iter(f"{SVG}g") if g.get("transform")]
     assert len(groups) == len(marks)
     for group, mark in zip(groups, reversed(marks), strict=True):
@@ -58,6 +65,16 @@ def test_pins_stand_at_their_joints(results: Results) -> None:
         assert link.get("href") == f"#pin-{mark.name}"
     assert drawing.get("aria-label") == "a < b"
     assert drawing.get("role") == "group"
+
+
+def test_on_paper_the_linkage_has_no_links(results: Results) -> None:
+    """Of links with a tabindex only the ends were removed: a PDF was refused as damaged."""
+    drawing = draw_linkage(*linked(results), "", "lbf")
+    screen = overview_part(results, {}, "") | {"linkage": drawing}
+    printed = document(results, {}, screen)["overview"]["linkage"]
+    names = [[e.tag for e in ET.fromstring(d).iter()] for d in (drawing, printed)]
+    assert f"{SVG}a" in names[0]
+    assert sorted(names[1]) == sorted([x for x in names[0] if x != f"{SVG}a"] + [f"{SVG}style"])
 
 
 def test_arrows_are_as_long_as_their_forces(results: Results) -> None:

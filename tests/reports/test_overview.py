@@ -14,12 +14,14 @@ from assess.diameter_law import BEARING_EXPONENT, DiameterLaw, disc_factor
 from assess.margin import Margin, PinMargin
 from assess.strength.model_stress import YIELD_METHOD
 from fea.core.places import ContactPlace, Places, SurfacePlace
+from reports.data.changes import Remedy
 from reports.data.overview import diameter_law, pin_lines, quiet_cases
 from reports.data.requirement_matrix import MatrixRow, matrix_rows, worst_cell
 from reports.data.requirements import RequirementRow, keys_in
 from reports.data.results import Results
 from reports.data.row import PinResult
 from reports.format.place_words import along_words
+from reports.format.words import headline, result_words
 from reports.page.factor_curve import draw_factor_curve
 from reports.page.overview import overview_part
 from reports.tables.strength.overview import (
@@ -33,7 +35,7 @@ from reports.tables.strength.overview import (
 )
 from reports.text.certainty import accuracy, skipped_checks
 from reports.text.load_path import names
-from reports.text.overview import decisions
+from reports.text.overview import actions, decisions, why
 from reports.text.safety_factors import print_safety_factors
 from tests.support.results.made_up_joint import make_joint
 from tests.support.results.rows import with_values
@@ -94,6 +96,34 @@ def test_a_single_pin_with_several_cases_is_one_pin_with_one_column(few: Results
     assert all(len(row["cells"]) == 1 for row in part["matrix"])
     open_ = tuple(with_values(p, verdict="singular", decided=None) for p in alone.pins)
     assert overview_part(replace(alone, pins=open_), {}, "")["why_title"] == "Why"
+
+
+def test_the_largest_stress_of_each_material_is_beside_what_that_permits(few: Results) -> None:
+    """Of two materials the strength of the first was said to be permitted for both."""
+    soft = with_values(few.pins[0], safety_factor=1.2, max_von_mises=250.0)
+    hard = with_values(few.pins[1], safety_factor=1.2, max_von_mises=750.0)
+    alike = replace(few, pins=(soft, with_values(soft, pin="B")))
+    assert why(alike, pin_lines(alike), 5, places=False)[-1] == (
+        "Largest stress [psi]: A 250, B 250; 200 is permitted."
+    )
+    different = replace(few, pins=(soft, hard))
+    assert why(different, pin_lines(different), 5, places=False)[-1] == (
+        "Largest stress [psi]: A 250 of 200 permitted, B 750 of 600 permitted."
+    )
+
+
+def test_a_pin_within_its_error_is_told_of_the_tolerance(few: Results) -> None:
+    """Its only advice was "Or a yield strength of ...", and its label left the bars no room."""
+    near = with_values(few.pins[0], decided=None, safety_factor=1.49)
+    (line,) = pin_lines(alone := replace(few, pins=(near,)))
+    assert result_words(near) == "not decided: within its error"
+    assert "within its error of the required factor" in headline(alone)
+    remedy = Remedy(
+        "A", "hard", 1.5, near.yield_strength or 0.0, 0.9, True, 1.1, "", None, None, False
+    )
+    steps = actions(replace(alone, changes=(remedy,)), [line])
+    assert steps.repairs == ["A smaller tolerance may decide A."]
+    assert steps.remarks[-1].startswith("A yield strength of ")
 
 
 def test_a_check_over_all_cases_has_one_line(few: Results) -> None:
@@ -259,15 +289,16 @@ def test_the_matrix_hides_nothing_that_is_not_met() -> None:
     rows += [requirement(pin, "c0", "met", "bending", stated=False) for pin in "AB"]
     matrix = matrix_rows(rows)
     assert [(m.check, m.case) for m in matrix] == [
-        ("yield", "c3"), ("yield", "8 other cases"), ("shear", "c0"), ("other checks (1)", ""),
-        ("rupture", ""),
+        ("yield", "c3"), ("rupture", ""), ("yield", "8 other cases"), ("shear", "c0"),
+        ("other checks (1)", ""), ("", ""),
     ]  # fmt: skip
     assert matrix[0].cells == {"A": "missed", "B": "met"}
-    assert matrix[1].cells == {"A": "met", "B": "met"}
-    assert matrix[2].cells == {"A": "missed", "B": "met"}
-    assert matrix[3].cells == {"A": "met", "B": "met"}
-    assert matrix[4].needs == ("material.x.ultimate_strength",)
-    assert "met" not in matrix[4].cells.values()
+    assert matrix[1].cells == {"A": "not checked"}
+    assert matrix[2].cells == {"A": "met", "B": "met"}
+    assert matrix[3].cells == {"A": "missed", "B": "met"}
+    assert matrix[4].cells == {"A": "met", "B": "met"}
+    assert matrix[5].needs == {("ultimate_strength",): ["rupture"]}
+    assert "met" not in matrix[5].cells.values()
     worst = {p: min(r.outcome == "met" for r in rows if r.pin == p) for p in "AB"}
     shown = {p: min(m.cells.get(p, "met") == "met" for m in matrix) for p in "AB"}
     assert shown == worst
@@ -299,7 +330,31 @@ def test_a_comma_in_the_name_of_a_material_does_not_split_what_is_needed() -> No
     assert keys_in(needs) == keys
     assert keys_in("") == []
     row = RequirementRow("A", "c", "limit", "shear", 1.5, None, "not checked", needs)
-    assert list(matrix_rows([row])[0].needs) == keys
+    needed = ("shear_strength", "ultimate_strength", "shank")
+    assert matrix_rows([row])[-1].needs == {needed: ["shear"]}
+    without = replace(row, needs='analysis.limit_load other than "never", fatigue')
+    (words,) = matrix_rows([without])[-1].needs
+    assert words == ('analysis.limit_load other than "never"', "[fatigue]")
+
+
+def test_a_stated_requirement_is_in_the_matrix_where_it_was_not_checked(results: Results) -> None:
+    """Its cell was empty for a pin without a strength, as if nothing were required of it, and its
+    row was missing where no pin had one.
+    """
+    steel = "material.steel.shear_strength"
+    rows = [requirement("A", "c0", "met", "shear"), requirement("A", "c1", "met", "shear")]
+    rows += [requirement("B", c, "not checked", "shear", steel) for c in ("c0", "c1")]
+    rows += [requirement(p, c, "not checked", "rupture", "material.steel.ultimate_strength")
+             for p in "AB" for c in ("c0", "c1")]  # fmt: skip
+    *stated, last = matrix_rows(rows)
+    assert [(m.check, m.case, m.required, m.cells) for m in stated] == [
+        ("shear", "c0", 10.0, {"A": "met", "B": "not checked"}),
+        ("shear", "c1", 10.0, {"A": "met", "B": "not checked"}),
+        ("rupture", "", 10.0, {"A": "not checked", "B": "not checked"}),
+    ]
+    assert last.needs == {("shear_strength",): ["shear"], ("ultimate_strength",): ["rupture"]}
+    lacking = overview_part(results, {}, "")["matrix"][-1]
+    assert all(" need" in text for text in lacking["needs"])
 
 
 def test_columns_without_any_content_are_left_out(few: Results) -> None:

@@ -15,11 +15,19 @@ from assess.judgement import DEPENDS, FAILS, SAFE
 from fea.support.records import JointRange, Variation
 from reports.data.dependence import TOGETHER, depends_on
 from reports.data.headline import JudgedCheck
-from reports.data.overview import PinLine
+from reports.data.overview import PinLine, pin_lines
+from reports.data.results import Results
 from reports.data.row import PinResult, Units
 from reports.data.unknowns import factor_spread, open_values, unknowns
 from reports.format.words import over_words
-from reports.text.certainty import flips, flips_words, measure_first, range_words
+from reports.text.certainty import (
+    certainty,
+    flips,
+    flips_words,
+    measure_first,
+    needed_error,
+    range_words,
+)
 from tests.silent.test_outcomes import landing
 from tests.support.results.judged_results import row
 from tests.support.results.made_up_joint import make_joint
@@ -63,6 +71,21 @@ def test_two_ranges_that_change_an_outcome_only_together() -> None:
     assert over_words(both.depends_on) == "joint and landing"
     assert flips(both, UNITS) == "the joint and landing values together"
     assert pin(3.1, (0.9, 1.3), ("rectangular",)).outcome == SAFE  # 3.1 / 1.95 = 1.59
+
+
+def test_pins_whose_ranges_straddle_the_requirement_are_told_apart(results: Results) -> None:
+    """Those that fail as described and those that depend had the same bars, and no word on it."""
+    rows = {"A": pin(1.0, (0.9, 1.1)), "B": pin(1.2, (0.7, 1.1)), "C": pin(1.7, (0.9, 1.3)),
+            "D": pin(9.0, (0.9, 1.1))}  # fmt: skip
+    pins = tuple(with_values(row, pin=name) for name, row in rows.items())
+    lines = pin_lines(replace(results, pins=pins, spectrum_margins=()))
+    assert {x.pin: x.outcome for x in lines} == {"A": FAILS, "B": FAILS, "C": DEPENDS, "D": SAFE}
+    assert certainty(lines) == [
+        "A fails at all open values; B fails as described and is safe at some; C is safe as "
+        "described and fails at some."
+    ]
+    assert needed_error(lines) == ["To pass, even B would need an error of 25 %."]
+    assert needed_error([x for x in lines if x.outcome == SAFE]) == []
 
 
 def test_a_pin_that_fails_may_be_safe_only_with_both() -> None:
