@@ -46,7 +46,7 @@ BENDING_TEXTS: dict[ForcesKind, tuple[str, str]] = {  # method and clause
     "concentrated": ("bending, concentrated forces", "Shigley, problem 3-40"),
 }
 # Methods that compare the pressure on bands, and the shear of pin and lugs, with strengths.
-BEARING_METHODS = "bearing", "lug, bearing"
+BEARING_METHODS = "bearing", "lug, bearing", "lug, bearing, bushing"
 SHEAR_METHODS = (
     "single shear, mean",
     "single shear, at the neutral axis",
