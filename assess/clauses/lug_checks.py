@@ -37,7 +37,12 @@ from assess.clauses.eye import LoadedEye, PlateEye, loaded_eyes, place_of
 from assess.clauses.eye_margin import DIMENSION_NAMES
 from assess.margin import Margin
 from assess.situation import Situation
-from assess.strength.hand_checks import BEARING_SOURCE, SHIGLEY_JOINTS, shear_yield
+from assess.strength.hand_checks import (
+    BEARING_SOURCE,
+    METHODS_BY_FORMULA,
+    SHIGLEY_JOINTS,
+    shear_yield,
+)
 from assess.work import Work, WorkQuantity, scaled, work
 from fea.core.material import Material
 
@@ -103,6 +108,13 @@ def lug_checks(_: CheckText, s: Situation) -> list[Margin]:
     whatever its direction. The lug is as thick as its band is long.
     """
     return [m for loaded in loaded_eyes(s) for m in _of_lug(s, loaded)]
+
+
+@check("lug, as required", SHIGLEY_JOINTS, kind="hand", takes="loads")
+def required_lug_checks(_: CheckText, s: Situation) -> list[Margin]:
+    """Those of them that the study requires, for codes that make none of them."""
+    checks = {m: x for x, methods in METHODS_BY_FORMULA.items() for m in methods}
+    return [m for m in lug_checks(s) if (checks.get(m.method), m.level) in s.required]
 
 
 def _of_lug(s: Situation, loaded: LoadedEye) -> list[Margin]:
