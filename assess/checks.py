@@ -21,7 +21,7 @@ from assess.clauses import (
     ekvall,
     melcon_hoblit,
 )
-from assess.clauses.lug_checks import lug_checks
+from assess.clauses.lug_checks import lug_checks, required_lug_checks
 from assess.clauses.lug_collapse import lug_collapse, lug_rupture
 from assess.clauses.lug_out_of_plane import lug_out_of_plane
 from assess.codes import DEFAULT_CODES, Code
@@ -121,6 +121,8 @@ def margins_of(s: Situation, scope: Scope = "case") -> list[Margin]:
     Raises: as `with_section_forces`.
     """
     chosen = dict.fromkeys(check for code in s.codes for check in SETS[code])
+    if lug_checks not in chosen:
+        chosen[required_lug_checks] = None
     made = [check for check in chosen if check.scope == scope and _can_be_made(check, s)]
     every = list(with_section_forces(s)) if any(map(_takes_forces, made)) else []
     # Neighbours that take section forces are made together, once with each kind of these.

@@ -14,6 +14,7 @@ from assess.fatigue.records import PointFatigue
 from assess.lug_factors import LugFactors
 from assess.margin import Level
 from assess.plastic.records import LimitLoad, LugCollapse
+from assess.requirement import RequiredCheck
 from fea.beam.round_section import Circle
 from fea.core.equilibrium import out_of_balance
 from fea.core.material import Material
@@ -177,8 +178,10 @@ class Situation:
 
     row: what was solved of the pin in this case; fatigue: over all cases.
 
-    codes: the sets of checks that the study chooses (assess.checks). design_factor: N_d of ASME
-    BTH-1. bending_factor: the modulus of rupture of the pin over its ultimate strength.
+    codes: the sets of checks that the study chooses (assess.checks). required: the checks of
+    bearing and shear, with their levels, that it requires of the pin under any code.
+    design_factor: N_d of ASME BTH-1. bending_factor: the modulus of rupture of the pin over its
+    ultimate strength.
     lug_factors: efficiency factors of lugs, by connection. lug_stresses: of those whose shank is
     known; shank_angles: the directions of these shanks, by connection.
     """
@@ -203,6 +206,7 @@ class Situation:
     row: SolvedRow | None = None
     fatigue: PinFatigue | None = None
     codes: tuple[Code, ...] = DEFAULT_CODES
+    required: frozenset[tuple[RequiredCheck, Level]] = frozenset()
     design_factor: float | None = None
     bending_factor: float | None = None
     lug_factors: Mapping[str, LugFactors] = field(default_factory=dict)

@@ -37,8 +37,14 @@ from assess.clauses.eye import LoadedEye, PlateEye, loaded_eyes, place_of
 from assess.clauses.eye_margin import DIMENSION_NAMES
 from assess.margin import Margin
 from assess.situation import Situation
-from assess.strength.hand_checks import BEARING_SOURCE, SHIGLEY_JOINTS, shear_yield
+from assess.strength.hand_checks import (
+    BEARING_SOURCE,
+    METHODS_BY_FORMULA,
+    SHIGLEY_JOINTS,
+    shear_yield,
+)
 from assess.work import Work, WorkQuantity, scaled, work
+from fea.core.material import Material
 
 BTH1 = "ASME BTH-1-2005, eq. 3-45 to 3-51; Duerr 2006"
 BRUHN = "Bruhn, Analysis and Design of Flight Vehicle Structures, D1"
@@ -51,7 +57,9 @@ LUG_CHECK_OMITS = "Not covered: stress concentration at the bore, forces across 
 NET_SECTION = CheckText("lug, net section", BTH1, "hand", omits=LUG_CHECK_OMITS)
 SHEAR_OUT = CheckText("lug, shear-out", BRUHN, "hand", omits=LUG_CHECK_OMITS)
 BEARING = CheckText("lug, bearing", BEARING_SOURCE, "hand", omits=LUG_CHECK_OMITS)
-_LugCheck = tuple[CheckText, Callable[[PlateEye], Work], float | None, Rupture, str, str]
+OF_BUSHING = CheckText("lug, bearing, bushing", BEARING_SOURCE, "hand", omits=LUG_CHECK_OMITS)
+_Stress = Callable[[PlateEye], Work]
+_LugCheck = tuple[CheckText, _Stress, Material, float | None, Rupture, str, str]
 
 
 def net_section_stress(force: float, ultimate_over_yield: float, eye: PlateEye) -> Work:
@@ -93,12 +101,20 @@ def bearing_stress(force: float, eye: PlateEye) -> Work:
 
 @check("lug", SHIGLEY_JOINTS, kind="hand", takes="loads")
 def lug_checks(_: CheckText, s: Situation) -> list[Margin]:
-    """Net section, shear-out and bearing of every loaded lug whose size is given.
+    """Net section, shear-out and bearing of every loaded lug whose size is given, and the bearing
+    of the pin on its bushing.
 
     They are checked at the instant when the force across the pin is largest, taken along the shank
     whatever its direction. The lug is as thick as its band is long.
     """
     return [m for loaded in loaded_eyes(s) for m in _of_lug(s, loaded)]
+
+
+@check("lug, as required", SHIGLEY_JOINTS, kind="hand", takes="loads")
+def required_lug_checks(_: CheckText, s: Situation) -> list[Margin]:
+    """Those of them that the study requires, for codes that make none of them."""
+    checks = {m: x for x, methods in METHODS_BY_FORMULA.items() for m in methods}
+    return [m for m in lug_checks(s) if (checks.get(m.method), m.level) in s.required]
 
 
 def _of_lug(s: Situation, loaded: LoadedEye) -> list[Margin]:
@@ -110,25 +126,30 @@ def _of_lug(s: Situation, loaded: LoadedEye) -> list[Margin]:
     out_formula = SQUARE_SHEAR_OUT_FORMULA if eye.square else SHEAR_OUT_FORMULA
     net = partial(net_section_stress, force, ratio)
     out, bears = partial(shear_out_stress, force), partial(bearing_stress, force)
-    every: tuple[_LugCheck, ...] = (
-        (NET_SECTION, net, yields, "ultimate", NET_SECTION_FORMULA, "width"),
-        (SHEAR_OUT, out, shear_yield(material), "shear", out_formula, "width"),
-        (BEARING, bears, yields, "bearing", BEARING_FORMULA, "thickness"),
-    )
+    every: list[_LugCheck] = [
+        (NET_SECTION, net, material, yields, "ultimate", NET_SECTION_FORMULA, "width"),
+        (SHEAR_OUT, out, material, shear_yield(material), "shear", out_formula, "width"),
+        (BEARING, bears, material, yields, "bearing", BEARING_FORMULA, "thickness"),
+    ]
+    if ring := loaded.bushing:
+        inside = partial(_stress_in_bushing, force)
+        yields = ring.yield_strength
+        every += [(OF_BUSHING, inside, ring, yields, "bearing", BEARING_FORMULA, "thickness")]
     margins = []
-    for text, stress, strength, ruptures, formula, dimension in every:
+    for text, stress, bearer, strength, ruptures, formula, dimension in every:
         shown = stress(eye)
-        for m in text.at_levels(
-            s, shown.result.value, place, material, strength, ruptures, formula
-        ):
+        for m in text.at_levels(s, shown.result.value, place, bearer, strength, ruptures, formula):
             passing = _passing(eye, dimension, stress, m)
             margins.append(replace(m, work=(shown,), passing=passing, omits=text.omits))
     return margins
 
 
-def _passing(
-    eye: PlateEye, dimension: str, stress: Callable[[PlateEye], Work], margin: Margin
-) -> WorkQuantity | None:
+def _stress_in_bushing(force: float, eye: PlateEye) -> Work:
+    """The bearing stress of the pin on a bushing, Pa."""
+    return bearing_stress(force, replace(eye, bushed=False))
+
+
+def _passing(eye: PlateEye, dimension: str, stress: _Stress, margin: Margin) -> WorkQuantity | None:
     """The dimension of an eye that would just pass a margin."""
     allowable, factor, name = margin.allowable, margin.factor, DIMENSION_NAMES[dimension]
     if not allowable:

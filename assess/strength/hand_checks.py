@@ -23,12 +23,15 @@ has the same for pinned connections.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
+from types import MappingProxyType
 
 import numpy as np
 
 from assess.check import CheckText, Rupture, WorstPlace, check
 from assess.margin import Margin
+from assess.requirement import RequiredCheck
 from assess.situation import ForcesKind, NominalStress, Situation
 from assess.work import Work, wider, work
 from fea.beam.line_load import acting, shares
@@ -46,12 +49,15 @@ BENDING_TEXTS: dict[ForcesKind, tuple[str, str]] = {  # method and clause
     "concentrated": ("bending, concentrated forces", "Shigley, problem 3-40"),
 }
 # Methods that compare the pressure on bands, and the shear of pin and lugs, with strengths.
-BEARING_METHODS = "bearing", "lug, bearing"
+BEARING_METHODS = "bearing", "lug, bearing", "lug, bearing, bushing"
 SHEAR_METHODS = (
     "single shear, mean",
     "single shear, at the neutral axis",
     "double shear, mean",
     "lug, shear-out",
+)
+METHODS_BY_FORMULA: Mapping[RequiredCheck, tuple[str, ...]] = MappingProxyType(
+    {"bearing": BEARING_METHODS, "shear": SHEAR_METHODS}
 )
 BENDING_FORMULA = "M c / I"
 MAX_HALF_DIFFERENCE = 0.1  # part of a band's load by which its two sides may differ in double shear

@@ -29,11 +29,11 @@ from pinstress.analysis.scaled import (
     coarse,
     contact_changed,
     elastic_task,
-    narrow_arcs,
     same_ranges,
     same_shape,
     scalable,
     scaled_row,
+    too_rough,
 )
 from pinstress.analysis.solve import for_task, solve_tasks, unjudged
 from pinstress.analysis.stored import PinOutcome, cache_key
@@ -201,11 +201,11 @@ class Engine:
         ]
 
     def _rough(self, plan: Plan, task: Task) -> PinOutcome:
-        """The outcome of a task on rough cells; in full where these are too large for its arcs."""
+        """The outcome of a task on rough cells; in full where these are too large."""
         rough = replace(plan, requirement=_quick(plan.requirement))
         outcome = self._solve(rough, [task])[0]
-        narrow = any(map(narrow_arcs, outcome.rows))
-        return self._solve(plan, [task])[0] if narrow else outcome
+        again = any(map(too_rough, outcome.rows))
+        return self._solve(plan, [task])[0] if again else outcome
 
     def _solve(self, plan: Plan, tasks: list[Task]) -> list[PinOutcome]:
         plan = replace(plan, tasks=tasks)

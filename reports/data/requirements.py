@@ -34,7 +34,7 @@ from assess.requirement import (
 )
 from assess.strength.collapse import COLLAPSE_METHOD
 from assess.strength.fatigue_life import FATIGUE_LIFE
-from assess.strength.hand_checks import BEARING_METHODS, SHEAR_METHODS
+from assess.strength.hand_checks import METHODS_BY_FORMULA
 from assess.strength.model_stress import RUPTURE_METHOD, YIELD_METHOD
 from pinbase.grouped import grouped
 from reports.data.decision import factor_ends
@@ -58,8 +58,7 @@ METHODS_OF_CHECK: Mapping[RequiredCheck, tuple[str, ...]] = {
     "yield": (YIELD_METHOD,),
     "rupture": (RUPTURE_METHOD,),
     "limit load": (COLLAPSE_METHOD,),
-    "bearing": BEARING_METHODS,
-    "shear": SHEAR_METHODS,
+    **METHODS_BY_FORMULA,
     "fatigue": (FATIGUE_LIFE,),
 }
 CHECK_OF_METHOD = {m: check for check, methods in METHODS_OF_CHECK.items() for m in methods}
@@ -185,7 +184,7 @@ def _stated(
     of_pair = margins.get((s.pin, s.case), [])
     methods = METHODS_OF_CHECK[s.check]
     chosen = [m for m in of_pair if m.method in methods and m.level == level]
-    if s.check in ("bearing", "shear"):
+    if s.check in METHODS_BY_FORMULA:
         chosen += [m for m in of_pair if _not_made_by_formula(m)]
     row = rows.get((s.pin, s.case))
     if s.check == "fatigue":

@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 
 from pinstress import InputError, run, study_from
+from reports.data.requirements import requirement_rows
 from reports.data.results import Results
 
 F, W, D, T = 50e3, 50.0, 20.0, 20.0  # N; of the middle lug: outer diameter, bore, thickness, mm
@@ -118,6 +119,47 @@ def test_the_pin_bears_on_the_bushing_and_a_hollow_one_as_well() -> None:
         used = 0.6 * math.sqrt(2.0 * (D + 4.0) / (W - D - 4.0))
         assert stress["lug, net section", "M"] == pytest.approx(F / ((W - D - 4.0) * T) / used)
         assert stress["lug, bearing", "M"] == pytest.approx(F / ((D + 4.0) * T))
+
+
+def test_a_required_bearing_is_that_of_the_bushing_too() -> None:
+    """50,000 over 20 x 20 is 125 MPa on bronze of 150 MPa: 1.2, where the steel of pin and lug has
+    400 x 24 x 20 / 50,000 = 3.84 and was said to meet 3.
+    """
+    whole = study("prescribed", {"bushing": {"thickness": 2, "material": "bronze"}})
+    whole["require"] = [{"check": "bearing", "factor": 3.0, "cases": ["pull"]}]
+    found = run(study_from(whole))
+    assert of_lugs(found, "pull")["lug, bearing, bushing", "M"] == pytest.approx(F / (D * T))
+    (row,) = (x for x in requirement_rows(found) if x.stated)
+    assert (row.outcome, row.reached) == ("missed", pytest.approx(1.2))
+
+
+@pytest.mark.parametrize("code", ["general", "aircraft", "lifting", "civil"])
+def test_requirements_are_on_lugs_under_every_code(code: str) -> None:
+    """25,000 over 10 x 20 is 125 MPa on lugs of 400 MPa: 3.2, where the pin has 700 / 125 = 5.6.
+    Under codes other than "general" 5.6 was said to meet 4, and the shear of pins alone 2.5.
+    """
+    whole = study("prescribed", {"outer_diameter": 30})
+    whole["analysis"]["code"] = code
+    whole["require"] = [{"check": "bearing", "factor": 4.0}, {"check": "shear", "factor": 2.5}]
+    found = {
+        x.check: x for x in requirement_rows(run(study_from(whole), cases=["pull"])) if x.stated
+    }
+    forty = math.radians(40.0)
+    planes = math.sqrt(30.0**2 - (D * math.sin(forty)) ** 2) - D * math.cos(forty)
+    out = F / (planes * T)
+    assert (found["bearing"].outcome, found["bearing"].reached) == ("missed", pytest.approx(3.2))
+    reached = pytest.approx(400.0 / math.sqrt(3.0) / out)
+    assert (found["shear"].outcome, found["shear"].reached) == ("missed", reached)
+
+
+def test_a_requirement_on_a_lug_without_a_size_is_not_checked() -> None:
+    """It was met by the pin's own numbers."""
+    whole = study("prescribed", {})
+    del whole["pin"]["P"]["lug"]["M"]["outer_diameter"]
+    whole["require"] = [{"check": "bearing", "factor": 1.0}]
+    for row in requirement_rows(run(study_from(whole))):
+        if row.stated:
+            assert (row.outcome, row.needs) == ("not checked", "pin.P.lug.M.outer_diameter")
 
 
 def test_a_lug_that_is_not_given_is_still_said_to_be_none() -> None:

@@ -30,7 +30,7 @@ from fea.core.pin_loads import PinLoads
 from fea.support.lugs.fit import on_structure
 from fea.support.records import JointResult
 from pinstress.study.model.lost_fits import lost_fits
-from pinstress.study.model.requirements import required_factor
+from pinstress.study.model.requirements import required_by_formula, required_factor
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from reports.data.row import PinResult
@@ -56,7 +56,8 @@ def assessed(study: Study, task: Task, row: PinResult) -> PinResult:
     required = required_factor(study, row.pin, row.case)
     s, why = _situation(study, task, loads, row.joint)
     solved = SolvedRow(row.maximum, row.limit_load, required, row.joint_growth)
-    s = replace(s, row=solved, lug_collapses=row.lug_collapses)
+    by_formula = required_by_formula(study, row.pin, row.case)
+    s = replace(s, row=solved, lug_collapses=row.lug_collapses, required=by_formula)
     rigid = row.verdict == "rigid"
     if s.complete and rigid and not why:
         why = "supports of the pin or loads in equilibrium"
@@ -193,7 +194,7 @@ def _situation(
 
 def _not_made(s: Situation, why: str) -> Iterable[Margin]:
     """Yield the checks that a situation does not allow, those of lugs at clamps, whose force no
-    formula gives, and the clauses of chosen codes for lugs whose size is not given.
+    formula gives, and clauses of chosen codes and what is required of lugs whose size is not given.
 
     why: what the checks by formula need.
     """
@@ -205,8 +206,16 @@ def _not_made(s: Situation, why: str) -> Iterable[Margin]:
             for lug in s.sized
             if lug.connection in clamped
         }
+        sized = {lug.connection for lug in s.sized}
+        if s.required:
+            lacking |= {
+                f"{CLAMPED_LUG_PREFIX}{lug.connection}: shear-out, bearing": (
+                    f"pin.{s.profile.name}.lug.{lug.connection}.outer_diameter"
+                )
+                for lug in s.lugs
+                if lug.connection in s.loads.surfaces and lug.connection not in sized
+            }
         if s.codes != DEFAULT_CODES:
-            sized = {lug.connection for lug in s.sized}
             lacking |= {
                 f"clauses for the lug of {name}": f"pin.{s.profile.name}.lug.{name}.outer_diameter"
                 for name in s.loads.surfaces

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator
 from itertools import product
 
+from assess.margin import Level
 from assess.requirement import (
     TO_BE_RUN,
     RequiredCheck,
@@ -87,6 +88,17 @@ def stated_factor(
         if (table.check, level_of(table)) == (check, level) and _concerns(table, pin, case):
             return table.factor
     return None
+
+
+def required_by_formula(
+    study: Study, pin: str, case: str
+) -> frozenset[tuple[RequiredCheck, Level]]:
+    """Return the checks by formula that [[require]] states, each with the level of its strength."""
+    return frozenset(
+        (table.check, "ultimate" if level_of(table) == "ultimate" else "limit")
+        for table in study.table.require
+        if table.check in CHECKED_BY_FORMULA and _concerns(table, pin, case)
+    )
 
 
 def _concerns(table: RequireTable, pin: str, case: str) -> bool:

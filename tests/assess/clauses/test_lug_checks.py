@@ -161,7 +161,7 @@ def test_what_would_pass(steel: Material) -> None:
 
 
 def test_the_bore_is_that_of_the_clearance_or_the_bushing(steel: Material) -> None:
-    """The pin bears on its own diameter, in a bushing that on the bushing's outer one."""
+    """The pin bears on its own diameter, and its bushing on the bushing's outer one."""
     loose, strong = Lug("B", W, steel, clearance=0.001), replace(steel, ultimate_strength=2e9)
     loose = replace(loose, material=strong)
     C_r = 1.0 - 0.275 * math.sqrt(1.0 - (20.0 / 21.0) ** 2)
@@ -169,10 +169,11 @@ def test_the_bore_is_that_of_the_clearance_or_the_bushing(steel: Material) -> No
     assert net.demand == pytest.approx(F / (C_r * 0.029 * 2 * T))
     assert bearing.demand == pytest.approx(F / (D * 2 * T))
     bushed = replace(loose, bushing=Bushing(0.0025, steel))
-    net, out, bearing = lug_checks(PIN, [bushed], LOADS)
+    net, out, bearing, inside = lug_checks(PIN, [bushed], LOADS)
     assert net.demand == pytest.approx(F / (0.025 * 2 * T))
     assert out.demand == pytest.approx(stress(shear_out_stress(F, eye(W, 0.025, 2 * T))))
     assert bearing.demand == pytest.approx(F / (0.025 * 2 * T))
+    assert inside.demand == pytest.approx(F / (D * 2 * T))
 
 
 def test_the_largest_force_of_a_motion(steel: Material) -> None:

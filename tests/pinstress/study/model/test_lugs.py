@@ -297,6 +297,7 @@ bushing = { thickness = 2, material = "bronze" }
     checks = {(c.method, c.at): c.demand for c in found.hand_checks if c.method.startswith("lug")}
     assert set(checks) == {
         ("lug, net section", "L"), ("lug, shear-out", "L"), ("lug, bearing", "L"),
+        ("lug, bearing, bushing", "L"),
     }  # fmt: skip
     effective = 0.6 * 18.0 * (24.0 / 18.0) ** 0.5
     assert checks["lug, net section", "L"] == pytest.approx(25000.0 / (2.0 * effective * 10.0))
