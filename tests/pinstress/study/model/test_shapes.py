@@ -136,6 +136,7 @@ def test_bad_tables(shape: str, code: str, named: str, tmp_path: Path) -> None:
         (CUT.replace("distance = 8.0", "distance = 10.5"), "cuts-nothing", "flat 1"),
         (FILE.replace("pin.step", "gone.step"), "no-such-file", "gone.step"),
         (FILE.replace("pin.step", "study.toml"), "unreadable-geometry", "study.toml"),
+        (FILE + "[pin.P.lug.B]\nclearance = 0.1", "key-not-applicable", "pinstress import"),
         (FILE.replace("40.0, 60.0", "70.0, 80.0"), "band-not-found", "z = 70 and 80"),
         pytest.param(
             FILE.replace("z = [0.0, 10.0]", 'surface = "foot"'),
