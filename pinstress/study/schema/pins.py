@@ -246,7 +246,8 @@ class PinTable(StrictTable):
             )
         for key, shapes in SHAPES_OF_KEY.items():
             if key in self.model_fields_set and given[0] not in shapes:
-                way = " (`pinstress import` prints the profile of a CAD file)" if self.geometry else ""
+                of_file = " (`pinstress import` prints the profile of a CAD file)"
+                way = of_file if self.geometry else ""
                 raise ArgumentError(
                     f"{key} can only be used with {' or '.join(shapes)}{way}; remove it",
                     "key-not-applicable",
