@@ -334,7 +334,7 @@ def _blind(
 ) -> list[Bend]:
     """The corners of bores that end on the axis, from the start face and from the end face."""
     first = _without_end_faces(before, low, high, near)
-    last = _reversed(_without_end_faces(after, low, high, near))
+    last = _without_end_faces(after, low, high, near)
     if not (first or last):
         return []
     start = _bends(first, near) if first else [Bend(low, 0.0)]

@@ -256,7 +256,8 @@ class CutFaces:
 
     def _bottom_faces(self, c: DrilledFaces) -> list[SampledFace]:
         """The faces at the bottom of a hole."""
-        faces = [(face, c.local(face.points)[0]) for face in c.faces]
+        # Points of a plane may lie beyond its rim, where it is no whole disc.
+        faces = [(x, c.local(x.rim if x.plane else x.points)[0]) for x in c.faces]
         return [f for f, s in faces if np.ptp(s) >= self.near and s.max() <= c.radius + self.near]
 
     def _bottom(self, c: DrilledFaces, end: float, outward: float) -> tuple[float, Bottom]:
@@ -291,7 +292,7 @@ class CutFaces:
         chamfer = 0.0
         for face in c.faces:
             s, t = c.local(face.points)
-            if s.max() > c.radius + self.near:
+            if not face.plane and s.max() > c.radius + self.near:
                 chamfer = float((s + outer - np.abs(t)).mean()) - c.radius
         blind = bool(self._bottom_faces(c))
         if c.low < 0.0 < c.high and not blind:

@@ -30,6 +30,19 @@ PROFILES = {
     "blind": Pin(
         "P", (Segment(30, 20, bore=8), Segment(4, 20, bore=8, end_bore=0), Segment(9, 20))
     ),
+    "blind from the end": Pin(
+        "P", (Segment(9, 20), Segment(4, 20, bore=0, end_bore=8), Segment(30, 20, bore=8))
+    ),
+    "centred": Pin(
+        "P",
+        (
+            Segment(3, 20, bore=6, end_bore=3),
+            Segment(2, 20, bore=3, end_bore=0),
+            Segment(30, 20),
+            Segment(2, 20, bore=0, end_bore=3),
+            Segment(4, 20, bore=3, end_bore=6),
+        ),
+    ),
     "bolt": Pin("P", (Segment(8, 30, edge_radii=(1, 2)), Segment(50, 20, edge_radii=(0, 10)))),
     "groove": Pin(
         "P", (Segment(9, 20, fillet=1.1), Segment(2.2, 17.8, fillet=1.1), Segment(9, 20))
