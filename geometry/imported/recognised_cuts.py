@@ -256,9 +256,14 @@ class CutFaces:
 
     def _bottom_faces(self, c: DrilledFaces) -> list[SampledFace]:
         """The faces at the bottom of a hole."""
-        # Points of a plane may lie beyond its rim, where it is no whole disc.
-        faces = [(x, c.local(x.rim if x.plane else x.points)[0]) for x in c.faces]
-        return [f for f, s in faces if np.ptp(s) >= self.near and s.max() <= c.radius + self.near]
+        out = []
+        for face in c.faces:
+            s, _ = c.local(face.points)
+            # Points of a plane may lie beyond its rim, where that is no whole circle.
+            most = float(c.local(face.rim)[0].max() if face.plane else s.max())
+            if np.ptp(s) >= self.near and most <= c.radius + self.near:
+                out.append(face)
+        return out
 
     def _bottom(self, c: DrilledFaces, end: float, outward: float) -> tuple[float, Bottom]:
         """The position at which the full diameter ends, without rounding, and the bottom.
