@@ -162,7 +162,8 @@ def _about(results: Results, pins: Sequence[str]) -> str:
 
 
 def _accurate(lines: Sequence[PinLine]) -> list[str]:
-    told = [*(f"Error of the maxima {text}" for text in accuracy(lines)), *needed_error(lines)]
+    told = [f"Error of the maxima {text}" for text in accuracy(lines)]
+    told += needed_error(lines, "one") if told else needed_error(lines)
     return [" ".join(told)] if told else []
 
 

@@ -36,9 +36,11 @@ def accuracy(lines: Sequence[PinLine]) -> Content:
     return [f"up to {engineering(100.0 * most, 2)} %." if most >= 1e-4 else "below 0.01 %."]
 
 
-def needed_error(lines: Sequence[PinLine]) -> Content:
+def needed_error(lines: Sequence[PinLine], noun: str = "an error") -> Content:
     """Return a sentence on the error with which the failing pin nearest to its factor would pass;
     nothing where none fails.
+
+    noun: for the error, "one" after a sentence on errors.
     """
     rows = _failing(lines)
     if not rows:
@@ -46,7 +48,7 @@ def needed_error(lines: Sequence[PinLine]) -> Content:
     nearest = max(rows, key=lambda r: r.safety_factor or 0.0)
     needed = (nearest.required or 1.0) / (nearest.safety_factor or 1.0) - 1.0
     which = f"{'even ' * (len(rows) > 1)}{nearest.pin}"
-    return [f"To pass, {which} would need an error of {engineering(100.0 * needed, 2)} %."]
+    return [f"To pass, {which} would need {noun} of {engineering(100.0 * needed, 2)} %."]
 
 
 def certainty(lines: Sequence[PinLine]) -> Content:

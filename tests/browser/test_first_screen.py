@@ -99,7 +99,7 @@ def test_three_questions_are_answered_in_the_first_screen(page: Any) -> None:
     assert "pinstress size landing_gear.toml --pins E,J,A,D,G" in text
     # Is the error small enough?
     assert "Error of the maxima up to 1.8 %." in text
-    assert "To pass, even G would need an error of 150 %." in text
+    assert "To pass, even G would need one of 150 %." in text
     assert "E, J and A fail at all open values; D and G fail as described and are safe at" in text
     assert "F and H are safe as described and fail at some." in text
     assert "Measure first: force over time at landing" in text

@@ -26,6 +26,8 @@ STAND_INS: Mapping[Place, Any] = {
     ("mechanism", "drive"): {"body": "ground"},
     ("mechanism", "joint", "*", "at"): [0.0, 0.0],
     ("mechanism", "joint", "*", "connections"): {},
+    ("require", "*", "check"): "yield",
+    ("require", "*", "factor"): 1.0,
 }
 # Parts of a study whose removal may be the only cause of an error, by its code
 CAUSES: Mapping[str, Collection[Place]] = {
@@ -33,6 +35,8 @@ CAUSES: Mapping[str, Collection[Place]] = {
     "bearing-strength-without-lug": (("pin",),),
     "no-fatigue-data": (("material",), ("pin",)),
     "drive-without-motion": (("mechanism", "drive"),),
+    "level-without-check": (("require",),),
+    "duplicate-requirement": (("require",),),
 }
 
 

@@ -1,9 +1,10 @@
 """The study file's form: pins."""
 
 from itertools import groupby
+from math import inf
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.lugs import LugTable
@@ -58,6 +59,15 @@ class SegmentTable(StrictTable):
                 "ear-without-name",
             )
         return self
+
+    @field_validator("bore")
+    @classmethod
+    def _leaves_a_wall(cls, bore: NotNegativeAtEnds, info: ValidationInfo) -> NotNegativeAtEnds:
+        diameter = info.data.get("diameter", inf)
+        ends = zip(*(x if isinstance(x, tuple) else (x, x) for x in (bore, diameter)), strict=True)
+        if not all(inner < outer for inner, outer in ends):
+            raise ArgumentError("must be less than the diameter", "bore-too-large")
+        return bore
 
     @property
     def diameters(self) -> tuple[float, float]:

@@ -67,6 +67,41 @@ def errors_of(path: Path, text: str) -> set[str]:
     return {re.sub(r"^:\d+|^: ", "", line.removeprefix(str(path))) for line in lines}
 
 
+REQUIREMENT = """
+[[require]]
+pins = ["Q"]
+cases = ["digg"]
+check = "sheer"
+level = "limt"
+factor = 0
+"""
+
+
+def test_all_mistakes_of_a_requirement_and_of_a_segment(tmp_path: Path) -> None:
+    """Names of pins and cases came only after check and factor were right, and a bore only after
+    the other errors of its pin.
+    """
+    segment = '{ length = "120 mm", diameter = "80 mm", connection = "Z"'
+    assert segment in BUCKET
+    wrong = segment.replace('"Z"', '"Z9", bore = "90 mm"')
+    found = errors_of(tmp_path / "study.toml", BUCKET.replace(segment, wrong) + REQUIREMENT)
+    for text in ("no pin 'Q'", "no case 'digg'", "require[1].check: must be ", "[1].level: must be",
+                 "require[1].factor: must be greater than 0", "profile[2].bore: must be less",
+                 "connection 'Z9' is not in the mechanism"):  # fmt: skip
+        assert sum(text in line for line in found) == 1, text
+    assert len(found) == 7
+
+
+@pytest.mark.parametrize("key", ["check", "factor"])
+def test_what_stands_for_a_wrong_requirement_is_not_wrong(tmp_path: Path, key: str) -> None:
+    """The check that stands for a wrong one is neither required twice nor at another level."""
+    one = '[[require]]\ncheck = "rupture"\nlevel = "ultimate"\nfactor = 1.5\n'
+    two = '[[require]]\ncheck = "yield"\nfactor = 1.5\n'
+    wrong = re.sub(rf"^{key} = .*$", f'{key} = "x"', one, flags=re.MULTILINE)
+    (line,) = errors_of(tmp_path / "study.toml", BUCKET + wrong + two)
+    assert f"require[1].{key}" in line
+
+
 def test_six_mistakes_of_different_kinds(tmp_path: Path) -> None:
     """Schema, references, masses, joints and shapes: one round instead of four."""
     six = ("unknown key", "wrong type", "unknown material", "unknown joint", "no inertia",
