@@ -45,6 +45,7 @@ REPLACED = {
     "checks by hand": "hand checks",
     "is pushed": "loaded",
 }
+ANY_REPLACED = re.compile(rf"\b({'|'.join(REPLACED)})\b", re.IGNORECASE)
 
 
 def pages() -> list[Path]:
@@ -74,9 +75,7 @@ def replaced(text: str) -> list[str]:
     """The replaced phrases in a text with some words around them."""
     flat = re.sub(r"[\s#]+", " ", text)
     return [
-        flat[max(0, found.start() - 40) : found.end() + 40]
-        for phrase in REPLACED
-        for found in re.finditer(rf"\b({phrase})\b", flat, re.IGNORECASE)
+        flat[max(0, found.start() - 40) : found.end() + 40] for found in ANY_REPLACED.finditer(flat)
     ]
 
 

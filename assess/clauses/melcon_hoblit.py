@@ -41,12 +41,12 @@ NIU_OMITS = (
 AXIAL_KEYS, TRANSVERSE_KEYS = ("k_br", "k_t"), ("k_tru",)
 
 
-def shear_bearing_load(eye: PlateEye, k_br: float, ultimate: float) -> Work:
+def shear_bearing_load(k_br: float, ultimate: float, eye: PlateEye) -> Work:
     """P_bru, N. ultimate: strength across the grain, Pa."""
     return _on_bearing_area("P_bru", "k_br", eye, k_br, "F_tu", ultimate)
 
 
-def tension_load(eye: PlateEye, k_t: float, ultimate: float) -> Work:
+def tension_load(k_t: float, ultimate: float, eye: PlateEye) -> Work:
     """P_tu, N. ultimate: strength along the grain, Pa."""
     area = (eye.width - eye.hole) * eye.thickness
     return work(
@@ -99,7 +99,7 @@ def tension(text: CheckText, s: Situation) -> list[Margin]:
 
 
 def _along(
-    text: CheckText, s: Situation, factor: str, load: Callable[[PlateEye, float, float], Work]
+    text: CheckText, s: Situation, factor: str, load: Callable[[float, float, PlateEye], Work]
 ) -> list[Margin]:
     """The axial force on every eye of which an efficiency factor, by name, is given."""
     margins = []
@@ -110,15 +110,8 @@ def _along(
         if not ultimate:
             margins.append(text.lacks(s, *strengths_of(x.lug).missing))
             continue
-        capacity = partial(_with_factor, load, k, ultimate)
-        margins.append(eye_margin(text, s, x, x.axial, capacity, "width"))
+        margins.append(eye_margin(text, s, x, x.axial, partial(load, k, ultimate), "width"))
     return margins
-
-
-def _with_factor(
-    load: Callable[[PlateEye, float, float], Work], k: float, ultimate: float, eye: PlateEye
-) -> Work:
-    return load(eye, k, ultimate)
 
 
 @check("Melcon-Hoblit yield", NIU, kind="clause", takes="loads", dimension="force", omits=NIU_OMITS)
@@ -138,7 +131,7 @@ def lug_yield(text: CheckText, s: Situation) -> list[Margin]:
             eye: PlateEye, k_br: float = k.k_br, k_t: float = k.k_t, C: float = k.C,
             fy: float = strengths.yields, fu: float = strengths.ultimate,
         ) -> Work:  # fmt: skip
-            loads = shear_bearing_load(eye, k_br, fu), tension_load(eye, k_t, fu)
+            loads = shear_bearing_load(k_br, fu, eye), tension_load(k_t, fu, eye)
             return yield_load(min(load.result.value for load in loads), C, fy, fu)
 
         margins.append(eye_margin(text, s, x, x.axial, capacity, "width"))
@@ -190,7 +183,7 @@ def _oblique(text: CheckText, s: Situation, x: LoadedEye) -> Margin:
     if k.k_br is None or k.k_t is None or k.k_tru is None or fu is None:
         lacking = _lacking(s, x, *AXIAL_KEYS, *TRANSVERSE_KEYS)
         return text.lacks(s, *lacking, *(m for m in strengths_of(x.lug).missing if "ultim" in m))
-    along = shear_bearing_load(x.eye, k.k_br, fu), tension_load(x.eye, k.k_t, fu)
+    along = shear_bearing_load(k.k_br, fu, x.eye), tension_load(k.k_t, fu, x.eye)
     axial = min(load.result.value for load in along)
     return _combined(text, s, x, axial, (*along, transverse_load(k.k_tru, fu, x.eye)))
 
@@ -211,7 +204,7 @@ def _oblique_yield(text: CheckText, s: Situation, x: LoadedEye) -> Margin:
     fy, fu = strengths.yields, strengths.ultimate
     if k.k_br is None or k.k_t is None or k.C is None or k.k_try is None or strengths.missing:
         return text.lacks(s, *_lacking(s, x, *AXIAL_KEYS, "C", "k_try"), *strengths.missing)
-    loads = shear_bearing_load(x.eye, k.k_br, fu), tension_load(x.eye, k.k_t, fu)
+    loads = shear_bearing_load(k.k_br, fu, x.eye), tension_load(k.k_t, fu, x.eye)
     axial = yield_load(min(load.result.value for load in loads), k.C, fy, fu)
     across = transverse_yield_load(k.k_try, fy, x.eye)
     return _combined(text, s, x, axial.result.value, (*loads, axial, across))

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from loads.forces.over_time import Extremum
 from loads.landing.drop import (
     DEFLECTION_RATE,
     FRICTION_ENERGY,
@@ -87,14 +88,6 @@ class LandingHistory:
 
 
 @dataclass(frozen=True)
-class LandingPeak:
-    """A largest value, and the time at which it occurs, s."""
-
-    value: float
-    time: float
-
-
-@dataclass(frozen=True)
 class Landing:
     """A drop with its history, from `land`. spans: its phases."""
 
@@ -133,7 +126,7 @@ class Landing:
         )
 
     @cached_property
-    def peaks(self) -> dict[str, LandingPeak]:
+    def peaks(self) -> dict[str, Extremum]:
         """Largest values over the whole drop by the names of PEAK_NAMES.
 
         spring_back: largest forward drag on the leg.
@@ -149,7 +142,7 @@ class Landing:
         best, when = resolved(times, columns, self.corners).largest(lambda values: values)
         exact = np.diagonal(columns(when))
         return {
-            name: LandingPeak(float(max(value, 0.0)), float(time))
+            name: Extremum(float(max(value, 0.0)), float(time))
             for name, value, time in zip(PEAK_NAMES, np.maximum(best, exact), when, strict=True)
         }
 

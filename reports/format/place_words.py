@@ -6,11 +6,9 @@ from itertools import pairwise
 
 from assess.diameter_law import BENDING_EXPONENT, SHEAR_EXPONENT
 from reports.data.results import PinShape
-from reports.data.row import PinResult, Units
-from reports.format.numbers import engineering
+from reports.data.row import PinResult
 
 NEAR_STEP = 0.1  # of the diameter: what is nearer to a change of diameter lies at it
-MAX_Z_DIGITS = 3
 
 
 def action(row: PinResult) -> str:
@@ -28,11 +26,8 @@ def action(row: PinResult) -> str:
     return "shear" if section.shear_force > abs(section.axial_force) else "axial force"
 
 
-def place_words(row: PinResult, shape: PinShape | None, units: Units | None = None) -> str:
-    """Return where the maximum of a row lies: "shear between F1 and F2", "surface, step beside E2".
-
-    units: for z; without them it is left out.
-    """
+def place_words(row: PinResult, shape: PinShape | None) -> str:
+    """Return where a row's maximum lies: "shear between F1 and F2", "surface, step beside E2"."""
     if row.places is None or row.location is None:
         return ""
     section = row.places.section
@@ -40,10 +35,9 @@ def place_words(row: PinResult, shape: PinShape | None, units: Units | None = No
     z = section.z if governs == "section" and section else row.location[2]
     kind = row.places.governing
     kind = action(row) if kind == "section" else kind
-    at = "" if units is None else f", z = {engineering(z, MAX_Z_DIGITS)} {units.length}"
     where = "" if shape is None else along_words(shape, z)
     comma = "," if where.startswith(("step", "a step")) else ""
-    return f"{kind}{comma} {where}".strip() + at
+    return f"{kind}{comma} {where}".strip()
 
 
 def along_words(shape: PinShape, z: float) -> str:

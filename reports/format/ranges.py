@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 
+from fea.support.records import JointRange
 from reports.data.decision import utilisation
-from reports.data.row import PinResult
+from reports.data.row import PinResult, SharingRange
 from reports.format.numbers import DASH, engineering
 
 END_DIGITS = 3  # digits of factors and of an interval's ends
@@ -61,16 +62,11 @@ def utilisation_range(pin: PinResult, required: float) -> str:
     return f"{' to '.join(dict.fromkeys(engineering(100.0 * end, END_DIGITS) for end in used))} %"
 
 
-def joint_range(pin: PinResult, to: str = " to ") -> str:
-    """Return the maximum over the unknowns of the joint; a dash where that was not computed."""
-    over = pin.joint.range if pin.joint else None
-    return to.join(engineering(end, END_DIGITS) for end in over.max_von_mises) if over else DASH
-
-
-def sharing_range(pin: PinResult, to: str = " to ") -> str:
-    """Return the maximum over the stiffness of links; a dash where statics gives all loads."""
-    over = pin.sharing
-    return to.join(engineering(end, END_DIGITS) for end in over.max_von_mises) if over else DASH
+def variation_range(over: JointRange | SharingRange | None) -> str:
+    """Return the maximum over what is not known of a joint, or over the stiffness of links; a dash
+    where that was not computed.
+    """
+    return " to ".join(engineering(x, END_DIGITS) for x in over.max_von_mises) if over else DASH
 
 
 def part_words(pin: PinResult) -> str:

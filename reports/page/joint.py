@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fea.support.records import BandContact, JointResult, LugStress, Variation
 from reports.data.row import PinResult, Units
 from reports.format.numbers import DASH, engineering, short
-from reports.format.ranges import END_DIGITS, joint_range, part_words
+from reports.format.ranges import END_DIGITS, part_words, variation_range
 from reports.tables.column import Column, Grid, PinRow, Table, grid_of, in_order, read_only, texts
 from reports.tables.stress.joint import BAND_COLUMNS, LUG_COLUMNS
 
@@ -77,9 +77,8 @@ def _sentence(pin: PinResult, joint: JointResult, units: Units) -> str:
     error = f"errors of {parts}" if parts else ""
     over = "" if joint.bands else "no range over the joint"
     if joint.range:
-        over = (
-            f"the maximum is {joint_range(pin)} {units.stress} over what is not known of the joint"
-        )
+        low_to_high = f"{variation_range(joint.range)} {units.stress}"
+        over = f"the maximum is {low_to_high} over what is not known of the joint"
         if joint.range.model == "foundation":
             lugs = "assumed lugs" if joint.range.assumed else "its lugs"
             over += f" (beam on foundations in {lugs}, its error included)"

@@ -20,7 +20,7 @@ from reports.data.dependence import depends_on
 from reports.data.fields import Field
 from reports.data.results import Results
 from reports.files import write_reports
-from reports.format.ranges import joint_range, part_words
+from reports.format.ranges import part_words, variation_range
 from reports.format.words import JOINT_RANGE_NOTE
 from reports.page.viewer import pin_views
 from reports.plots.all import all_plots
@@ -205,7 +205,8 @@ def test_without_a_required_factor_yield_is_the_limit(small: Results) -> None:
 
 
 def test_words_of_a_row(small: Results) -> None:
-    assert [joint_range(pin) for pin in small.pins] == ["1,100 to 1,900", "–"]
+    ranges = [pin.joint.range if pin.joint else None for pin in small.pins]
+    assert [variation_range(over) for over in ranges] == ["1,100 to 1,900", "–"]
     assert part_words(small.pins[0]) == "mesh, cells of contact"
 
 

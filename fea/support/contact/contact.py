@@ -59,7 +59,7 @@ SIGN_TOLERANCE = 1e-12  # of the largest pressure or gap: a wrong sign below it 
 SOFT_SPRING_STIFFNESS = 1e-13
 # Numbers kept of the responses of sets of cells, counted by one value of each cell and motion.
 MAX_KEPT_NUMBERS = 4_000_000
-MAX_KEPT_STATES = 64  # of loads: those of single instants are asked for again and again
+MAX_KEPT_STATES = 64  # of loads: those of single instants are requested repeatedly
 
 
 class ContactProblem:

@@ -29,6 +29,7 @@ LimitState = Callable[[Array], Array]  # at u (n, d): values (n,), failing where
 
 # Standard deviations: where the search ends, probabilities are below 1e-18
 MAX_RELIABILITY_INDEX = 10.0
+DISTINCT_COSINE = 0.9  # of two directions: above it, two points are one
 QUANTILE_ANGLE = 0.01  # angle of a quantile's point, whose square is in the value
 
 
@@ -204,13 +205,13 @@ def form_quantile(
     return FormQuantile(np.nan, u, g.calls, "FORM does not converge")
 
 
-def distinct(points: list[DesignPoint], cosine: float = 0.9) -> list[DesignPoint]:
+def distinct(points: list[DesignPoint]) -> list[DesignPoint]:
     """Return the converged points, nearest first, without those in nearly the direction of a nearer
     one.
     """
     separate: list[DesignPoint] = []
     for point in sorted((p for p in points if not p.why), key=lambda p: abs(p.index)):
-        if all(point.direction @ other.direction < cosine for other in separate):
+        if all(point.direction @ other.direction < DISTINCT_COSINE for other in separate):
             separate.append(point)
     return separate
 

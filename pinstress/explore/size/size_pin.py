@@ -151,8 +151,8 @@ def size_pin(
     pin: str,
     goal: SizingGoal,
     others: Mapping[str, float],
-    tell: Tell = lambda _: None,
     label: str = "",
+    tell: Tell = lambda _: None,
 ) -> SizingResult:
     """Size one pin for all cases of a plan.
 

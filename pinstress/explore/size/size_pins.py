@@ -98,21 +98,10 @@ def _size(
         size_on(cluster, ClusterSizing.of(plan, goal), todo, scales, done, progress)
         return
     work = [
-        Job(f"pin {name}", partial(_job, plan, name, goal, scales, _label(names, name)))
+        Job(f"pin {name}", partial(size_pin, plan, name, goal, scales, _label(names, name)))
         for name in todo
     ]
     in_parallel(work, jobs, progress, done=done)
-
-
-def _job(
-    plan: Plan,
-    name: str,
-    goal: SizingGoal,
-    scales: Mapping[str, float],
-    label: str,
-    tell: Callable[[str], None],
-) -> SizingResult:
-    return size_pin(plan, name, goal, scales, tell, label)
 
 
 def _label(names: list[str], name: str) -> str:

@@ -69,17 +69,17 @@ def factor_axis(lines: Sequence[PinLine]) -> FactorAxis | None:
     return FactorAxis(low, min(high, low * 10.0**MAX_DECADES), common)
 
 
-def bar(line: PinLine, axis: FactorAxis, width: int = BAR_WIDTH) -> str:
+def bar(line: PinLine, axis: FactorAxis) -> str:
     """Return the bar of a pin in characters: its spread, factor with error, and the requirement."""
-    cells = [" "] * width
+    cells = [" "] * BAR_WIDTH
 
     def draw(ends: tuple[float, float], mark: str) -> None:
-        first, last = (min(int(width * axis.at(end)), width - 1) for end in ends)
+        first, last = (min(int(BAR_WIDTH * axis.at(end)), BAR_WIDTH - 1) for end in ends)
         cells[first : last + 1] = mark * (last + 1 - first)
 
     if line.spread:
         draw(line.spread, SPREAD_MARK)
-    required = min(int(width * axis.at(limit(line.row))), width - 1)
+    required = min(int(BAR_WIDTH * axis.at(limit(line.row))), BAR_WIDTH - 1)
     cells[required] = REQUIRED_MARK
     if line.error:
         draw(line.error, FACTOR_MARK)

@@ -18,9 +18,8 @@ from reports.format.numbers import finite, ratio, short
 from reports.format.ranges import (
     error_range,
     factor_range,
-    joint_range,
-    sharing_range,
     utilisation_range,
+    variation_range,
 )
 from reports.format.words import (
     BENEATH_CONTACT_NOTE,
@@ -119,10 +118,10 @@ COLUMNS: tuple[Column[FactorRow], ...] = (
     *(_error(part) for part in ("mesh", "time", "series", "model", "cells")),
     *fields("sharing_low=sharing?.max_von_mises.0", "stress"),
     Column("sharing_high", lambda row: row.sharing and row.sharing.max_von_mises[1], "stress",
-           "links", lambda row: sharing_range(row.pin), rank=4, drop_if_empty=True),
+           "links", lambda row: variation_range(row.sharing), rank=4, drop_if_empty=True),
     *fields("joint_low=joint?.max_von_mises.0", "stress"),
     Column("joint_high", lambda row: row.joint and row.joint.max_von_mises[1], "stress", "joint",
-           lambda row: joint_range(row.pin), rank=4, drop_if_empty=True),
+           lambda row: variation_range(row.joint), rank=4, drop_if_empty=True),
     *fields("joint_model=joint?.model"),
     Column("joint_lugs", lambda row: row.joint and lugs_word(row.joint)),
     Column("outcome", lambda row: row.pin.outcome, "", "result",

@@ -171,7 +171,7 @@ def test_progress_counts_pins_and_trials(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(several("BC"))
     plan = prepare(load_study(tmp_path / "study.toml"))
     told: list[str] = []
-    result = size_pin(plan, "C", SizingGoal(10.0), {}, told.append, "pin 2 of 2")
+    result = size_pin(plan, "C", SizingGoal(10.0), {}, "pin 2 of 2", told.append)
     assert result.scale is not None
     assert 1 <= result.full <= MAX_FULL
     for k in range(1, result.trials + 1):
