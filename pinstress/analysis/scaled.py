@@ -17,7 +17,7 @@ import numpy as np
 from fea.core.material import Material
 from fea.core.peak import ErrorParts, Maximum
 from fea.core.places import BandPressure, ContactPlace, Place, Places
-from fea.core.requirement import Requirement
+from fea.core.requirement import MAX_ROUGH_ERROR, Requirement
 from fea.support.contact.contact_place import reached
 from fea.support.lugs.lug import Lug, LugRange
 from fea.support.records import JointRange, JointResult
@@ -42,10 +42,6 @@ SPREAD_SHARE, MAX_SPREAD = 0.15, 0.4
 # (fea.support.contact.held.ROUGH). On narrower arcs stress is off by up to 50 %, and on larger
 # cells, by which the error is found, as much.
 MIN_HALF_ARC = 25.0
-# Of the surface on rough cells: the error that they find, above which lugs press too unevenly along
-# the pin for them. In symmetrical forks it is 7 %; in single shear 10 to 50 %, of a stress that is
-# 15 to 55 % too small, with clearances of 0 to 1 %.
-MAX_ROUGH_ERROR = 0.08
 NOMINAL_STRENGTH = 1e9  # Pa: of what is solved for any strength
 CLEARANCE_DIGITS = 12  # of clearances in metres that are compared
 SCALED_CODE = "scaled"

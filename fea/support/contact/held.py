@@ -23,7 +23,7 @@ from fea.core.linear_solver import SolveError
 from fea.core.peak import NO_REASON, Maximum, Reason, meets_limit
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.places import CaseCrushing
-from fea.core.requirement import Requirement
+from fea.core.requirement import MAX_ROUGH_ERROR, Requirement
 from fea.core.verdict import Evidence
 from fea.cut.field import CutField
 from fea.cut.region import RingedCutPin, refusal
@@ -124,8 +124,9 @@ class ContactSupport:
             compared = contact.compared(near, requirement, finest)
         starts = {case: contact.press(links) for case, links in contact.instants.items()}
         held = HeldContact(
-            problem, contact, starts, near, compared, finest, refused, alone=self.alone is not None
-        )
+            problem, contact, starts, near, compared, finest, refused,
+            alone=self.alone is not None, rough=self.cells is ROUGH,
+        )  # fmt: skip
         if finer is None or self.cells is not ROUGH:  # rough ones are a trial only
             failed = {case: _failed(problem, case, why) for case, why in contact.failed.items()}
             held = replace(held, failures=held.failures | failed)
@@ -197,7 +198,7 @@ class HeldContact:
     starts: by case, the pressures at the instants of which their patterns are made.
     candidates: by case, the instants that may govern.
     compared: by case, contact on these cells against that on larger ones.
-    alone: whether nothing is compared with other cells or meshes.
+    alone: whether nothing is compared with other cells or meshes. rough: whether the cells are.
     """
 
     problem: PinProblem
@@ -210,6 +211,7 @@ class HeldContact:
     notes: Mapping[str, Reason] = field(default_factory=dict)
     clamps: tuple[str, ...] = ()
     alone: bool = False
+    rough: bool = False
 
     @property
     def model(self) -> ContactModel:
@@ -257,7 +259,9 @@ class HeldContact:
         known = self.compared.get(case)
         if known is None:
             return False
-        return self.finest or known.fine(self.problem.material, requirement.of_case(case))
+        followed = not self.rough or known.surface.cells.surface <= MAX_ROUGH_ERROR
+        fine = known.fine(self.problem.material, requirement.of_case(case))
+        return self.finest or (followed and fine)
 
     def of_meshes(self, requirement: Requirement) -> Requirement:
         """The requirement on the meshes, with a smaller tolerance since cells use a part of it.
