@@ -89,6 +89,10 @@ class BeamCheck:
         return self.difference(self.fea_axial_stress).largest
 
     @property
+    def largest_axis_load(self) -> float:
+        return self.difference(self.fea_axial_stress_axis_load).largest
+
+    @property
     def largest_anywhere(self) -> float:
         return self.difference(self.fea_axial_stress).largest_anywhere
 
