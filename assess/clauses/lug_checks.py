@@ -112,7 +112,7 @@ def lug_checks(_: CheckText, s: Situation) -> list[Margin]:
 
 @check("lug, as required", SHIGLEY_JOINTS, kind="hand", takes="loads")
 def required_lug_checks(_: CheckText, s: Situation) -> list[Margin]:
-    """Those of them that the study requires, for codes that make none of them."""
+    """The checks of `lug_checks` that the study requires, for codes that make none of them."""
     checks = {m: x for x, methods in METHODS_BY_FORMULA.items() for m in methods}
     return [m for m in lug_checks(s) if (checks.get(m.method), m.level) in s.required]
 

@@ -277,7 +277,7 @@ class HarmonicModel(HarmonicBody):
 
 
 def _read_in_blocks(read: Reading, moved: Moved, tractions: Floats) -> tuple[Floats, Floats]:
-    """As Reading.of, some loads at a time: its samples take several times what it returns."""
+    """Read as Reading.of, some loads at a time: its samples take several times its result."""
     count = len(moved.loads)
     whole: list[Floats] = []
     for first in range(0, count, LOADS_READ_AT_ONCE):

@@ -32,7 +32,7 @@ class PrismFace:
 
     @staticmethod
     def of(face: SampledFace, near: float) -> PrismFace | None:
-        """None for other faces, and for planes through the axis."""
+        """The plane of a face; None if it is no plane along the axis, or passes through it."""
         normal = face.normals[0]
         distance = float(face.points[0] @ normal)
         if not face.plane or abs(normal[2]) > FACE_TOLERANCE or abs(distance) < near:

@@ -23,7 +23,7 @@ from geometry.imported.drilled_faces import (
     near,
     rounds_mouth,
 )
-from geometry.imported.prisms import prisms
+from geometry.imported.prisms import Z_AXIS, prisms
 from geometry.imported.sampled_face import FACE_TOLERANCE, Axis, SampledFace
 from geometry.shape.drill import FLAT_TIP_ANGLE, Bottom
 from geometry.shape.features import Cut, outer_radius, radii
@@ -31,8 +31,6 @@ from geometry.shape.hole import Hole
 from geometry.shape.milled import Flat, Slot
 from geometry.shape.passage import Passage
 from geometry.shape.pin import Pin
-
-Z_AXIS = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True)
