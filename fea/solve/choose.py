@@ -14,7 +14,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import zip_longest
 from typing import TYPE_CHECKING
 
 from fea.beam.error_model import PLAIN_SECTION_ERROR
@@ -121,7 +121,7 @@ def rungs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
 
 
 def _in_lugs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
-    from fea.support.contact.held import RESOLUTIONS, ROUGH, ContactSupport
+    from fea.support.contact.held import RESOLUTIONS, ROUGH, Alone, Arcs, ContactSupport
     from fea.support.foundation.held import FoundationSupport
 
     joints, foundation = requirement.joints, FoundationSupport()
@@ -145,10 +145,13 @@ def _in_lugs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
         resolutions = (ROUGH if requirement.cells == "rough" else RESOLUTIONS[0],)
     elif requirement.goal == "decide":
         resolutions = (ROUGH, *RESOLUTIONS)
-    for cells, finer in pairwise((*resolutions, None)):
-        assert cells is not None
-        contact = ContactSupport(cells, finer, None if requirement.compared else "alone")
-        yield Rung(contact, _contact)
+    alone: Alone | None = None if requirement.compared else "alone"
+    first, *others = resolutions
+    yield Rung(ContactSupport(first, others[0] if others else None, alone), _contact)
+    arcs: Arcs
+    for arcs in ("wide", "narrow"):
+        for cells, finer in zip_longest(others, others[1:]):
+            yield Rung(ContactSupport(cells, finer, alone, arcs), _contact)
 
 
 def _beam(at: Attempt) -> dict[str, Solution]:

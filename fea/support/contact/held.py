@@ -59,20 +59,27 @@ RESOLUTIONS: tuple[Resolution, ...] = (
 )
 ROUGH = Resolution(4, 24, 8)  # may decide a required factor
 Alone = Literal["unit", "alone"]
+Arcs = Literal["wide", "narrow"]
 
 
 class ContactSupport:
     """A support by lugs in contact, on cells of one resolution (fea.support.support.Support).
 
     finer: the next resolution, None for the last.
+    arcs: the cases that are held: "wide", those whose arcs of contact the usual cells follow;
+    "narrow", all that are left, on cells that follow their arcs; None, all on usual cells.
     alone: without an error of the cells or variations of the joint; "unit": by unit pressures of
     the rings, which a memo has (fea.support.contact.unit_pressures).
     """
 
     def __init__(
-        self, cells: Resolution, finer: Resolution | None = None, alone: Alone | None = None
+        self,
+        cells: Resolution,
+        finer: Resolution | None = None,
+        alone: Alone | None = None,
+        arcs: Arcs | None = None,
     ) -> None:
-        self.cells, self.finer, self.alone = cells, finer, alone
+        self.cells, self.finer, self.alone, self.arcs = cells, finer, alone, arcs
 
     def hold(
         self,
@@ -92,11 +99,17 @@ class ContactSupport:
         cells, finer = self.cells, self.finer
         if isinstance(coarser, HeldContact):
             near = coarser.candidates
-            cells = coarser.for_arcs(cells, left)
-            finer = finer and coarser.for_arcs(finer, left)
-            wide = finer is self.finer  # narrow arcs are better known on the next cells
-            if finer is not None and wide and coarser.far_from(left, requirement):
-                cells, finer = finer, None
+            # Cells that follow narrow arcs have many harmonics and few rings, so that they neither
+            # suit a case with wide ones nor should be solved for it.
+            if self.arcs == "wide":
+                left = tuple(case for case in left if not coarser.narrow(case.case))
+                if not left:
+                    return replace(coarser, starts={})
+                if finer is not None and coarser.far_from(left, requirement):
+                    cells, finer = finer, None
+            elif self.arcs == "narrow":
+                cells = coarser.for_arcs(cells, left)
+                finer = finer and coarser.for_arcs(finer, left)
         progress(f"pin {problem.pin.name}, flexibility of {cells.rings} rings of each lug")
         profile, cut = profile_of(problem.pin), isinstance(problem.pin, CutPin)
         of, between, also = (profile, problem.material, problem.lugs), problem.between, problem.also
@@ -122,6 +135,8 @@ class ContactSupport:
             compared = contact.uncompared(near)
         else:
             compared = contact.compared(near, requirement, finest)
+        if isinstance(coarser, HeldContact):  # which has cases that later cells hold
+            compared = {**coarser.compared, **compared}
         starts = {case: contact.press(links) for case, links in contact.instants.items()}
         held = HeldContact(
             problem, contact, starts, near, compared, finest, refused,
@@ -195,9 +210,10 @@ def _ring_count(model: ContactModel, of_band: int) -> int:
 class HeldContact:
     """A pin in contact with its lugs (fea.support.support.HeldPin).
 
-    starts: by case, the pressures at the instants of which their patterns are made.
+    starts: by case that is held, the pressures at the instants of which their patterns are made.
     candidates: by case, the instants that may govern.
-    compared: by case, contact on these cells against that on larger ones.
+    compared: by case, contact on these cells, or the last that held it, against that on larger
+    ones.
     alone: whether nothing is compared with other cells or meshes. rough: whether the cells are.
     """
 
@@ -223,6 +239,14 @@ class HeldContact:
         arcs = [self.compared[x.case].half_angle for x in cases if x.case in self.compared]
         usual = _ring_count(self.model, USUAL_RING_COUNT)
         return cells.for_arcs(min(arcs, default=0.5 * np.pi), usual)
+
+    def narrow(self, case: str) -> bool:
+        """Return whether the finest of the usual cells do not follow a case's arcs of contact."""
+        known = self.compared.get(case)
+        if known is None:
+            return False
+        usual = _ring_count(self.model, USUAL_RING_COUNT)
+        return RESOLUTIONS[-1].for_arcs(known.half_angle, usual) is not RESOLUTIONS[-1]
 
     def far_from(self, cases: Sequence[PinLoads], requirement: Requirement) -> bool:
         """Return whether the next cells will not do for some case either (Compared.far_from)."""
@@ -256,7 +280,7 @@ class HeldContact:
 
     def resolved(self, case: str, requirement: Requirement) -> bool:
         """Return whether finer cells would not help, or there are none."""
-        known = self.compared.get(case)
+        known = self.compared.get(case) if case in self.starts else None
         if known is None:
             return False
         followed = not self.rough or known.surface.cells.surface <= MAX_ROUGH_ERROR

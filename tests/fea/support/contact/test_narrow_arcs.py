@@ -79,6 +79,21 @@ def test_cells_follow_narrow_arcs_to_the_tolerance(
         assert found.peak.max_von_mises == pytest.approx(truth, rel=0.03)
 
 
+@pytest.mark.slow
+def test_a_light_case_leaves_the_cells_of_a_heavy_one_as_they_are() -> None:
+    """Cells that follow the arcs of the light case have fewer rings than the heavy one needs."""
+    heavy, light = loose(1.0), loose(LIGHT[1])
+    of_light = replace(light.cases[0], case="light")
+    both = replace(heavy, cases=(heavy.cases[0], of_light))
+    wanted = Requirement(tolerance=0.012)
+    (alone,), (one, other) = solve(heavy, wanted), solve(both, wanted)
+    assert one.peak.max_von_mises == alone.peak.max_von_mises
+    assert one.peak.parts == alone.peak.parts
+    assert one.peak.verdict == "converged"
+    (as_alone,) = solve(light, wanted)
+    assert other.peak.max_von_mises == pytest.approx(as_alone.peak.max_von_mises, rel=1e-6)
+
+
 def test_arcs_decide_on_sectors_within_the_limit_of_cells() -> None:
     usual = RESOLUTIONS[1]
     assert usual.for_arcs(1.0, 24) is usual
