@@ -14,6 +14,7 @@ Goal = Literal["value", "decide"]
 Joints = Literal["auto", "contact", "foundation"]
 
 MIN_TOLERANCE_SHARE = 0.4  # of the tolerance
+NEGLIGIBLE_SHARE = 0.1  # of an error: another one of this size adds little. Chosen by judgement
 # The relative error of the surface that rough cells of contact find, above which lugs press too
 # unevenly along the pin for them. In symmetrical forks it is 7 %; in single shear 10 to 50 %, of a
 # stress that is 15 to 55 % too small, with clearances of 0 to 1 %.
@@ -72,11 +73,11 @@ class Requirement:
 
     def left(self, case: str) -> float:
         """The part of the tolerance that meshes and instants of a case may use, at least
-        MIN_TOLERANCE_SHARE of it.
+        MIN_TOLERANCE_SHARE of it, and NEGLIGIBLE_SHARE of what is beyond their reach.
         """
-        return max(
-            self.tolerance - self.besides.get(case, 0.0), MIN_TOLERANCE_SHARE * self.tolerance
-        )
+        besides = self.besides.get(case, 0.0)
+        least = max(MIN_TOLERANCE_SHARE * self.tolerance, NEGLIGIBLE_SHARE * besides)
+        return max(self.tolerance - besides, least)
 
 
 def decided(requirement: Requirement, material: Material, low: float, high: float) -> bool:

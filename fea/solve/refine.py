@@ -121,7 +121,7 @@ def refine(
         # The first mesh shows between which instants of a motion the maximum may lie; these are
         # added for all meshes.
         if not level:
-            posed = replace(posed, cases=_through_time(held, problem, mesh, posed))
+            posed = replace(posed, cases=_through_time(held, problem, mesh, posed, requirement))
         for case in posed.cases:
             maximum, end = mesh.maximum(case), time.perf_counter()
             seen[case.case] = seen[case.case].appended(maximum, end - start)
@@ -193,14 +193,23 @@ def _between(held: HeldPin, problem: PinProblem, case: str) -> Between | None:
 
 
 def _through_time(
-    held: HeldPin, problem: PinProblem, mesh: MeshSolution, posed: MeshProblem
+    held: HeldPin,
+    problem: PinProblem,
+    mesh: MeshSolution,
+    posed: MeshProblem,
+    requirement: Requirement,
 ) -> tuple[PinLoads, ...]:
-    """The cases with the instants that matter according to the first mesh."""
+    """The cases with the instants that matter according to the first mesh.
+
+    Beside an error that exceeds the tolerance, such as that of contact's cells, instants to the
+    tolerance gain nothing.
+    """
     out = []
     for case in posed.cases:
         between = _between(held, problem, case.case)
         if between is not None:
-            case = through_time(mesh.field(case.case), case, between, posed.tolerance)
+            tolerance = max(posed.tolerance, requirement.besides.get(case.case, 0.0))
+            case = through_time(mesh.field(case.case), case, between, tolerance)
         out.append(case)
     return tuple(out)
 
