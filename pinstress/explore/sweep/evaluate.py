@@ -290,7 +290,10 @@ class Evaluator:
         requirement = requirement_of(study, memory=self._memory)
         posed = []
         for task in tasks(study, [pin], loads):
-            alike = None if task.lugs or requirement.goal == "decide" else self._alike.get(key)
+            # Strengths decide where stress is read that is only to be decided on, and where stress
+            # governs on a pin with a hardened surface.
+            strong = requirement.goal == "decide" or bool(task.material.hardened)
+            alike = None if task.lugs or strong else self._alike.get(key)
             one = posed_task(study, task, requirement, loads, alike)
             posed.append(one)
             if not task.lugs:
