@@ -1,11 +1,13 @@
 """Fits that press or leave play within their range, or by the temperature of a case: a beam on
-foundations ended in a traceback.
+foundations ended in a traceback, and sweeps called a pin safe that had come loose.
 """
 
 from __future__ import annotations
 
 import pinstress
 from pinstress import InputError, study_from
+from pinstress.explore.sweep.evaluate import Evaluator
+from pinstress.explore.sweep.number import number_at
 from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.pins.studies import DOUBLE_SHEAR
@@ -81,3 +83,14 @@ def test_the_range_about_prescribed_loads_says_that_it_has_no_interference(
     assert row.joint.range is not None
     assert {v.what for v in row.joint.range.variations} > {"tilt"}
     assert f"not included: {omitted}" in row.joint.remark
+
+
+@each("joints", ["contact", "prescribed"])
+def test_a_pin_that_comes_loose_depends_in_designs_as_in_a_run(joints: str) -> None:
+    loose = study("clearance = -0.01", joints, "100 degC")
+    (row,) = pinstress.run(loose)
+    key = "material.steel.yield_strength"
+    (design,) = Evaluator(loose, [number_at(loose, key)]).rows([700e6])
+    assert row.outcome == design.outcome == "depends"
+    assert "press fit lost in L above 65.5 degC" in design.depends_on
+    assert design.safety_factor == row.safety_factor
