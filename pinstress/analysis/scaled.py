@@ -23,7 +23,7 @@ from fea.support.lugs.lug import Lug, LugRange
 from fea.support.records import JointRange, JointResult
 from geometry import Pin
 from pinbase.arrays import Floats
-from pinstress.analysis.gather.gather_landing import range_of
+from pinstress.analysis.gather.gather_landing import largest_load, range_of
 from pinstress.study.model.impulses import ImpulseLoads
 from pinstress.study.model.tasks import Task
 from reports.data.row import LandingRange, PinResult
@@ -135,7 +135,8 @@ def scaled_row(
     joint = now.joint and _with_range(now.joint, row.joint, by, ratios["beneath"])
     landing, strength = None, task.material.yield_strength
     if row.landing is not None and over is not None:
-        landing = _landing(row.landing, over, peak, strength)
+        most = largest_load(task, row.case, task.ranges[row.case])
+        landing = replace(_landing(row.landing, over, peak, strength), largest_load=most)
     return PinResult(peak, joint=joint, landing=landing)
 
 

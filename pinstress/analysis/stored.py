@@ -25,7 +25,8 @@ from reports.data.row import PinResult
 from reports.data.sensitivities import PinSensitivities
 from reports.data.surface import Surface
 
-SHAPE_TABLES = "profile", "meridian", "bore_meridian", "band"  # whose keys sensitivities have
+# Whose keys sensitivities have, and whose defaults change with other dimensions.
+DIMENSION_TABLES = "profile", "meridian", "bore_meridian", "band", "lug"
 
 
 @dataclass(frozen=True)
@@ -77,11 +78,13 @@ def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
     check = study.table.beam_check if task is plan.checked else None
     return (
         shape_of(task.pin),
-        study.table.pin[task.pin.name].model_dump(include=set(SHAPE_TABLES)),
+        study.table.pin[task.pin.name].model_dump(include=set(DIMENSION_TABLES)),
         task.clamps,
         task.lugs,
         task.surroundings,
+        task.given,
         study.table.analysis.joints,
+        study.table.fatigue is not None,
         rung_of(plan, task.pin.name),
         collapse_factors(study, task),
         task.loads,

@@ -40,7 +40,8 @@ from fea.support.foundation.plane_contact import half_angle
 from fea.support.foundation.stress import FoundationStress
 from fea.support.foundation.variations import FoundationRange
 from fea.support.lugs.axial import seats_note
-from fea.support.lugs.fit import beyond_foundations
+from fea.support.lugs.changes import joint_variations, pressed_in
+from fea.support.lugs.fit import beyond_foundations, on_structure
 from fea.support.records import BandContact
 from fea.support.support import (
     HeldPin,
@@ -81,7 +82,7 @@ class FoundationSupport:
 
     def may_be_enough(self, problem: PinProblem, requirement: Requirement) -> bool:
         """Return whether the foundation's error, at least a tenth, may be small enough; never for a
-        pin with cuts.
+        pin with cuts, nor for one that may be pressed into a lug.
         """
         pin = body_of_revolution(problem.pin)
         if pin is None:
@@ -91,8 +92,10 @@ class FoundationSupport:
         may = requirement.tolerance >= PLAIN_SECTION_ERROR + PLAIN_MOMENT_ERROR or (
             requirement.goal == "decide" and known
         )
-        beyond = beyond_foundations(pin, problem.lugs)
-        return requirement.model == "auto" and may and not beyond
+        if requirement.model != "auto" or not may or beyond_foundations(pin, problem.lugs):
+            return False
+        whole = on_structure(pin, problem.lugs)
+        return not any(map(pressed_in, joint_variations(whole, problem.lugs)))
 
 
 @dataclass(frozen=True)

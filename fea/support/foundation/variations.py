@@ -18,7 +18,7 @@ from fea.support.contact.bending import growth_across, growth_of_lugs
 from fea.support.foundation.bounds import stress_bounds
 from fea.support.foundation.foundation_model import FoundationModel
 from fea.support.foundation.stress import FoundationStress
-from fea.support.lugs.changes import joint_variations, with_stiffness
+from fea.support.lugs.changes import joint_variations, pressed_in, with_stiffness
 from fea.support.lugs.fit import beyond_foundations
 from fea.support.lugs.lug import Lug
 from fea.support.records import JointRange, JointResult, Variation
@@ -31,12 +31,13 @@ class Varied:
 
     what, value: the property, and its value in words.
     length: the value, m, if it is a length.
+    stress: None where the pin is pressed into a lug, whose stress a beam does not know.
     """
 
     what: str
     value: str
     length: float | None
-    stress: FoundationStress
+    stress: FoundationStress | None
 
 
 class FoundationRange:
@@ -68,6 +69,9 @@ class FoundationRange:
             return None, given.why
         over, left_out = [], []
         for joint in self.varied:
+            if joint.stress is None:
+                left_out.append(f"{joint.what} {joint.value}")
+                continue
             try:
                 varied = joint.stress.model.solve(loads)
             except SolveError:  # lugs that are free to tilt may leave a couple on the pin
@@ -126,6 +130,9 @@ def _prescribed(over: FoundationRange, loads: PinLoads) -> JointResult:
 def _varied(given: FoundationStress) -> Iterator[Varied]:
     model = given.model
     for change in joint_variations(model.whole, model.lugs):
+        if pressed_in(change):
+            yield Varied(change.what, change.value, change.length, None)
+            continue
         if change.length is not None:
             other = model.with_clearances(list(change.lugs))
         else:

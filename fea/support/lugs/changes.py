@@ -60,6 +60,11 @@ def joint_variations(pin: Pin, lugs: Sequence[Lug]) -> Iterator[JointChange]:
     return (change for change in changes if (change.lugs, change.softness) != unchanged)
 
 
+def pressed_in(change: JointChange) -> bool:
+    """Whether the pin is pressed into a lug of a joint that is changed so."""
+    return any(lug.clearance < 0.0 for lug in change.lugs)
+
+
 def with_stiffness(lug: Lug, times: float) -> Lug:
     """The lug, and its bushing, so many times as stiff."""
 

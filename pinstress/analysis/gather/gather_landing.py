@@ -34,11 +34,11 @@ def landing_range(
     maxima = _maxima(task, solution, task.ranges[case])
     strength = solution.peak.yield_strength(task.material.yield_strength)
     nominal = range_of(solution.peak, over, maxima, strength)
-    most = _largest_load(task, case, task.ranges[case])
+    most = largest_load(task, case, task.ranges[case])
     return replace(nominal, spread=_spread(solution.peak), largest_load=most)
 
 
-def _largest_load(task: Task, case: str, ranged: PinLoads) -> float:
+def largest_load(task: Task, case: str, ranged: PinLoads) -> float:
     """Return the largest ratio of the force on a band over ranges to that of the case.
 
     Bands with next to no load are left out: a check of theirs governs nothing.
@@ -66,7 +66,7 @@ def sharing_range(task: Task, solution: Solution) -> SharingRange | None:
     low, high = min(stress, key=stress.__getitem__), max(stress, key=stress.__getitem__)
     ends = min(peak, stress[low]), max(peak, stress[high])
     # Links share moments, too, of which bands have many: the stress stands for them.
-    most = max(_largest_load(task, solution.peak.case, over.loads), ends[1] / peak if peak else 1.0)
+    most = max(largest_load(task, solution.peak.case, over.loads), ends[1] / peak if peak else 1.0)
     return SharingRange(
         ends, low if stress[low] < peak else "", high if stress[high] > peak else "", most
     )

@@ -302,6 +302,12 @@ def _notes(study: Study, nominal: Results, table: Iterable[tuple[str, str]]) -> 
     in_lugs = with_given_lugs(study, (pin for pin, _ in table))
     if said := not_judged(in_lugs, checks_besides_yield(study)):
         yield said
+    for p in nominal.pins:
+        if p.lost_fits:
+            yield (
+                f"Pin {p.pin} comes loose in {p.case}: its press fit is lost in "
+                f"{', '.join(p.lost_fits)}. What else retains it is not judged here."
+            )
     if any(p.verdict == "singular" for p in nominal.pins):
         yield (
             "Rows marked singular have unbounded stress at a corner or an edge (singular_zones.csv "

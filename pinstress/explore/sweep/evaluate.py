@@ -30,7 +30,6 @@ from pinstress.explore.sweep.superposed import PosedTask, Rows, posed_task, supe
 from pinstress.study.model.cases import CaseLoads, case_loads
 from pinstress.study.model.mechanism.linkage import AnyLinkage, any_linkage, determined
 from pinstress.study.model.pins import pin as pin_of
-from pinstress.study.model.requirements import required_factor
 from pinstress.study.model.tasks import Task, tasks
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, raw_study, with_raw, with_value
@@ -290,7 +289,10 @@ class Evaluator:
         requirement = requirement_of(study, memory=self._memory)
         posed = []
         for task in tasks(study, [pin], loads):
-            alike = None if task.lugs or requirement.goal == "decide" else self._alike.get(key)
+            # Strengths decide where stress is read that is only to be decided on, and where stress
+            # governs on a pin with a hardened surface.
+            strong = requirement.goal == "decide" or bool(task.material.hardened)
+            alike = None if task.lugs or strong else self._alike.get(key)
             one = posed_task(study, task, requirement, loads, alike)
             posed.append(one)
             if not task.lugs:
@@ -312,11 +314,7 @@ class Evaluator:
         except (InputError, ArgumentError, ArithmeticError, MemoryError) as error:
             names = [loads.case for loads in task.loads]
             return {(pin, c): _failed(study, pin, c, error) for c in names}
-        return {
-            (pin, x.case): _design_row(judged_row(x, task, required_factor(study, pin, x.case)),
-                                       task, study)
-            for x in rows
-        }  # fmt: skip
+        return {(pin, x.case): _design_row(judged_row(x, task, study), task, study) for x in rows}
 
     def _rows_of(self, posed: PosedTask) -> Rows:
         known = self._rows.get(posed.key)

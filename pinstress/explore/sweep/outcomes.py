@@ -15,7 +15,10 @@ from fea.support.support import Solution
 from pinbase.records import in_units
 from pinstress.analysis.gather.gather_landing import landing_range, sharing_range
 from pinstress.study.model.cases import CaseLoads
+from pinstress.study.model.lost_fits import lost_fits
+from pinstress.study.model.requirements import required_factor
 from pinstress.study.model.tasks import Task
+from pinstress.study.reading.file import Study
 from pinstress.study.schema.units import UnitSystem
 from reports.data.curve import AS_DESCRIBED
 from reports.data.dependence import depends_on
@@ -37,11 +40,18 @@ def bare_row(task: Task, solution: Solution, loads: Mapping[str, CaseLoads]) -> 
     return PinResult(peak, joint=joint, landing=landing, sharing=sharing)
 
 
-def judged_row(row: PinResult, task: Task, required: float | None) -> PinResult:
-    """Return a row with its judgement and what that depends on."""
-    strength = task.material.yield_strength
-    judgement = against_yield(row.maximum, strength, required)
-    row = replace(row, judgement=judgement, strength_range=task.material.strength_range)
+def judged_row(row: PinResult, task: Task, study: Study) -> PinResult:
+    """Return a row with its judgement and what that depends on.
+
+    study: of the design.
+    """
+    required = required_factor(study, row.pin, row.case)
+    row = replace(
+        row,
+        judgement=against_yield(row.maximum, task.material.yield_strength, required),
+        strength_range=task.material.strength_range,
+        lost_fits=lost_fits(study, task, row.case),
+    )
     return replace(row, depends_on=depends_on(row))
 
 

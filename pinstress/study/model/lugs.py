@@ -10,7 +10,7 @@ from functools import partial
 from fea.core.material import Material
 from fea.cut.inside import crosses_end
 from fea.support.lugs.axial import axial_seats
-from fea.support.lugs.fit import beyond_foundations, fitted, on_structure
+from fea.support.lugs.fit import beyond_foundations, fitted, on_structure, pressed_in_range
 from fea.support.lugs.lug import Bushing, Lug, LugRange, Shank
 from fea.support.lugs.thermal import at_temperature
 from geometry import ArgumentError, Band, Cut, Hole, Pin, PinLike, body_of_revolution
@@ -58,7 +58,8 @@ def lugs(
             "clamped-in-lugs",
         )
     out = _fitting(study, pin, at, case)
-    if joints == "foundation" and (reason := beyond_foundations(pin, out)):
+    reason = beyond_foundations(pin, out) or pressed_in_range(out)
+    if joints == "foundation" and reason:
         raise study.error(
             f'pin {pin.name} on foundations: {reason}; use analysis.joints = "contact"',
             at,

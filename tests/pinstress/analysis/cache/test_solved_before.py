@@ -21,21 +21,45 @@ from fea.solve.solve import solve as solve_problem
 from fea.support.support import PinProblem
 from geometry import Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
-from pinstress import load_study
+from pinbase.records import pack
+from pinstress import load_study, study_from
 from pinstress.analysis import cache as cache_module
 from pinstress.analysis.cache import Cache, user_cache
 from pinstress.analysis.plan import prepare
 from pinstress.analysis.stored import Entry, cache_key, independent_of_memory
 from pinstress.cli.commands import run_command_line
 from tests.conftest import ROOT
-from tests.support.each import sampled
+from tests.support.each import each, sampled
 from tests.support.pins.pin_files import write_mesh
-from tests.support.pins.studies import TWO_PINS
+from tests.support.pins.studies import DOUBLE_SHEAR, TWO_PINS
 from tests.support.programs.folder_contents import contents, flipped
 
 RUN = ["run", "study.toml", "--jobs", "1"]
 
 Solve = Callable[..., list[str]]
+
+IN_LUGS = f"""
+title = "A pin with a hole in three lugs"
+units = "mm-N-s"
+material.iron = {{ youngs_modulus = "170 GPa", poisson_ratio = 0.27, yield_strength = 300 }}
+case.pull = {{ kind = "given", forces = {{ L = [-50, 0], M = [100, 0], R = [-50, 0] }} }}
+[material.steel]
+youngs_modulus = "205 GPa"
+poisson_ratio = 0.3
+yield_strength = 600
+fatigue = {{ knee_stress = 200, knee_cycles = 1e6, slope = 5, mean_stress_sensitivity = 0.3 }}
+[analysis]
+joints = "JOINTS"
+limit_load = "always"
+[pin.P]
+material = "steel"
+profile = {DOUBLE_SHEAR}
+hole = [{{ z = 21, diameter = 3 }}]
+[pin.P.lug.L]
+material = "iron"
+outer_diameter = 50
+friction = 0.1
+"""
 
 
 @pytest.fixture(scope="module")
@@ -111,6 +135,19 @@ def test_what_changed_is_solved(solve: Solve, old: str, new: str, expected: list
     assert old in TWO_PINS
     beam = '"beam"' in new  # which does not reach the tolerance
     assert solve(TWO_PINS.replace(old, new, 1), status=int(beam)) == expected
+
+
+@each(("joints", "old", "new"), [
+    ("prescribed", "yield_strength = 300", "yield_strength = 299"),  # of limit loads of lugs
+    ("prescribed", "friction = 0.1", "friction = 0"),  # which leaves a note on what is left out
+    ("contact", "outer_diameter = 50", "edge_radius = 0"),  # by default; now in proportion
+    ("auto", "[analysis]", "[fatigue]\noccurrences = { pull = 1 }\n[analysis]"),  # not by a beam
+])  # fmt: skip
+def test_lugs_and_fatigue_are_part_of_the_question(joints: str, old: str, new: str) -> None:
+    text = IN_LUGS.replace("JOINTS", joints)
+    assert text.count(old) == 1
+    plans = [prepare(study_from(x)) for x in (text, text.replace(old, new))]
+    assert len({pack(cache_key(plan, plan.tasks[0])) for plan in plans}) == 2
 
 
 def test_options_are_part_of_the_question(solve: Solve) -> None:

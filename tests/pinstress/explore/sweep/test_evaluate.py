@@ -54,6 +54,21 @@ def test_loads_and_strength_alone_mesh_nothing_again() -> None:
     assert len({row.safety_factor for row in rows}) == 4
 
 
+def test_strengths_decide_where_a_pin_with_a_hardened_surface_governs() -> None:
+    """Its hardened band has the larger stress, its root the lower strength: designs kept the place,
+    and the strength, of the first one.
+    """
+    hard = 'hardened = { surface = "300 ksi", core = "290 ksi", depth = 0.05 }'
+    study = study_from(ONE_PIN.replace('connection = "B"', f'connection = "B", {hard}'))
+    assert study.text.count("hardened") == 1
+    evaluator, _ = _evaluator(study, STRENGTH)
+    strong, weak = (evaluator.rows([x])[0] for x in (3e9, 1.5e7))
+    (alone,) = _evaluator(study, STRENGTH)[0].rows([1.5e7])
+    assert weak == alone
+    assert weak.max_von_mises != strong.max_von_mises
+    assert (weak.safety_factor or 0.0) * (weak.max_von_mises or 0.0) == pytest.approx(1.5e7)
+
+
 def test_stress_is_proportional_to_a_load_and_does_not_depend_on_the_modulus() -> None:
     evaluator, (force, modulus) = _evaluator(study_from(ONE_PIN), FORCE, MODULUS)
     one, twice, stiff = (
