@@ -174,6 +174,24 @@ def test_long_names_cut_off_no_column_of_forces(browser: Any, tmp_path: Path) ->
         browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
+def test_no_two_regions_have_one_name(browser: Any, tmp_path: Path) -> None:
+    """With all open, on a phone: all tables of values were "Values", those of a case "landing"."""
+    opened(browser, run(STUDIES / "one_pin.toml", tmp_path / "out", "--no-pictures"))
+    size = {"width": 390, "height": 900, "deviceScaleFactor": 1, "mobile": True}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    try:
+        browser.execute_script(
+            "for (const d of document.querySelectorAll('details')) d.open = true;"
+        )
+        script = """return [...document.querySelectorAll("[role=region]")]
+          .filter((e) => e.checkVisibility()).map((e) => e.getAttribute("aria-label"));"""
+        wait(browser, lambda: len(browser.execute_script(script)) > 5)
+        names = browser.execute_script(script)
+        assert len({*names}) == len(names), names
+    finally:
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
 @pytest.mark.parametrize("shade", ["light", "dark"])
 def test_axe_finds_nothing_serious(page: Any, shade: str) -> None:
     unfold(page)
