@@ -12,9 +12,9 @@ from pathlib import Path
 import click
 
 from pinbase.errors import ArgumentError
-from pinstress.study.model.iso286 import fit_of
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.materials import StoredMaterial, library, read_materials
+from pinstress.study.schema.iso286 import fit_of
 from pinstress.study.schema.shown import as_text, in_toml, near
 from pinstress.study.schema.units import UNIT_SYSTEMS, split, to_si
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -59,7 +60,7 @@ if TYPE_CHECKING:
     from rich.progress import Progress as Bar
     from rich.progress import ProgressColumn
 
-FILE_COLUMNS = 120  # of output that is no terminal and has no width
+FILE_COLUMNS = 120  # of output that is no terminal, unless the environment states COLUMNS
 # What solving a pin imports on demand: libraries of nearly all pins, and models
 RUN_LIBRARIES = "gmsh", "pymetis", "cvxopt.cholmod", "vtkmodules.vtkIOXML"
 RUN_MODELS = (
@@ -279,8 +280,9 @@ def _large_tables(directory: Path) -> None:
 
 
 def console() -> Console:
-    """Return standard output as a console as wide as the terminal."""
-    return Console() if sys.stdout.isatty() else Console(width=FILE_COLUMNS)
+    """Return standard output as a console as wide as the terminal, or as COLUMNS says."""
+    stated = os.environ.get("COLUMNS", "").isdecimal()  # as Console reads it
+    return Console() if stated or sys.stdout.isatty() else Console(width=FILE_COLUMNS)
 
 
 @contextmanager

@@ -73,7 +73,8 @@ const fillValues = (details) => {
   box.className = "wide";
   box.tabIndex = 0;
   box.setAttribute("role", "region");
-  box.setAttribute("aria-label", "Values");
+  const caption = details.closest("figure").querySelector("figcaption");
+  box.setAttribute("aria-label", `Values: ${caption?.textContent.trim() ?? ""}`);
   const fill = (part, row, kind) => {
     const line = part.insertRow();
     for (const value of row) {

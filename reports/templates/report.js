@@ -93,6 +93,7 @@ named();
 reveal();
 
 // A table that is wider than its place scrolls by keyboard, too.
+let numbered = 0; // so that no two regions have one name
 const sized = new ResizeObserver((seen) => {
   for (const { target } of seen) {
     if (target.scrollWidth <= target.clientWidth) {
@@ -102,7 +103,7 @@ const sized = new ResizeObserver((seen) => {
     const heading = target.closest("details, section")?.querySelector("h2, h3, summary");
     target.tabIndex = 0;
     target.setAttribute("role", "region");
-    target.setAttribute("aria-label", `Table: ${heading?.textContent.trim() ?? ""}`);
+    target.setAttribute("aria-label", `Table ${++numbered}: ${heading?.textContent.trim() ?? ""}`);
   }
 });
 start((root) => root.querySelectorAll(".wide:not([tabindex])").forEach((box) => sized.observe(box)));

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from tests.browser.conftest import STUDIES, run
 from tests.support.results.browser_page import errors, opened, unfold, wait
 
 pytestmark = pytest.mark.browser
@@ -156,6 +157,39 @@ def test_animations_are_inside(page: Any) -> None:
         assert page.find_element("css selector", "#time").text != before
     finally:
         page.switch_to.default_content()
+
+
+def test_long_names_cut_off_no_column_of_forces(browser: Any, tmp_path: Path) -> None:
+    """Beside the animation there is room for 28 rem; upper_brace pushed the last column out."""
+    out = run(STUDIES / "main_gear.toml", tmp_path / "out", "--no-pictures", command="loads")
+    browser.get((out / "animation_retract.html").as_uri())
+    forces = browser.find_element("css selector", "section.numbers")
+    size = {"width": 1098, "height": 900, "deviceScaleFactor": 1, "mobile": False}  # in the page
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    try:
+        assert "upper_brace" in forces.text
+        script = "return arguments[0].scrollWidth - arguments[0].clientWidth;"
+        assert browser.execute_script(script, forces) == 0
+    finally:
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def test_no_two_regions_have_one_name(browser: Any, tmp_path: Path) -> None:
+    """With all open, on a phone: all tables of values were "Values", those of a case "landing"."""
+    opened(browser, run(STUDIES / "one_pin.toml", tmp_path / "out", "--no-pictures"))
+    size = {"width": 390, "height": 900, "deviceScaleFactor": 1, "mobile": True}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    try:
+        browser.execute_script(
+            "for (const d of document.querySelectorAll('details')) d.open = true;"
+        )
+        script = """return [...document.querySelectorAll("[role=region]")]
+          .filter((e) => e.checkVisibility()).map((e) => e.getAttribute("aria-label"));"""
+        wait(browser, lambda: len(browser.execute_script(script)) > 5)
+        names = browser.execute_script(script)
+        assert len({*names}) == len(names), names
+    finally:
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
 @pytest.mark.parametrize("shade", ["light", "dark"])

@@ -6,7 +6,7 @@ import re
 
 from pinbase.errors import ArgumentError
 from pinstress.explore.sweep.number import Number
-from pinstress.study.model.iso286 import CLASS_PATTERN, deviations
+from pinstress.study.schema.iso286 import CLASS_PATTERN, deviations
 from pinstress.study.schema.shown import as_text
 from pinstress.study.schema.thermal_units import difference_of
 from pinstress.study.schema.units import UnitSystem, to_si

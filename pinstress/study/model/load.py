@@ -1,4 +1,6 @@
-"""Reading of a study file, with the errors of its mechanism and pins where its content has some."""
+"""Reading of a study file, with the errors of its mechanism, its pins and the tables that it names
+where its content has some.
+"""
 
 from __future__ import annotations
 
@@ -9,16 +11,19 @@ from pinstress.study.reading import file
 from pinstress.study.reading.damage import Damage
 from pinstress.study.reading.errors import Errors, InputError
 from pinstress.study.reading.file import Study
+from pinstress.study.reading.toml_lines import Place
+from pinstress.study.schema.cases import GivenCase
 
 # Keys of a pin on which its shape does not depend
-NOT_OF_SHAPE = {"material", "lug", "balance", "replaceable"}
+NOT_OF_SHAPE = {"material", "clamp", "lug", "balance", "replaceable"}
+NOT_OF_LOADS = NOT_OF_SHAPE - {"balance"}  # nor the forces that a case gives
 
 
 def load_study(path: str | os.PathLike[str]) -> Study:
     """Read and validate a study file.
 
     Raises: InputError naming the file, the keys and what would be right; for content that is wrong,
-    with the errors of mechanism and pins that do not follow from it.
+    with the errors of mechanism, pins and tables of forces that do not follow from it.
     """
     try:
         return file.load_study(path)
@@ -33,10 +38,11 @@ def load_study(path: str | os.PathLike[str]) -> Study:
 
 
 def _add_errors(study: Study, damage: Damage, errors: Errors) -> None:
-    """Add the errors of the mechanism and the pins that remain of a study.
+    """Add the errors of the mechanism, the pins and the given cases that remain of a study.
 
     damage: what the study lacks.
     """
+    from pinstress.study.model.cases import case_loads
     from pinstress.study.model.mechanism.linkage import contradictions
     from pinstress.study.model.pins import pin
 
@@ -44,7 +50,18 @@ def _add_errors(study: Study, damage: Damage, errors: Errors) -> None:
         _, wrong = contradictions(study, damage)
         if wrong:
             errors.add(study.errors(wrong))
+    damaged = {place[1:2] for place in _of_pins(damage, NOT_OF_SHAPE)}
     for name in study.table.pin:
-        removed = (place for place in damage.places if place[:2] == ("pin", name))
-        if all(len(place) > 2 and place[2] in NOT_OF_SHAPE for place in removed):
+        if not damaged & {(), (name,)}:
             errors.attempt(partial(pin, study, name))
+    if _of_pins(damage, NOT_OF_LOADS):
+        return  # which connections there are is not known
+    for name, case in study.table.case.items():
+        if isinstance(case, GivenCase) and not damage.touches(("case", name)):
+            errors.attempt(partial(case_loads, study, name, None))
+
+
+def _of_pins(damage: Damage, but: set[str]) -> list[Place]:
+    """Return what was removed from pins, apart from these keys of a pin."""
+    removed = (place for place in damage.places if place[0] == "pin")
+    return [place for place in removed if len(place) < 3 or place[2] not in but]

@@ -14,10 +14,10 @@ from fea.support.lugs.fit import beyond_foundations, fitted, on_structure, press
 from fea.support.lugs.lug import Bushing, Lug, LugRange, Shank
 from fea.support.lugs.thermal import at_temperature
 from geometry import ArgumentError, Band, Cut, Hole, Pin, PinLike, body_of_revolution
-from pinstress.study.model.iso286 import fit_of
 from pinstress.study.model.pins import material
 from pinstress.study.model.temperature import at_case, band_radius, rise_of, temperature_words
 from pinstress.study.reading.file import Study
+from pinstress.study.schema.iso286 import fit_of
 from pinstress.study.schema.lugs import LugRangeTable, LugTable, ShankTable
 from pinstress.study.schema.pins import PinTable
 

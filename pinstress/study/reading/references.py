@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from functools import partial
 
 from assess.fatigue.flight import flight
 from assess.requirement import LEVELS_OF_CHECK
+from geometry.shape.pin import END_FACES
 from pinbase.errors import ArgumentError
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.mechanism_references import of_its_cases, of_pins, of_plane
@@ -31,6 +33,7 @@ from pinstress.study.schema.shown import as_text, in_toml
 from pinstress.study.schema.tables import StudyTable
 
 MATERIAL_PATHS = "lug_defaults.material lug_defaults.bushing.material pin.material"
+NUMBERED_SURFACE = re.compile(r"(segment|bore segment|shoulder|hole|flat|slot|passage) \d+")
 CASE_PATHS = "beam_check.case motion_check.case require.cases sequence.steps.case"
 
 
@@ -52,6 +55,8 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
             for at, made_of in _materials(lug).items():
                 if made_of not in common.values():
                     yield from known_name(f"{key}.{at}", "material", made_of, table.material)
+        if pin.geometry is None:
+            yield from _of_clamps(table, name, surfaces)
         for key, connection in pin.connections:
             if connection in bears:
                 yield Wrong(
@@ -85,6 +90,22 @@ def _materials(lug: LugTable) -> dict[str, str]:
     """Return the materials that a lug names, by their keys."""
     bushing = {} if lug.bushing is None else {"bushing.material": lug.bushing.material}
     return bushing if lug.material is None else {"material": lug.material, **bushing}
+
+
+def _of_clamps(table: StudyTable, pin: str, surfaces: Iterable[str]) -> Iterator[Wrong]:
+    """Yield the clamped surfaces of a pin that do not exist, also where its shape is impossible.
+
+    Those that the program names itself ("segment 2", "hole 1") are known with the shape only.
+    surfaces: the names that the study gives.
+    """
+    clamps = {f"pin.{pin}.clamp": table.pin[pin].clamp}
+    for case, given in table.case.items():
+        clamps[f"case.{case}.clamp.{pin}"] = given.clamp.get(pin, [])
+    known = [*END_FACES, *surfaces]
+    for key, named in clamps.items():
+        for i, surface in enumerate(named, 1):
+            if not NUMBERED_SURFACE.fullmatch(surface):
+                yield from known_name(f"{key}[{i}]", "surface", surface, known)
 
 
 def _of_ears(name: str, pin: PinTable) -> Iterator[Wrong]:

@@ -3,8 +3,9 @@
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
+from pinstress.study.schema.iso286 import classes_of
 from pinstress.study.schema.types import (
     Angle,
     Length,
@@ -18,6 +19,14 @@ from pinstress.study.schema.types import (
 )
 
 
+def _included(fit: str) -> str:
+    classes_of(fit)
+    return fit
+
+
+Fit = Annotated[str, AfterValidator(_included)]
+
+
 class BushingTable(StrictTable):
     """A ring of another material in the bore of a lug: bonded, or pressed in."""
 
@@ -28,7 +37,7 @@ class BushingTable(StrictTable):
     interference: NotNegativeLength | None = None
     """Outer diameter of the bushing minus the diameter of the hole into which it was pressed.
     Default: the middle of the `fit` or of `range.interference`; else it is bonded."""
-    fit: str | None = None
+    fit: Fit | None = None
     """Tolerance classes of hole and bushing by ISO 286-1, as "H7/s6", at the diameter of the hole.
     Not with `interference`."""
 
@@ -109,7 +118,7 @@ class LugTable(StrictTable):
     clearance: Length | None = None
     """Diameter of the bore minus that of the pin; negative for interference. Default: the middle of
     the `fit`, else 0."""
-    fit: str | None = None
+    fit: Fit | None = None
     """Tolerance classes of bore and pin by ISO 286-1, as "H7/f7", at the diameter of the band. Not
     with `clearance`."""
     edge_radius: NotNegativeLength = 0.0

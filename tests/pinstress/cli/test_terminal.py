@@ -21,6 +21,7 @@ import pyvista
 from pinstress import load_study
 from pinstress.analysis.gather_fields import MAX_STILLS, instants
 from pinstress.cli.commands import run_command_line
+from pinstress.cli.run import console
 from pinstress.study.model.pins import pin
 from tests.conftest import INCH
 from tests.support.each import each
@@ -50,6 +51,15 @@ def on_terminal(*arguments: str, cwd: Path, **environment: str) -> str:
             said = b"".join(iter(partial(_read, terminal), b""))
         assert process.wait() == 0, said
     return said.decode()
+
+
+@each(("columns", "width"), [("70", 70), ("200", 200), ("", 120), ("wide", 120)])
+def test_columns_are_the_width_of_what_is_piped(
+    columns: str, width: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As of `ls` or `git`: 120 stood for every pipe, whatever was asked for."""
+    monkeypatch.setenv("COLUMNS", columns)
+    assert console().width == width
 
 
 def _read(terminal: FileIO) -> bytes:

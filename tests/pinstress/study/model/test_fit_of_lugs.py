@@ -65,7 +65,7 @@ def test_the_range_over_the_joint_is_over_the_fit(tmp_path: Path) -> None:
     ("lug", "message"),
     [
         ('fit = "H7/f7", clearance = 0', r"pin.P.lug.M: give fit or clearance, not both"),
-        ('fit = "H7/zc7"', r"study.toml:\d+: lug M: fit: deviation zc is not included"),
+        ('fit = "H7/zc7"', r"study.toml:\d+: pin.P.lug.M.fit: deviation zc is not included"),
         (
             'bushing = { thickness = 2, material = "steel", fit = "H7/k6" }',
             r"study.toml:\d+: lug M: bushing: fit H7/k6 may leave it without interference",
@@ -83,7 +83,7 @@ def test_the_range_over_the_joint_is_over_the_fit(tmp_path: Path) -> None:
             "range = { interference = [0.02, 0.03] }",
             r"study.toml:\d+: lug M: range.interference is of a bushing",
         ),
-        ('fit = "f7"', r"study.toml:\d+: lug M: fit: 'f7' is not a fit"),
+        ('fit = "f7"', r"study.toml:\d+: pin.P.lug.M.fit: 'f7' is not a fit"),
     ],
 )
 def test_what_is_refused(tmp_path: Path, lug: str, message: str) -> None:

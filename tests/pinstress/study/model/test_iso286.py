@@ -14,7 +14,7 @@ from itertools import pairwise
 import pytest
 
 from pinbase.errors import ArgumentError
-from pinstress.study.model.iso286 import (
+from pinstress.study.schema.iso286 import (
     CLEARANCE_DEVIATIONS,
     FINE_LETTERS,
     FINE_SIZE_LIMITS,
@@ -149,8 +149,9 @@ def test_a_step_of_sizes_has_its_upper_end(size: float) -> None:
         (40, "K7/h6", "deviation K is not included"),
         (200, "H7/p6", "deviation p above 180 mm is not included"),
         (40, "H4/h7", "H4 is not included: the grades included are 5 to 16"),
-        (501, "H7/h6", "H7 is not included: sizes are above 0 and up to 500 mm"),
-        (1, "H7/a7", "a7 is not included: sizes are above 1 mm"),
+        (501, "H7/h6", "a size of 501 mm is not included: sizes are above 0 and up to 500 mm"),
+        (501, "H7/zc7", "deviation zc is not included"),
+        (1, "H7/a7", "a7 at 1 mm is not included: it is for sizes above 1 mm"),
         (40, "H7", "'H7' is not a fit; give the classes of hole and shaft, as H7/f7"),
         (40, "f7/H7", "is not a fit"),
         (40, "H/f", "'H' is not a tolerance class"),

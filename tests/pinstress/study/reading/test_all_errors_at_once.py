@@ -102,6 +102,54 @@ def test_what_stands_for_a_wrong_requirement_is_not_wrong(tmp_path: Path, key: s
     assert f"require[1].{key}" in line
 
 
+ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text(encoding="utf-8")
+CLEVIS = (ROOT / "studies" / "clevis.toml").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("profile", "wrong", "named"),
+    [
+        ("fillet = 0.4", "fillet = 3", "the fillet between segments 1 and 2"),  # no such shape
+        ("length = 2.0", "length = -2.0", "profile[2].length: must be positive"),
+    ],
+)
+def test_a_clamp_of_a_wrong_profile(profile: str, wrong: str, named: str, tmp_path: Path) -> None:
+    """Clamps were looked up on the shape of the pin, so after what is wrong with it."""
+    clamps = '[case.landing]\nclamp = { B = ["roof"] }'
+    text = ONE_PIN.replace(profile, wrong).replace('["start"]', '["strat", "segment 2", "B"]')
+    found = errors_of(tmp_path / "study.toml", text.replace("[case.landing]", clamps))
+    for part in ("pin.B.clamp[1]: no surface 'strat'; did you mean 'start'?", named,
+                 "case.landing.clamp.B[1]: no surface 'roof'"):  # fmt: skip
+        assert sum(part in line for line in found) == 1, part
+    assert len(found) == 3
+
+
+def test_a_fit_beside_other_mistakes(tmp_path: Path) -> None:
+    """Fits were looked up with the lugs, so after all that is wrong with pins; and where defaults
+    gave them, the line of a lug was named.
+    """
+    text = CLEVIS.replace("clearance = 0.05", 'fit = "X7/f7"').replace("length = 20", "length = 0")
+    text = text.replace('{ tilt = "guided" }', '{ fit = "H7/f3" }')
+    found = errors_of(tmp_path / "study.toml", text)
+    for part in ("lug_defaults.fit: deviation X is not included", "length: must be positive",
+                 "pin.P.lug.EYE.fit: f3 is not included: the grades"):  # fmt: skip
+        assert sum(part in line for line in found) == 1, part
+    assert len(found) == 3
+
+
+def test_a_table_of_forces_beside_other_mistakes(tmp_path: Path) -> None:
+    """Tables were read after the content of the study was right; without a pin's connections what
+    they name is not known to be wrong.
+    """
+    more = '\n[case.more]\nkind = "given"\ntable = "gone.csv"\n'
+    gone = "gone.csv: no such file"
+    found = errors_of(tmp_path / "study.toml", (ONE_PIN + more).replace('["start"]', '["strat"]'))
+    assert any(gone in line for line in found), found
+    assert len(found) == 2
+    found = errors_of(tmp_path / "study.toml", (ONE_PIN + more).replace("profile =", "profil ="))
+    assert not any(gone in line for line in found), found
+
+
 def test_six_mistakes_of_different_kinds(tmp_path: Path) -> None:
     """Schema, references, masses, joints and shapes: one round instead of four."""
     six = ("unknown key", "wrong type", "unknown material", "unknown joint", "no inertia",

@@ -61,6 +61,10 @@ INTERFERENCE_DEVIATIONS = {  # of the lower limit of shafts, above their nominal
     "r": (10, 15, 19, 23, 23, 28, 28, 34, 34, 41, 43, 51, 54, 63, 65, 68),
     "s": (14, 19, 23, 28, 28, 35, 35, 43, 43, 53, 59, 71, 79, 92, 100, 108),
 }
+LETTERS = {  # of the deviations that are included at some size
+    *CLEARANCE_DEVIATIONS, *map(str.upper, CLEARANCE_DEVIATIONS), *INTERFERENCE_DEVIATIONS, "js",
+    "JS",
+}  # fmt: skip
 FINE_LETTERS = "abcrs"  # whose deviations are by FINE_SIZE_LIMITS
 MAX_GRADE_OF_K = 7  # in which k is above the nominal size
 COARSE_GRADE = 14  # from which, as a and b, classes are for more than 1 mm
@@ -100,13 +104,24 @@ def fit_of(text: str, size: float) -> Fit:
 
     Raises: ArgumentError.
     """
+    hole, shaft = classes_of(text)
+    return Fit(deviations(hole, size), deviations(shaft, size))
+
+
+def classes_of(text: str) -> tuple[str, str]:
+    """Return the tolerance classes of hole and shaft of a fit, as "H7/f7".
+
+    Raises: ArgumentError for a text that is not a fit, and for classes included at no size.
+    """
     hole, slash, shaft = (part.strip() for part in text.partition("/"))
     if not slash or not hole[:1].isupper() or not shaft[:1].islower():
         raise ArgumentError(
             f"{as_text(text)} is not a fit; give the classes of hole and shaft, as H7/f7",
             "not-a-fit",
         )
-    return Fit(deviations(hole, size), deviations(shaft, size))
+    for tolerance_class in (hole, shaft):
+        _letter_and_grade(tolerance_class)
+    return hole, shaft
 
 
 def deviations(tolerance_class: str, size: float) -> tuple[float, float]:
@@ -115,23 +130,39 @@ def deviations(tolerance_class: str, size: float) -> tuple[float, float]:
 
     Raises: ArgumentError for a class or a size that is not included.
     """
+    letter, grade = _letter_and_grade(tolerance_class)
+    millimetres = round(1e3 * size, 9)
+    if not 0.0 < millimetres <= SIZE_LIMITS[-1]:
+        raise ArgumentError(
+            f"a size of {millimetres:g} mm is not included: sizes are above 0 and up to "
+            f"{SIZE_LIMITS[-1]} mm",
+            "out-of-range",
+        )
+    if millimetres <= 1.0 and (grade >= COARSE_GRADE or letter in "abAB"):
+        at = f"{tolerance_class} at {millimetres:g} mm"
+        raise _not_included(at, "it is for sizes above 1 mm")
+    width = STANDARD_TOLERANCES[grade][bisect_left(SIZE_LIMITS, millimetres)]
+    low = _lower_limit(letter, millimetres, width, grade)
+    return low * 1e-6, (low + width) * 1e-6
+
+
+def _letter_and_grade(tolerance_class: str) -> tuple[str, int]:
+    """Return the letter (or two) and the grade of a tolerance class.
+
+    Raises: ArgumentError for a text that is no class, and for a class included at no size.
+    """
     match = CLASS_PATTERN.fullmatch(tolerance_class)
     if match is None:
         raise ArgumentError(
             f"{as_text(tolerance_class)} is not a tolerance class such as H7 or f7", "not-a-fit"
         )
     letter, grade = match[1], int(match[2])
-    millimetres = round(1e3 * size, 9)
-    if not 0.0 < millimetres <= SIZE_LIMITS[-1]:
-        raise _not_included(tolerance_class, f"sizes are above 0 and up to {SIZE_LIMITS[-1]} mm")
+    if letter not in LETTERS:
+        raise _not_included(f"deviation {letter}", MISSING_VALUES_TEXT)
     if grade not in STANDARD_TOLERANCES:
         least, most = min(STANDARD_TOLERANCES), max(STANDARD_TOLERANCES)
         raise _not_included(tolerance_class, f"the grades included are {least} to {most}")
-    if millimetres <= 1.0 and (grade >= COARSE_GRADE or letter in "abAB"):
-        raise _not_included(tolerance_class, "sizes are above 1 mm")
-    width = STANDARD_TOLERANCES[grade][bisect_left(SIZE_LIMITS, millimetres)]
-    low = _lower_limit(letter, millimetres, width, grade)
-    return low * 1e-6, (low + width) * 1e-6
+    return letter, grade
 
 
 def _lower_limit(letter: str, size: float, width: int, grade: int) -> float:
@@ -145,8 +176,8 @@ def _lower_limit(letter: str, size: float, width: int, grade: int) -> float:
     limits = FINE_SIZE_LIMITS if letter.lower() in FINE_LETTERS else SIZE_LIMITS
     k = bisect_left(limits, size)
     if k >= len(printed):
-        largest = f" above {limits[len(printed) - 1]} mm" if printed else ""
-        raise _not_included(f"deviation {letter}{largest}", MISSING_VALUES_TEXT)
+        largest = limits[len(printed) - 1]
+        raise _not_included(f"deviation {letter} above {largest} mm", MISSING_VALUES_TEXT)
     return float(-printed[k] - width if letter.islower() and not above else printed[k])
 
 
