@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import pytest
 
@@ -15,6 +14,7 @@ from reports.data.requirements import RequirementRow, requirement_rows
 from reports.tables.strength.fatigue import fatigue_sentence
 from tests.conftest import ROOT
 from tests.silent.test_checks_over_the_joint import LOOSE, RANGED, TEXT, TIGHT
+from tests.support.pins.remembered import remembered
 
 SPECTRUM = """
 [material.steel.fatigue]
@@ -35,14 +35,13 @@ limit_load = "always"
 """
 
 
-@cache
 def solved(clearance: str, life: float = 1000.0) -> RunResults:
     return of_joint(clearance, SPECTRUM.replace("LIFE", f"{life}"))
 
 
 def of_joint(clearance: str, analysis: str, more: str = "") -> RunResults:
     text = TEXT.replace("CLEARANCE", clearance).replace("HALF", "20e3").replace("WHOLE", "40e3")
-    return pinstress.run(study_from(text.replace("[analysis]", analysis) + more))
+    return remembered(study_from(text.replace("[analysis]", analysis) + more))
 
 
 def row_of(results: RunResults, check: str) -> RequirementRow:

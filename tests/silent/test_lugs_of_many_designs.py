@@ -88,19 +88,7 @@ mean_stress_sensitivity = 0.2
 
 
 @each("command", [["sweep"], ["reliability"], ["curve", KEY, "--points", "2"]])
-def test_what_judges_pins_alone_says_so(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], command: list[str]
-) -> None:
-    path = tmp_path / "study.toml"
-    path.write_text(STUDY)
-    arguments = [command[0], str(path), *command[1:], "--out", str(tmp_path / "out"), "--quiet"]
-    run_command_line([*arguments, "--jobs", "1"])
-    said = " ".join(capsys.readouterr().out.split())
-    assert f"{SAID} {FORMULAS_SAID}" in said
-
-
-@each("command", [["sweep"], ["reliability"], ["curve", KEY, "--points", "2"]])
-def test_what_judges_yield_alone_says_so(
+def test_what_judges_yield_alone_of_pins_alone_says_so(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], command: list[str]
 ) -> None:
     """Rows read "safe" while the run misses the required rupture."""

@@ -5,6 +5,8 @@ hand.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
+from itertools import product
 
 import numpy as np
 import pytest
@@ -47,11 +49,17 @@ LEG = Leg(
 )
 
 
-@pytest.fixture(params=SEEDS)
-def particles(request: pytest.FixtureRequest) -> Particles:
-    """One per seed; the aircraft's course straight, following the yaw, or between."""
-    seed: int = request.param
-    return random_particles(seed, (0.0, 1.0, None)[seed % 3])
+# Particles of a seed at one instant.
+INSTANTS = each(("seed", "now"), list(product(SEEDS, TIMES)))
+
+
+@cache
+def at_instant(seed: int, now: float) -> tuple[Particles, dict[str, Floats], Floats]:
+    """Particles, every quantity of the leg that they are along the aircraft's axes, and the matrix
+    from these to the world's. The aircraft's course is straight, follows the yaw, or is between.
+    """
+    particles = random_particles(seed, (0.0, 1.0, None)[seed % 3])
+    return particles, *quantities(particles, now)
 
 
 def agree(found: Floats, wanted: Floats, rel: float = 1e-9) -> None:
@@ -81,9 +89,9 @@ def at(
     return dynamics.reactions.forces[0, 0], moment, actuator, spin_moment
 
 
-@each("now", TIMES)
-def test_motions_and_momenta_are_those_of_the_particles(particles: Particles, now: float) -> None:
-    found, R = quantities(particles, now)
+@INSTANTS
+def test_motions_and_momenta_are_those_of_the_particles(seed: int, now: float) -> None:
+    particles, found, R = at_instant(seed, now)
     times = np.array([now])
     for body, point, masses in (
         ("leg", "D", particles.leg_masses),
@@ -121,14 +129,12 @@ def whole(particles: Particles, now: float) -> Function:
     return state
 
 
-@each("now", TIMES)
-def test_force_moment_and_power_by_the_momentum_of_the_whole(
-    particles: Particles, now: float
-) -> None:
+@INSTANTS
+def test_force_moment_and_power_by_the_momentum_of_the_whole(seed: int, now: float) -> None:
     """dp/dt = -F_B + weight; dH_B/dt + v_B x p = -M_B + moment of the weight about B; and the power
     of all these and of the spin moment is the rate of the kinetic energy.
     """
-    found, R = quantities(particles, now)
+    particles, found, R = at_instant(seed, now)
     F, M, t = R @ found["F_B"], R @ found["M_B"], np.array([now + 0j])
     state = whole(particles, now)
     value, rate = state(t)[0].real, derivative(state, t)[0].real
@@ -149,11 +155,12 @@ def test_force_moment_and_power_by_the_momentum_of_the_whole(
     assert sum(terms) == pytest.approx(rate[6], abs=1e-9 * max(map(abs, terms)))
 
 
-@each("now", TIMES)
-def test_the_actuator_by_virtual_work(particles: Particles, now: float) -> None:
+@INSTANTS
+def test_the_actuator_by_virtual_work(seed: int, now: float) -> None:
     """d'Alembert: the actuator's work over a small turn of beta is that of all particles' inertia
     and weight over the displacements it makes (a complex step of beta).
     """
+    particles, found, _ = at_instant(seed, now)
     step, beta, t = 1e-30, particles.beta, np.array([now + 0j])
     tilted = replace(particles, beta=replace(beta, offset=beta.offset + step * 1j))
     work = 0.0
@@ -162,7 +169,7 @@ def test_the_actuator_by_virtual_work(particles: Particles, now: float) -> None:
         inertia[:, 2] += particles.leg.gravity
         displacement = tilted.carried(now, body)(t)[0].imag / step
         work += float(np.sum(masses[:, None] * inertia * displacement))
-    assert quantities(particles, now)[0]["actuator"][0] == pytest.approx(work, rel=1e-8)
+    assert found["actuator"][0] == pytest.approx(work, rel=1e-8)
 
 
 def test_a_still_ground_adds_nothing() -> None:

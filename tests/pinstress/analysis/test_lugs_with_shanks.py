@@ -12,10 +12,12 @@ import pinstress
 from fea.core.linear_solver import SolveError
 from fea.support.records import LugStress
 from pinstress.analysis.plan import all_loads
+from pinstress.analysis.results import solve
 from pinstress.study.model.shanks import shank_angles
 from reports.files import write_reports
 from tests.support.each import each
 from tests.support.mechanism.machines import STUDIES
+from tests.support.pins.remembered import MEMO, remembered
 
 CLEVIS = (STUDIES / "clevis.toml").read_text(encoding="utf-8")
 SHANK = "edge_radius = 0.5\nshank = {}"
@@ -40,7 +42,7 @@ def lugs(results: pinstress.RunResults) -> dict[tuple[str, str], LugStress]:
 @pytest.fixture(scope="module")
 def clevis(tmp_path_factory: pytest.TempPathFactory) -> tuple[pinstress.RunResults, Path]:
     out = tmp_path_factory.mktemp("clevis")
-    results = pinstress.run(study(out))
+    results = remembered(study(out))
     write_reports(results, out / "run")
     return results, out / "run"
 
@@ -64,7 +66,7 @@ def test_the_pins_row_is_that_of_its_contact(
     """The stress of lugs changes nothing of the pin."""
     contact = ("[analysis]", '[analysis]\njoints = "contact"')
     bare = study(tmp_path, contact, shank="edge_radius = 0.5")
-    (row,), (with_lugs,) = pinstress.run(bare).pins, clevis[0].pins
+    (row,), (with_lugs,) = remembered(bare).pins, clevis[0].pins
     assert row.max_von_mises == with_lugs.max_von_mises
     assert row.outcome == with_lugs.outcome
 
@@ -95,7 +97,7 @@ def test_a_lug_is_judged_with_the_factor_of_its_pin(
 
 
 def test_a_lug_without_a_shank_is_named_among_checks_not_made(tmp_path: Path) -> None:
-    results = pinstress.run(study(tmp_path, shank="edge_radius = 0.5"))
+    results = remembered(study(tmp_path, shank="edge_radius = 0.5"))
     (row,) = results.pins
     assert any("lug.EYE.shank" in m.needs for m in row.margins)
 
@@ -116,7 +118,7 @@ def test_a_failure_at_a_lug_leaves_the_pin_its_stress(
         raise SolveError("contact does not settle", "contact-unsettled")
 
     monkeypatch.setattr("fea.lug.in_joint.lug_stresses", fails)
-    (row,) = pinstress.run(study(tmp_path)).pins
+    (row,) = solve(pinstress.prepare(study(tmp_path)), memo=MEMO).pins
     assert row.outcome == "safe"
     assert row.joint is not None
     assert "no stress of the lugs: contact does not settle" in row.joint.remark
@@ -136,7 +138,7 @@ def test_turning_forces_and_shanks_together_changes_nothing(
     text = turned.path.read_text(encoding="utf-8")
     text = text.replace('tilt = "guided" }', 'tilt = "guided", shank = { angle = "90 deg" } }')
     turned.path.write_text(text, encoding="utf-8")
-    found = lugs(pinstress.run(pinstress.load_study(turned.path)))
+    found = lugs(remembered(pinstress.load_study(turned.path)))
     for key, lug in lugs(clevis[0]).items():
         assert found[key].max_von_mises == pytest.approx(lug.max_von_mises, rel=2e-2), key
         assert not found[key].assumed

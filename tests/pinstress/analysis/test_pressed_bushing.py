@@ -16,6 +16,7 @@ from pinstress.study.reading.in_python import study_from
 from reports.data.headline import worst_checks
 from reports.files import write_reports
 from tests.support.mechanism.machines import STUDIES
+from tests.support.pins.remembered import remembered
 
 CLEVIS = (STUDIES / "clevis.toml").read_text(encoding="utf-8")
 HOT = """[case.hot]
@@ -45,7 +46,7 @@ def clevis(tmp_path_factory: pytest.TempPathFactory) -> tuple[pinstress.RunResul
     text = text.replace(strength, f'thermal_expansion = "12e-6 1/K"\n{strength}')
     path = folder / "clevis.toml"
     path.write_text(text, encoding="utf-8")
-    results = pinstress.run(pinstress.load_study(path))
+    results = remembered(pinstress.load_study(path))
     write_reports(results, folder / "run")
     return results, folder / "run"
 

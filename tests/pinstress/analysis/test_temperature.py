@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cache
-from pathlib import Path
 
 import pytest
 
@@ -18,6 +17,7 @@ from pinstress.study.reading.in_python import study_from
 from reports.data.row import PinResult
 from tests.support.each import each
 from tests.support.errors import raises
+from tests.support.pins.remembered import remembered
 from tests.support.pins.studies import DOUBLE_SHEAR
 
 LOADS = 'kind = "given"\nforces = { L = [-9000, 0], M = [18000, 0], R = [-9000, 0] }\n'
@@ -174,7 +174,7 @@ def test_a_pressed_bushing_that_holds_has_less_interference() -> None:
 
 @pytest.fixture(scope="module")
 def loosened() -> pinstress.RunResults:
-    return pinstress.run(study_from(changed((FIT, "clearance = -0.01\n"))))
+    return remembered(study_from(changed((FIT, "clearance = -0.01\n"))))
 
 
 def test_a_pin_that_comes_loose_is_strong_enough_but_depends(
@@ -201,9 +201,18 @@ def test_the_assumption_of_the_reference_is_said(loosened: pinstress.RunResults)
     assert "gradients" in said
 
 
-def test_a_hot_case_is_the_same_as_its_clearance_alone(tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def both() -> pinstress.RunResults:
+    """The pin, cold and hot, with a spectrum of both cases."""
+    sn = "[material.steel.fatigue]\nknee_stress = 200\nknee_cycles = 1e6\n"
+    sn += "slope = 5\nmean_stress_sensitivity = 0.2\n"
+    text = changed(("[material.aluminium]", sn + "[material.aluminium]"))
+    text += '[fatigue]\nmethod = "signed-von-mises"\noccurrences = { cold = 100, hot = 100 }\n'
+    return remembered(study_from(text))
+
+
+def test_a_hot_case_is_the_same_as_its_clearance_alone(both: pinstress.RunResults) -> None:
     """Two cases of one pin, and one asked after the other: no solution of contact is shared."""
-    both = pinstress.run(study_from(STUDY))
     grown = f"clearance = {0.02 + 1e3 * GROWTH!r}\n"
     loose = pinstress.run(study_from(changed((FIT, grown), ("temperature", "# temperature"))))
     hot, cold, as_hot = both["P", "hot"], both["P", "cold"], loose["P", "hot"]
@@ -255,11 +264,6 @@ def test_a_temperature_varies_and_its_deviation_is_a_difference() -> None:
     assert (one.law.low, one.law.high) == pytest.approx((387.15, 399.15))
 
 
-def test_damage_over_different_fits_is_not_decided() -> None:
-    sn = "[material.steel.fatigue]\nknee_stress = 200\nknee_cycles = 1e6\n"
-    sn += "slope = 5\nmean_stress_sensitivity = 0.2\n"
-    text = changed(("[material.aluminium]", sn + "[material.aluminium]"))
-    text += '[fatigue]\nmethod = "signed-von-mises"\noccurrences = { cold = 100, hot = 100 }\n'
-    results = pinstress.run(study_from(text))
-    assert results.fatigue is not None
-    assert "fits at their temperatures differ" in results.fatigue.not_decided["P"]
+def test_damage_over_different_fits_is_not_decided(both: pinstress.RunResults) -> None:
+    assert both.fatigue is not None
+    assert "fits at their temperatures differ" in both.fatigue.not_decided["P"]

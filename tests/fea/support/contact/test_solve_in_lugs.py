@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from fea.support.support import PinProblem, Solution
 from geometry import Pin, Segment
+from pinbase.memo import Memo
 from tests.support.pins.clevis import CLEVIS_PIN
 
 STEEL = Material("steel", 210e9, 0.3)
@@ -29,6 +31,8 @@ LUGS = (
 )
 SHARE = np.array([-0.5, 1.0, -0.5])
 QUICK = Requirement(tolerance=0.1)
+# Flexibilities and meshes are those of all loads on the same pin and lugs.
+problem = partial(PinProblem, memo=Memo())
 
 
 def pull(along: Floats, times: Floats | None = None) -> PinLoads:
@@ -43,7 +47,7 @@ STEADY = pull(np.array([[FORCE, 0.0]]))
 
 @pytest.fixture(scope="module")
 def sharp() -> Solution:
-    return solve_in_lugs(PinProblem(PIN, STEEL, LUGS, (STEADY,)), Requirement())[0]
+    return solve_in_lugs(problem(PIN, STEEL, LUGS, (STEADY,)), Requirement())[0]
 
 
 def test_a_clevis_beside_contact_in_three_dimensions(sharp: Solution) -> None:
@@ -107,7 +111,7 @@ def test_section_forces_along_the_pin_are_those_of_statics(sharp: Solution) -> N
 
 def test_stress_is_in_proportion_without_clearance(sharp: Solution) -> None:
     """Also in what is asked for later, of which contact is not solved again."""
-    given = PinProblem(PIN, STEEL, LUGS, (STEADY,), also={"pull": pull(np.array([[1.0, 0.0]]))})
+    given = problem(PIN, STEEL, LUGS, (STEADY,), also={"pull": pull(np.array([[1.0, 0.0]]))})
     (found,) = solve_in_lugs(given, replace(Requirement(), meshes=1))
     answer = found.answer
     assert answer is not None
@@ -122,7 +126,7 @@ def test_the_edges_of_lugs_are_contacts_and_leave_the_row(sharp: Solution) -> No
     but the outer ones of the fork have a K, to a quarter the same.
     """
     lugs = tuple(replace(lug, edge_radius=0.0005) for lug in LUGS)
-    (found,) = solve_in_lugs(PinProblem(PIN, STEEL, lugs, (STEADY,)), QUICK)
+    (found,) = solve_in_lugs(problem(PIN, STEEL, lugs, (STEADY,)), QUICK)
     rounded, plain = found.peak, sharp.peak
     assert rounded.verdict == "converged"
     assert rounded.singular_at == ()
@@ -148,7 +152,7 @@ def test_the_crest_of_a_motion_is_found_between_samples() -> None:
         return pull(along, times)
 
     case = at(np.linspace(0.0, 1.0, 5))
-    given = PinProblem(PIN, STEEL, LUGS, (case,), between={"pull": at})
+    given = problem(PIN, STEEL, LUGS, (case,), between={"pull": at})
     (found,) = solve_in_lugs(given, QUICK)
     peak = found.peak
     assert peak.time == pytest.approx(crest, abs=0.01)
@@ -175,9 +179,7 @@ def test_lugs_of_a_structure_share_what_the_link_leaves_over() -> None:
     )
     pin = replace(PIN, segments=segments)
     loads = PinLoads("pull", ("M",), np.array([[[FORCE, 0.0, 0.0]]]))
-    (found,) = solve_in_lugs(
-        PinProblem(pin, STEEL, LUGS, (loads,)), replace(Requirement(), meshes=1)
-    )
+    (found,) = solve_in_lugs(problem(pin, STEEL, LUGS, (loads,)), replace(Requirement(), meshes=1))
     assert found.joint is not None
     forces = {band.name: band.force for band in found.joint.bands}
     assert forces["L"] + forces["R"] == pytest.approx(FORCE, rel=1e-9)
@@ -198,9 +200,7 @@ def test_a_structure_beside_takes_more_than_one_farther_away() -> None:
         ),
     )
     loads = PinLoads("pull", ("M",), np.array([[[FORCE, 0.0, 0.0]]]))
-    (found,) = solve_in_lugs(
-        PinProblem(pin, STEEL, LUGS, (loads,)), replace(Requirement(), meshes=1)
-    )
+    (found,) = solve_in_lugs(problem(pin, STEEL, LUGS, (loads,)), replace(Requirement(), meshes=1))
     assert found.joint is not None
     forces = {band.name: band.force for band in found.joint.bands}
     assert forces["L"] > 1.5 * forces["R"] > 0.0
@@ -211,9 +211,7 @@ def test_a_rounded_weight_is_shared_and_reported() -> None:
     forces = STEADY.forces.copy()
     forces[0, 0, 0] *= 1.001
     loads = replace(STEADY, forces=forces)
-    (found,) = solve_in_lugs(
-        PinProblem(PIN, STEEL, LUGS, (loads,)), replace(Requirement(), meshes=1)
-    )
+    (found,) = solve_in_lugs(problem(PIN, STEEL, LUGS, (loads,)), replace(Requirement(), meshes=1))
     share = found.peak.imbalance
     assert share is not None
     assert share[0] == pytest.approx(0.5e-3, rel=1e-3)
@@ -232,7 +230,7 @@ def test_what_cannot_be_in_equilibrium_has_failed_with_the_reason(
     along = np.zeros((1, 3, 3))
     along[0, :, 0] = FORCE * np.array(forces)
     loads = PinLoads("pull", ("L", "M", "R"), along)
-    (found,) = solve_in_lugs(PinProblem(PIN, STEEL, lugs, (loads,)), QUICK)
+    (found,) = solve_in_lugs(problem(PIN, STEEL, lugs, (loads,)), QUICK)
     peak = found.peak
     assert (peak.verdict, peak.max_von_mises, found.joint) == ("failed", None, None)
     assert said in peak.note
@@ -243,7 +241,7 @@ def test_the_range_says_what_it_leaves_out() -> None:
     along = np.zeros((1, 3, 3))
     along[0, :, 0] = FORCE * np.array([-0.4, 1.0, -0.6])
     (found,) = solve_in_lugs(
-        PinProblem(PIN, STEEL, LUGS, (PinLoads("pull", ("L", "M", "R"), along),)), QUICK
+        problem(PIN, STEEL, LUGS, (PinLoads("pull", ("L", "M", "R"), along),)), QUICK
     )
     assert found.joint is not None
     assert found.joint.range is not None
@@ -255,7 +253,7 @@ def test_larger_cells_decide_and_have_the_range_of_the_usual_ones() -> None:
     """The same joint by four rings and 24 sectors, with edges that are rounded."""
     rounded = tuple(replace(lug, edge_radius=5e-4) for lug in LUGS)
     steel = replace(STEEL, yield_strength=3e9)
-    given = PinProblem(PIN, steel, rounded, (STEADY,))
+    given = problem(PIN, steel, rounded, (STEADY,))
     (usual,), (decided,) = (
         solve_in_lugs(given, requirement)
         for requirement in (QUICK, replace(QUICK, goal="decide", required=1))
@@ -290,7 +288,7 @@ def test_a_softer_joint_is_that_of_softer_lugs() -> None:
 
 
 def test_nothing_is_in_contact_without_loads() -> None:
-    (found,) = solve_in_lugs(PinProblem(PIN, STEEL, LUGS, (pull(np.zeros((1, 2))),)), QUICK)
+    (found,) = solve_in_lugs(problem(PIN, STEEL, LUGS, (pull(np.zeros((1, 2))),)), QUICK)
     peak = found.peak
     assert (peak.verdict, peak.max_von_mises, peak.error_estimate) == ("converged", 0.0, 0.0)
     assert found.joint is not None
@@ -302,7 +300,7 @@ def test_surfaces_have_the_names_of_the_whole_pin() -> None:
     tube = replace(
         PIN, segments=tuple(replace(s, bore=0.012) if s.connection else s for s in PIN.segments)
     )
-    (found,) = solve_in_lugs(PinProblem(tube, STEEL, LUGS, (STEADY,)), replace(QUICK, meshes=1))
+    (found,) = solve_in_lugs(problem(tube, STEEL, LUGS, (STEADY,)), replace(QUICK, meshes=1))
     names = {name for zone in found.peak.singular_at for name in zone.between}
     steps = {f"bore step {i}" for i in range(1, 7)}
     assert names <= {*"LMR", "its lug", "bore L", "bore M", "bore R", *steps}
