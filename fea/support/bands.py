@@ -38,6 +38,13 @@ class Bands:
         """The number of each band's link, (B,)."""
         return np.arange(len(self)) if self.link is None else self.link
 
+    @property
+    def middle(self) -> float:
+        """The z, m, midway between the first and the last ring's middle, about which couples of the
+        body force act.
+        """
+        return float(0.5 * (self.z.min() + self.z.max()))
+
     @cached_property
     def middles(self) -> Floats:
         """The z of the bands' middles, (B,) m."""

@@ -170,8 +170,7 @@ class ContactProblem:
         e_r = self._e_r[:, :1] if self._cells.mirrored else self._e_r
         columns = [e_r * (self._link == k)[:, None] for k in range(self._count)]
         band, z = (np.repeat(x, len(self._cells)) for x in (bands.band, bands.z))
-        middle = 0.5 * (z.min() + z.max())
-        columns.append(e_r * (z - middle)[:, None])
+        columns.append(e_r * (z - bands.middle)[:, None])
         elastic = [np.zeros((len(z), 0))]
         for b, stiffness in enumerate(tilt):
             arm = (z - bands.middles[b]) * (band == b)

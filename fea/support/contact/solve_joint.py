@@ -450,7 +450,7 @@ class ContactModel:
         Raises: SolveError as `solve`.
         """
         contact = self.freed(loads, problem)
-        forces, couples = self.forces(loads), self.couples(loads)
+        forces, couples = self.forces(loads), self.couples(loads, contact.bands)
         moments, cuts = self.moments(loads), self.cuts
         angles = _directions(forces) if cuts is None else [cuts.angle] * len(forces)
         turns = np.stack([rotation(angle) for angle in angles])
@@ -496,11 +496,12 @@ class ContactModel:
         """Whether some of the lugs are those of a structure."""
         return len(self.lugs) > len(self.given.connections)
 
-    def couples(self, loads: PinLoads) -> Floats:
-        """The couples of the body force about the middle of the bands along x and y, (T, 2) N m."""
-        z = self.bands.z
-        middle = 0.5 * (z.min() + z.max())
-        arm = centre_of_volume(self.whole) - middle
+    def couples(self, loads: PinLoads, bands: Bands | None = None) -> Floats:
+        """The couples of the body force about the middle of bands along x and y, (T, 2) N m.
+
+        bands: of the contact problem, by default this model's; coarser rings have another middle.
+        """
+        arm = centre_of_volume(self.whole) - (bands or self.bands).middle
         x, y = (loads.body[:, :2] * self._mass).T
         return np.stack([-arm * y, arm * x], axis=1)
 

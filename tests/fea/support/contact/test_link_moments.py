@@ -17,6 +17,7 @@ from fea.core.over_time import Between
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.requirement import Requirement
 from fea.solve.solve import solve
+from fea.support.contact.coarser_cells import on_coarser_cells
 from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
 from fea.support.foundation.foundation_model import FoundationModel, JointFoundation
 from fea.support.lugs.lug import Lug
@@ -179,3 +180,34 @@ def test_a_cut_pin_carries_moments(model: ContactModel) -> None:
     moments = band_moments(model.seeing(cut).solve(pull()))
     exact = np.array([[0.0, -40.0], [30.0, 100.0], [-30.0, -60.0]])
     assert moments == pytest.approx(exact, abs=1e-6 * FORCE * PIN.length)
+
+
+def test_a_body_force_is_in_balance_on_coarser_cells_whose_middle_is_another() -> None:
+    pin = Pin(
+        "P",
+        (
+            Segment(0.016, D, connection="A"),
+            Segment(0.004, D),
+            Segment(0.024, D, connection="B"),
+        ),
+    )
+    body = np.array([[0.0, -500.0, 0.0]])
+    assert STEEL.density is not None
+    weight = STEEL.density * pin.volume * body[0]
+    forces = np.array([[[0.0, 4000.0, 0.0], [0.0, -4000.0, 0.0]]])
+    forces[0, 1] -= weight
+    first = 0.008 * forces[0, 0, 1] + 0.032 * forces[0, 1, 1] + 0.022 * weight[1]
+    moments = np.array([[[30.0, 0.0, 0.0], [first - 30.0, 0.0, 0.0]]])
+    loads = PinLoads("pull", ("A", "B"), forces, moments, body=body)
+    model = ContactModel(pin, STEEL, tuple(Lug(name, 0.05, STEEL) for name in "AB"), ROUGH)
+    problem, _ = on_coarser_cells(model)
+    assert abs(problem.bands.middle - model.bands.middle) > 1e-4
+    for cells in (None, problem):
+        (state,) = model.pressed(loads, cells)
+        bands, angles = (cells or model.contact).bands, (cells or model.contact).angles
+        area = bands.radius * bands.length * (angles[1] - angles[0])
+        pressed = -(state.pressure @ np.sin(angles + state.angle)) * area
+        chord = np.sinc(0.5 * (angles[1] - angles[0]) / np.pi)  # pressure is even on a sector
+        assert pressed.sum() * chord == pytest.approx(-weight[1], rel=1e-9)
+        by_ring = (pressed * chord * bands.z).sum() + 0.022 * weight[1]
+        assert by_ring == pytest.approx(0.0, abs=1e-9 * 4000.0 * pin.length)
