@@ -33,6 +33,7 @@ from tests.support.programs.process_group import children
 from tests.support.programs.swept import LONG_SWEEP
 from tests.support.programs.terminal import on_terminal
 
+os.environ.pop("COLUMNS", None)  # which workers of xdist have, and users seldom
 os.environ["PINSTRESS_CACHE"] = ""  # what is tested is solved, in other processes too
 
 resource_tracker.ensure_running()  # of processes started anew; it stays to the end

@@ -94,8 +94,8 @@ def _shape(task: Task) -> object:
 
 def elastic_task(task: Task) -> Task:
     """Return a task whose coarse solution serves for any strengths and names of its materials."""
-    lugs = tuple(lug.with_materials(_elastic) for lug in task.lugs)
-    return replace(task, material=_elastic(task.material), lugs=lugs)
+    lugs, given = (tuple(x.with_materials(_elastic) for x in of) for of in (task.lugs, task.given))
+    return replace(task, material=_elastic(task.material), lugs=lugs, given=given)
 
 
 def _elastic(material: Material) -> Material:

@@ -113,8 +113,8 @@ def test_what_shows_when_parts_are_put_together_is_told_at_once(tmp_path: Path) 
         ("[mechanism.slider.guide]", "slider guide: joint A is not on ground"),
         ('connections = { C = "piston" }', "pin C is fixed in piston"),
         ('  { length = 10, diameter = 30, name = "web" }', "pin O: the fillet"),
-        ('clamp = ["lift"', "pin C has no surface 'lift'"),
-        ('clamp = ["lift"', "pin C has no surface 'light'"),
+        ('clamp = ["lift"', "pin.C.clamp[1]: no surface 'lift'"),
+        ('clamp = ["lift"', "pin.C.clamp[2]: no surface 'light'"),
     ):
         line = text[: text.index(key)].count("\n") + 1
         assert [t for t in told if t.startswith(f"{path}:{line}: ") and message in t], message

@@ -201,7 +201,7 @@ ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
         ('kind = "given"', 'kind = "gven"', "case.landing.kind: "),
         ("tolerance = 0.05", "tolerance = [", "not valid TOML: "),
         ("poisson_ratio = 0.30", "poisson_ratio = ", "not valid TOML: "),
-        ('["start"]', '["strat"]', "pin B has no surface 'strat'"),
+        ('["start"]', '["strat"]', "pin.B.clamp[1]: no surface 'strat'; did you mean 'start'?"),
         ("fillet = 0.4", "fillet = 1.1", "pin B: the fillet"),
         ('["start"]', '["B"]', "case.landing: every load on pin B is at a clamped band"),
     ],
