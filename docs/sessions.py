@@ -3,7 +3,8 @@
 In a page's ```toml, ```python and ```text blocks the first line is `# FILE`, or `# FILE,
 continued`, if they are files; in its ```console blocks lines after `$ ` are commands, the others
 what they print on stdout and then on stderr, where `...` stands for any lines. Numbers may differ
-by a hundredth, and round-off by more.
+by a hundredth, and round-off by more; so may the number of designs that a search tries, which
+round-off decides.
 
     python -m docs.sessions docs/tutorial.md
 
@@ -26,6 +27,7 @@ BLOCK = re.compile(r"^```(toml|python|text|console)\n(.*?)^```$", re.MULTILINE |
 FILE = re.compile(r"# (?P<name>[\w.-]+)(?P<more>, continued)?$")
 NUMBER = re.compile(r"[-−]?\d[\d,]*\.?\d*(?:e[-+]?\d+)?")
 CLOSE, ROUND_OFF = 0.01, 1e-12
+TRIED = re.compile(r"^(.* designs)\n(.* )\d+$", re.MULTILINE)  # of the row beneath
 PROGRAMS = {"pinstress": (sys.executable, "-m", "pinstress"), "python": (sys.executable,)}
 OTHERS = ("sed", "ls", "echo")  # other commands that may be shown
 
@@ -87,6 +89,7 @@ def _steps(block: re.Match[str]) -> Iterator[Step]:
 
 def differences(shown: str, printed: str) -> list[str]:
     """Lines that a page shows and that are not printed, in words; none if all is well."""
+    shown, printed = (TRIED.sub(r"\1\n\2", text) for text in (shown, printed))
     parts = re.split(r"^\.\.\.\n", shown, flags=re.MULTILINE)
     lines, at = printed.splitlines(), 0
     for k, part in enumerate(parts):

@@ -79,6 +79,8 @@ def test_files_and_commands_are_taken_from_a_page(tmp_path: Path) -> None:
         ("a\n...\nd\n", "a\nb\nd\nc\n", False),
         ("...\nc\n", "a\nb\nc\n", True),
         ("...\n", "a\n", True),
+        ("Pin  designs\nP          7\n", "Pin  designs\nP          8\n", True),
+        ("Pin  designs\nP  2       7\n", "Pin  designs\nP  3       7\n", False),
     ],
 )
 def test_what_counts_as_the_same(shown: str, printed: str, same: bool) -> None:
