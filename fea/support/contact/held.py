@@ -92,24 +92,16 @@ class ContactSupport:
         anything is meshed.
         """
         refused: dict[str, Maximum] = {}
-        if not isinstance(coarser, HeldContact):
-            refused = _refused(problem)
-        left = tuple(case for case in problem.cases if case.case not in refused)
         near: Mapping[str, Candidates] = {}
-        cells, finer = self.cells, self.finer
+        cells, finer, left = self.cells, self.finer, problem.cases
         if isinstance(coarser, HeldContact):
-            near = coarser.candidates
-            # Cells that follow narrow arcs have many harmonics and few rings, so that they neither
-            # suit a case with wide ones nor should be solved for it.
-            if self.arcs == "wide":
-                left = tuple(case for case in left if not coarser.narrow(case.case))
-                if not left:
-                    return replace(coarser, starts={})
-                if finer is not None and coarser.far_from(left, requirement):
-                    cells, finer = finer, None
-            elif self.arcs == "narrow":
-                cells = coarser.for_arcs(cells, left)
-                finer = finer and coarser.for_arcs(finer, left)
+            near, left = coarser.candidates, self._of_arcs(coarser, left)
+            if not left:
+                return replace(coarser, starts={})  # none is held
+            cells, finer = self._cells(coarser, left, requirement)
+        else:
+            refused = _refused(problem)
+            left = tuple(case for case in left if case.case not in refused)
         progress(f"pin {problem.pin.name}, flexibility of {cells.rings} rings of each lug")
         profile, cut = profile_of(problem.pin), isinstance(problem.pin, CutPin)
         of, between, also = (profile, problem.material, problem.lugs), problem.between, problem.also
@@ -151,6 +143,27 @@ class ContactSupport:
             if (said := seats_note(links, problem.lugs)) is not None:
                 notes[links.case] = said + notes.get(links.case, NO_REASON)
         return replace(held, failures=held.failures | rigid, notes=notes)
+
+    def _of_arcs(self, coarser: HeldContact, cases: tuple[PinLoads, ...]) -> tuple[PinLoads, ...]:
+        """The cases that are held.
+
+        Cells that follow narrow arcs have many harmonics and few rings, so that they neither suit a
+        case with wide ones nor should be solved for it.
+        """
+        if self.arcs != "wide":
+            return cases
+        return tuple(case for case in cases if not coarser.narrow(case))
+
+    def _cells(
+        self, coarser: HeldContact, cases: Sequence[PinLoads], requirement: Requirement
+    ) -> tuple[Resolution, Resolution | None]:
+        """The cells on which some cases are held after coarser ones, and the finer ones."""
+        if self.arcs == "narrow":
+            finer = self.finer and coarser.for_arcs(self.finer, cases)
+            return coarser.for_arcs(self.cells, cases), finer
+        if self.finer is not None and coarser.far_from(cases, requirement):
+            return self.finer, None
+        return self.cells, self.finer
 
 
 def _seeing(model: ContactModel, pin: PinLike) -> ContactModel:
@@ -240,13 +253,9 @@ class HeldContact:
         usual = _ring_count(self.model, USUAL_RING_COUNT)
         return cells.for_arcs(min(arcs, default=0.5 * np.pi), usual)
 
-    def narrow(self, case: str) -> bool:
+    def narrow(self, case: PinLoads) -> bool:
         """Return whether the finest of the usual cells do not follow a case's arcs of contact."""
-        known = self.compared.get(case)
-        if known is None:
-            return False
-        usual = _ring_count(self.model, USUAL_RING_COUNT)
-        return RESOLUTIONS[-1].for_arcs(known.half_angle, usual) is not RESOLUTIONS[-1]
+        return self.for_arcs(RESOLUTIONS[-1], [case]) is not RESOLUTIONS[-1]
 
     def far_from(self, cases: Sequence[PinLoads], requirement: Requirement) -> bool:
         """Return whether the next cells will not do for some case either (Compared.far_from)."""

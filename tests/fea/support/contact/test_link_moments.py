@@ -200,11 +200,11 @@ def test_a_body_force_is_in_balance_on_coarser_cells_whose_middle_is_another() -
     moments = np.array([[[30.0, 0.0, 0.0], [first - 30.0, 0.0, 0.0]]])
     loads = PinLoads("pull", ("A", "B"), forces, moments, body=body)
     model = ContactModel(pin, STEEL, tuple(Lug(name, 0.05, STEEL) for name in "AB"), ROUGH)
-    problem, _ = on_coarser_cells(model)
-    assert abs(problem.bands.middle - model.bands.middle) > 1e-4
-    for cells in (None, problem):
-        (state,) = model.pressed(loads, cells)
-        bands, angles = (cells or model.contact).bands, (cells or model.contact).angles
+    coarser, _ = on_coarser_cells(model)
+    assert abs(coarser.bands.middle - model.bands.middle) > 1e-4
+    for problem in (model.contact, coarser):
+        (state,) = model.pressed(loads, problem)
+        bands, angles = problem.bands, problem.angles
         area = bands.radius * bands.length * (angles[1] - angles[0])
         pressed = -(state.pressure @ np.sin(angles + state.angle)) * area
         chord = np.sinc(0.5 * (angles[1] - angles[0]) / np.pi)  # pressure is even on a sector
