@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
-from tests.browser.test_pins import AXE, FAULTS, WIDER, screen
+from tests.browser.test_pins import AXE, FAULTS, WIDER
 from tests.conftest import ROOT
 from tests.support.each import sampled
 from tests.support.programs.command_line import run_here
-from tests.support.results.browser_page import errors
+from tests.support.results.browser_page import errors, screen
 
 pytestmark = pytest.mark.browser
 

@@ -14,7 +14,7 @@ import pytest
 from pinstress.explore.sweep.page import write_designs_page
 from reports.format.numbers import short
 from tests.browser.test_page import AXE, FAULTS
-from tests.support.results.browser_page import PIXELS, errors, wait
+from tests.support.results.browser_page import PIXELS, errors, screen, wait
 from tests.support.results.html_page import EVIL
 from tests.support.results.made_up_designs import FAILING, REQUIRED, made_up_designs, table_of
 
@@ -305,14 +305,10 @@ def test_axe_finds_nothing_serious(page: Any, shade: str) -> None:
 
 
 def test_a_phone_shows_it_without_scrolling_aside(browser: Any, page: Any) -> None:
-    size = {"width": 390, "height": 800, "deviceScaleFactor": 1, "mobile": True}
-    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
-    try:
+    with screen(browser, 390, 800):
         page.refresh()
         wait(page, lambda: page.execute_script("return page !== null;"))
         assert page.execute_script("return document.documentElement.scrollWidth;") <= 390
-    finally:
-        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
 SOLVED = {

@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
-from tests.browser.test_pins import WIDER, screen
+from tests.browser.test_pins import WIDER
 from tests.support.each import sampled
 from tests.support.programs.command_line import QUICK, run_here
-from tests.support.results.browser_page import errors, opened
+from tests.support.results.browser_page import errors, opened, screen
 
 pytestmark = pytest.mark.browser
 

@@ -13,8 +13,8 @@ from benchmarks.runs.page import many_pins
 from reports.page.overview import MAX_MATRIX_PINS
 from reports.page.page import MAX_PINS_AT_ONCE
 from tests.browser.conftest import run
-from tests.browser.test_pins import WIDER, screen
-from tests.support.results.browser_page import errors, opened, view, wait
+from tests.browser.test_pins import WIDER
+from tests.support.results.browser_page import errors, opened, screen, view, wait
 
 pytestmark = pytest.mark.browser
 

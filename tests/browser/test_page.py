@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from tests.browser.conftest import STUDIES, run
-from tests.support.results.browser_page import errors, opened, unfold, wait
+from tests.support.results.browser_page import errors, opened, screen, unfold, wait
 
 pytestmark = pytest.mark.browser
 
@@ -93,16 +93,12 @@ def test_columns_sort_both_ways(page: Any) -> None:
 @pytest.mark.parametrize("width", [1400, 390])
 def test_the_safety_factors_fit_the_screen(page: Any, width: int) -> None:
     """All of the table on a desktop; cards on a phone."""
-    size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 500}
-    page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
-    try:
+    with screen(page, width):
         unfold(page)
         assert page.execute_script(WIDER) == []
         rows = page.find_elements("css selector", "#factors tbody tr")
         assert len(rows) == 18
         assert all(row.is_displayed() for row in rows)
-    finally:
-        page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
 def test_the_worst_row_is_the_first(page: Any) -> None:
@@ -164,22 +160,16 @@ def test_long_names_cut_off_no_column_of_forces(browser: Any, tmp_path: Path) ->
     out = run(STUDIES / "main_gear.toml", tmp_path / "out", "--no-pictures", command="loads")
     browser.get((out / "animation_retract.html").as_uri())
     forces = browser.find_element("css selector", "section.numbers")
-    size = {"width": 1098, "height": 900, "deviceScaleFactor": 1, "mobile": False}  # in the page
-    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
-    try:
+    with screen(browser, 1098):  # what it has in the page
         assert "upper_brace" in forces.text
         script = "return arguments[0].scrollWidth - arguments[0].clientWidth;"
         assert browser.execute_script(script, forces) == 0
-    finally:
-        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
 def test_no_two_regions_have_one_name(browser: Any, tmp_path: Path) -> None:
     """With all open, on a phone: all tables of values were "Values", those of a case "landing"."""
     opened(browser, run(STUDIES / "one_pin.toml", tmp_path / "out", "--no-pictures"))
-    size = {"width": 390, "height": 900, "deviceScaleFactor": 1, "mobile": True}
-    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
-    try:
+    with screen(browser, 390):
         browser.execute_script(
             "for (const d of document.querySelectorAll('details')) d.open = true;"
         )
@@ -188,8 +178,6 @@ def test_no_two_regions_have_one_name(browser: Any, tmp_path: Path) -> None:
         wait(browser, lambda: len(browser.execute_script(script)) > 5)
         names = browser.execute_script(script)
         assert len({*names}) == len(names), names
-    finally:
-        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
 @pytest.mark.parametrize("shade", ["light", "dark"])

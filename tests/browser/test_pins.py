@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +10,11 @@ import pytest
 
 from tests.docs.test_captions import build_docs
 from tests.support.each import sampled
-from tests.support.results.browser_page import errors, opened, slide, unfold, wait
+from tests.support.results.browser_page import SCREEN, errors, opened, screen, slide, unfold, wait
 
 pytestmark = pytest.mark.browser
 
 AXE = Path(__file__).parent / "axe" / "axe.min.js"
-SCREEN = 900  # px
 MAX_SCREENS_OF_PINS = 4.3  # of nine pins at 1400 px, drawn with their lugs to scale
 MAX_SCREENS = 8.0  # of the page
 # Elements wider than the page that do not scroll by themselves.
@@ -61,21 +59,6 @@ axe.run(document, { iframes: true }).then((found) => done(found.violations
 def page(browser: Any, shipped: Callable[[str], Path]) -> Any:
     opened(browser, shipped("landing_gear"))
     return browser
-
-
-@contextmanager
-def screen(page: Any, width: int, **media: str) -> Iterator[None]:
-    size = {"width": width, "height": SCREEN, "deviceScaleFactor": 1, "mobile": width < 500}
-    page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
-    features = [{"name": "prefers-color-scheme", "value": media.get("shade", "light")}]
-    page.execute_cdp_cmd(
-        "Emulation.setEmulatedMedia", {"media": media.get("media", ""), "features": features}
-    )
-    try:
-        yield
-    finally:
-        page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "", "features": []})
-        page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
 def test_nine_closed_pins_take_few_screens(page: Any) -> None:

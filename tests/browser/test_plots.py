@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from tests.support.each import sampled
-from tests.support.results.browser_page import errors, opened, unfold, wait
+from tests.support.results.browser_page import errors, opened, screen, unfold, wait
 
 pytestmark = pytest.mark.browser
 
@@ -132,13 +132,9 @@ def test_all_that_is_open_is_drawn_on_paper(
 
 
 def test_a_phone_shows_all_of_a_plot(page: Any) -> None:
-    metrics = {"width": 390, "height": 800, "deviceScaleFactor": 1, "mobile": True}
-    page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
-    try:
+    with screen(page, 390, 800):
         found = figure(page, "surface.landing.E")
         drawing = found.find_element("css selector", "svg")
         assert drawing.rect["width"] <= 390
         whole, shown = page.execute_script(NARROW)
         assert whole <= shown
-    finally:
-        page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+SCREEN = 900  # pixels of height
 WAIT = 30.0  # s, for what a slow machine draws in software
 COLOURS = """
 const c = arguments[0], { data } = c.getContext("2d").getImageData(0, 0, c.width, c.height);
@@ -19,6 +21,22 @@ def opened(browser: Any, folder: Path) -> None:
     browser.get_log("browser")
     browser.get((folder / "report.html").as_uri())
     wait(browser, lambda: browser.find_element("css selector", "h1").text)
+
+
+@contextmanager
+def screen(browser: Any, width: int, height: int = SCREEN, **media: str) -> Iterator[None]:
+    """A screen of so many pixels, below 500 of width a phone's, in a `shade` and on a `media`."""
+    size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    features = [{"name": "prefers-color-scheme", "value": media.get("shade", "light")}]
+    browser.execute_cdp_cmd(
+        "Emulation.setEmulatedMedia", {"media": media.get("media", ""), "features": features}
+    )
+    try:
+        yield
+    finally:
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "", "features": []})
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
 def unfold(browser: Any) -> None:
