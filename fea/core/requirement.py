@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -41,8 +41,11 @@ class Requirement:
     compared: whether the error of the cells is wanted; without it, as with "alone", nothing is
     compared with other cells or meshes.
     factors: the required factors of cases where these are not `required`.
+    every: whether the maximum of every case is wanted; otherwise that of a minor one is only to be
+    decided.
 
     A support adds what it knows:
+    minor: the cases whose maximum, for their required factors, is surely far below that of another.
     elsewhere: by case, stress, Pa, of sections; a surface that surely has less needs no finer mesh.
     besides: by case, the relative error in addition to that of meshes and instants.
     """
@@ -59,6 +62,8 @@ class Requirement:
     varied: bool = True
     compared: bool = True
     factors: Mapping[str, float] = field(default_factory=dict)
+    every: bool = True
+    minor: Collection[str] = ()
     elsewhere: Mapping[str, float] = field(default_factory=dict)
     besides: Mapping[str, float] = field(default_factory=dict)
 
@@ -68,8 +73,9 @@ class Requirement:
         return self.cells in ("unit", "alone")
 
     def of_case(self, case: str) -> Requirement:
-        """The requirement with the factor of a case."""
-        return replace(self, required=self.factors.get(case, self.required))
+        """The requirement with the factor and the goal of a case."""
+        goal: Goal = "decide" if case in self.minor else self.goal
+        return replace(self, required=self.factors.get(case, self.required), goal=goal)
 
     def left(self, case: str) -> float:
         """The part of the tolerance that meshes and instants of a case may use, at least

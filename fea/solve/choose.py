@@ -146,8 +146,11 @@ def _in_lugs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
     elif requirement.goal == "decide":
         resolutions = (ROUGH, *RESOLUTIONS)
     alone: Alone | None = None if requirement.compared else "alone"
-    first, *others = resolutions
-    yield Rung(ContactSupport(first, others[0] if others else None, alone), _contact)
+    # Those that all cases share: where arcs are narrow, they may do for a decision, too.
+    shared = 2 if resolutions[0] is ROUGH else 1
+    for cells, finer in zip_longest(resolutions[:shared], resolutions[1 : shared + 1]):
+        yield Rung(ContactSupport(cells, finer, alone), _contact)
+    others = resolutions[shared:]
     arcs: Arcs
     for arcs in ("wide", "narrow"):
         for cells, finer in zip_longest(others, others[1:]):
@@ -266,7 +269,8 @@ def _contact(at: Attempt) -> dict[str, Solution]:
     if not ready:
         return {}
     problem, first = replace(at.problem, cases=ready), held.model.first
-    at = replace(at, problem=problem, requirement=held.of_meshes(requirement))
+    requirement = held.of_meshes(requirement)
+    at = replace(at, problem=problem, requirement=requirement)
     model: Harmonic | LocalSolids = Harmonic(problem.memo, first, True)
     why = CONTACT_REASON
     if isinstance(held.pin, RingedCutPin):

@@ -37,7 +37,7 @@ from fea.support.contact.contact_place import contact_place
 from fea.support.contact.cut_in_lugs import cuts_in_lugs, error_of, with_cuts_in_lugs
 from fea.support.contact.friction import band_torques, rubs
 from fea.support.contact.joint_result import contact_result
-from fea.support.contact.pressed_cases import Candidates, Compared, PressedCases
+from fea.support.contact.pressed_cases import Candidates, Compared, PressedCases, with_minor
 from fea.support.contact.solve_joint import MAX_CELLS, ContactModel, JointContact, Resolution
 from fea.support.contact.unit_pressures import unit_model, unit_patterns
 from fea.support.contact.variations import ResolutionComparison, compare, nowhere, uncompared
@@ -259,6 +259,7 @@ class HeldContact:
 
     def far_from(self, cases: Sequence[PinLoads], requirement: Requirement) -> bool:
         """Return whether the next cells will not do for some case either (Compared.far_from)."""
+        requirement = with_minor(requirement, self.compared)
         known = ((self.compared.get(x.case), requirement.of_case(x.case)) for x in cases)
         return any(x is not None and x.far_from(of_case) for x, of_case in known)
 
@@ -293,14 +294,16 @@ class HeldContact:
         if known is None:
             return False
         followed = not self.rough or known.surface.cells.surface <= MAX_ROUGH_ERROR
-        fine = known.fine(self.problem.material, requirement.of_case(case))
+        of_case = with_minor(requirement, self.compared).of_case(case)
+        fine = known.fine(self.problem.material, of_case)
         return self.finest or (followed and fine)
 
     def of_meshes(self, requirement: Requirement) -> Requirement:
         """The requirement on the meshes, with a smaller tolerance since cells use a part of it.
 
-        It is relaxed where sections govern.
+        It is relaxed where sections govern, and in minor cases.
         """
+        requirement = with_minor(requirement, self.compared)
         cells = {case: x.surface.cells.surface for case, x in self.compared.items()}
         return replace(requirement, besides=cells, elsewhere=self._in_sections())
 
