@@ -21,6 +21,8 @@ NEGLIGIBLE_SHARE = 0.1  # of an error: another one of this size adds little. Cho
 MAX_ROUGH_ERROR = 0.08
 DECIDED_TEXT = "its error does not affect whether the required factor is reached"
 
+MINOR_CASE = "minor-case"  # code of the reason why a case is only decided
+
 
 @dataclass(frozen=True)
 class Requirement:

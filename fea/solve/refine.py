@@ -17,6 +17,7 @@ from fea.core.peak import NO_REASON, Reason
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import (
     DECIDED_TEXT,
+    MINOR_CASE,
     Requirement,
     accurate_enough,
     below_sections,
@@ -165,10 +166,13 @@ def posed_for(
 
 def met(requirement: Requirement, material: Material, seen: MeshHistory) -> Reason:
     """The reason why the meshes of a case were enough, or why there are no more."""
+    enough = decided(requirement.of_case(seen.case), material, *seen.range)
+    if enough and seen.case in requirement.minor:
+        return Reason(f"; another case governs: {DECIDED_TEXT}", (MINOR_CASE,))
     if seen.known(requirement.tolerance):
         meshes = f"its error is within the tolerance on {len(seen.results)} meshes"
         return Reason(f"; {meshes}", ("mesh-converged",))
-    if decided(requirement.of_case(seen.case), material, *seen.range):
+    if enough:
         return Reason(f"; {DECIDED_TEXT}", ("mesh-decides",))
     if below_sections(requirement, seen):
         below = "stress of the surface is surely below that of sections"

@@ -24,7 +24,7 @@ from pinstress.analysis.cache import OutcomeStore
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import Entry, PinOutcome, cache_key, independent_of_memory
 from pinstress.study.model.pins import shape_notes
-from pinstress.study.model.requirements import required_factors
+from pinstress.study.model.requirements import required_factor, required_factors, sizing_factor
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from reports.data.fields import Field
@@ -204,7 +204,18 @@ def problem_of(task: Task, memo: Memo | None = None) -> PinProblem:
 def for_task(study: Study, task: Task, requirement: Requirement) -> Requirement:
     """Return a requirement with the joints and the factors of a task."""
     factors = required_factors(study, task.pin.name, (loads.case for loads in task.loads))
-    return replace(requirement, joints=_joints(study, task), factors=factors)
+    every = requirement.every or _needs_every_case(study, task)
+    return replace(requirement, joints=_joints(study, task), factors=factors, every=every)
+
+
+def _needs_every_case(study: Study, task: Task) -> bool:
+    """Return whether the required factor against yield does not say enough of a minor case."""
+    # The stress of lugs and of the parts of a hardened pin has no error of contact's cells of its
+    # own, so that these must be fine in every case.
+    if task.material.hardened or any(lug.shank for lug in task.lugs):
+        return True
+    pin, cases = task.pin.name, [loads.case for loads in task.loads]
+    return any(sizing_factor(study, pin, x) != required_factor(study, pin, x) for x in cases)
 
 
 def _joints(study: Study, task: Task) -> Joints:

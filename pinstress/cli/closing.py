@@ -132,7 +132,8 @@ def report_missed(results: Results, decide: bool) -> int:
     missed = [
         p
         for p in results.pins
-        if p.verdict not in ("converged", "failed") and not (decide and p.decided is not None)
+        if p.verdict not in ("converged", "failed")
+        and not ((decide or p.minor) and p.decided is not None)
     ]
     for line in _lines(missed):
         click.echo(line, err=True)

@@ -13,6 +13,7 @@ from assess.plastic.records import LimitLoad, LugCollapse
 from assess.strength.bending_arms import BendingArms
 from fea.core.peak import Maximum, Refinement, SingularZone
 from fea.core.places import Places
+from fea.core.requirement import MINOR_CASE
 from fea.support.records import JointResult
 from pinbase.dimensions import (
     Floats,
@@ -314,6 +315,11 @@ class PinResult:
         required; None where the error leaves that open.
         """
         return self.judgement.decided
+
+    @property
+    def minor(self) -> bool:
+        """Whether another case governs the pin by far, so that this one was only decided."""
+        return MINOR_CASE in self.maximum.reasons
 
     @property
     def as_described(self) -> str:

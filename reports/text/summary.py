@@ -152,7 +152,9 @@ def _unknown(results: Results) -> str:
         text += f" {_of(loose, total)} did not converge."
     if decided := len(wide) - loose:
         tolerance = f"{short(100.0 * results.tolerance)} %"
-        text += f" {_of(decided, total)} {_is(decided)} decided with an error above {tolerance}."
+        text += f" {_of(decided, total)} {_is(decided)} decided with an error above {tolerance}"
+        minor = sum(p.minor and p.outcome != NOT_DECIDED for p in results.pins)
+        text += f", {minor} far below another case of the pin." if minor else "."
     if unsolved:
         text += f" {_of(unsolved, total)} could not be solved."
     return text.strip() or f"{ALL_CONVERGED} to {short(100.0 * results.tolerance)} %."

@@ -17,7 +17,7 @@ from fea.core.zone import Zone
 from fea.harmonic.evaluate import SECTION_MESHES
 from fea.solve.refine import met
 from fea.support.contact.cell_error import AtPlaces
-from fea.support.contact.pressed_cases import Compared
+from fea.support.contact.pressed_cases import Compared, with_minor
 from fea.support.contact.variations import ResolutionComparison
 from tests.support.each import each
 
@@ -117,6 +117,40 @@ def test_when_cells_are_fine_enough(
     found = compared(*stress, AtPlaces(*cells))
     assert found.fine(STEEL, Requirement(tolerance=0.02)) is value
     assert found.fine(STEEL, DECIDE) is decide
+
+
+@each(
+    ("light", "error", "factors", "every", "minor"),
+    [
+        (80.0, 0.1, {}, False, ("light",)),  # at most 88 of at least 198 MPa
+        (80.0, 0.3, {}, False, ()),  # perhaps 104
+        (99.5, 0.0, {}, False, ()),  # half of 200 MPa, but not of 198
+        (80.0, 0.1, {"light": 2.4}, False, ()),  # 105 of 198 MPa, for the same factor
+        (80.0, 0.1, {"heavy": 1.5}, False, ()),  # 88 of 148 MPa
+        (80.0, 0.1, {}, True, ()),  # its maximum is wanted
+    ],
+)
+def test_a_case_is_minor_that_surely_has_less_than_half_of_another_for_its_factor(
+    light: float, error: float, factors: dict[str, float], every: bool, minor: tuple[str, ...]
+) -> None:
+    found = {
+        "light": compared(light, 0.5 * light, 0.5 * light, AtPlaces(error, 0.0, 0.0)),
+        "heavy": compared(200.0, 100.0, 100.0, AtPlaces(0.01, 0.0, 0.0)),
+    }
+    wanted = with_minor(Requirement(required=2.0, factors=factors, every=every), found)
+    assert tuple(wanted.minor) == minor
+    goals = [wanted.of_case(case).goal for case in found]
+    assert goals == ["decide" if case in minor else "value" for case in found]
+
+
+def test_stress_beneath_contact_counts_for_what_is_minor_and_a_factor_is_needed() -> None:
+    heavy = compared(200.0, 100.0, 100.0, AtPlaces(0.01, 0.0, 0.0))
+    deep = compared(80.0, 40.0, 95.0, AtPlaces(0.01, 0.0, 0.1))
+    both = {"light": deep, "heavy": heavy}
+    assert not with_minor(Requirement(required=2.0, every=False), both).minor
+    light = {**both, "light": compared(80.0, 40.0, 40.0, AtPlaces(0.01, 0.0, 0.1))}
+    assert with_minor(Requirement(required=2.0, every=False), light).minor == ("light",)
+    assert not with_minor(Requirement(every=False), light).minor
 
 
 def test_two_meshes_may_be_too_few() -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from benchmarks.joints.named_pins import clevis
-from fea.core.requirement import Requirement
+from fea.core.requirement import MINOR_CASE, Requirement
 from fea.solve.solve import solve
 from fea.support.contact.held import RESOLUTIONS, ROUGH, profile_of
 from fea.support.contact.solve_joint import MAX_CELLS, ContactModel, Resolution
@@ -92,6 +92,28 @@ def test_a_light_case_leaves_the_cells_of_a_heavy_one_as_they_are() -> None:
     assert one.peak.verdict == "converged"
     (as_alone,) = solve(light, wanted)
     assert other.peak.max_von_mises == pytest.approx(as_alone.peak.max_von_mises, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_a_minor_case_stays_on_usual_cells_inside_its_stated_error(
+    fine: dict[float, tuple[ResolutionComparison, float]],
+) -> None:
+    """The heavy case governs by far, whose numbers are those without it."""
+    heavy, wanted = loose(1.0), Requirement(tolerance=0.02, required=2.0, every=False)
+    cases = tuple(replace(loose(x).cases[0], case=f"{x:g}") for x in LIGHT)
+    steel = replace(heavy.material, yield_strength=900e6)
+    heavy = replace(heavy, material=steel)
+    (alone,) = solve(heavy, wanted)
+    one, *others = solve(replace(heavy, cases=(*heavy.cases, *cases)), wanted)
+    assert one.peak.max_von_mises == pytest.approx(alone.peak.max_von_mises, rel=0.002)
+    assert one.peak.verdict == "converged"
+    for load, other in zip(LIGHT, others, strict=True):
+        peak, truth = other.peak, fine[load][0].stress.surface
+        assert MINOR_CASE in peak.reasons
+        assert peak.verdict == "unconverged"
+        assert peak.max_von_mises is not None
+        assert peak.error_estimate is not None
+        assert abs(truth - peak.max_von_mises) < peak.error_estimate
 
 
 def test_arcs_decide_on_sectors_within_the_limit_of_cells() -> None:
