@@ -59,6 +59,27 @@ def test_the_error_of_cells_covers_that_on_narrow_arcs(
 
 
 @pytest.mark.slow
+def test_the_error_of_cells_covers_that_on_narrow_arcs_of_one_lug_with_round_edges() -> None:
+    """The joint of benchmarks/joints/narrow_arcs.py that cells of contact err most on."""
+    given = loose(LIGHT[1])
+    free = zip(given.lugs, (0.0, CLEARANCE, 0.0), strict=True)
+    lugs = tuple(replace(lug, clearance=c, edge_radius=1e-3) for lug, c in free)
+
+    def found(cells: Resolution) -> ResolutionComparison:
+        model = ContactModel(profile_of(given.pin), given.material, lugs, cells)
+        contact = model.solve(given.cases[0])
+        return compare(model, [contact], Requirement(), vary=nowhere)[0]
+
+    truth = found(FINE)
+    for cells in (ROUGH, RESOLUTIONS[0]):
+        here = found(cells)
+        for place in ("surface", "section", "beneath"):
+            true, value = (getattr(x.stress, place) for x in (truth, here))
+            assert abs(true / value - 1.0) < getattr(here.cells, place) + 0.03
+        assert truth.stress.surface > 1.7 * here.stress.surface
+
+
+@pytest.mark.slow
 def test_the_half_angle_is_known_whatever_the_cells(
     fine: dict[float, tuple[ResolutionComparison, float]],
 ) -> None:

@@ -112,7 +112,7 @@ def test_a_reference_on_narrow_arcs_has_their_error(plan: ChartPlan) -> None:
     loose = replace(problem, lugs=tuple(replace(lug, clearance=5e-4) for lug in problem.lugs))
     light = replace(loose, loads=replace(loose.loads, forces=0.02 * loose.loads.forces))
     reference = chart(replace(plan, problem=light), MadeUp()).reference
-    assert reference.error > 1.5 / (CHART_RESOLUTIONS[-1].highest * light.half_angle) ** 2
+    assert reference.error > 2.7 / (CHART_RESOLUTIONS[-1].highest * light.half_angle) ** 2
     assert reference.error > 0.3
 
 
