@@ -98,7 +98,7 @@ class Answers:
         )
         used, errors = (np.take_along_axis(x, worst, axis=1) for x in (self.used, self.errors))
         deep = np.take_along_axis(self.deep, deepest, axis=1)
-        return Answers(used, errors, deep, self.unbounded.any(axis=1)[:, None])
+        return Answers(used, errors, deep, np.asarray(self.unbounded.any(axis=1))[:, None])
 
     @property
     def depends(self) -> NDArray[np.bool_]:
