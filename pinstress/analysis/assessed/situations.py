@@ -155,8 +155,8 @@ def _situation(
 ) -> tuple[Situation, str]:
     """Return the situation of a row and the reason why it is incomplete.
 
-    The reason says why there is no profile, or that neither the joint nor equilibrium gives all
-    forces; it is empty for a complete situation.
+    The reason says why there is no profile, that a clamp is in a cut, or that neither the joint nor
+    equilibrium gives all forces; it is empty for a complete situation.
     """
     table = study.table.pin[task.pin.name]
     sized = tuple(x for x in task.given if table.lug[x.connection].outer_diameter)
@@ -172,6 +172,11 @@ def _situation(
         lug_factors={name: LugFactors(**dict(lug.factors)) for name, lug in table.lug.items()},
         lug_stresses=joint.lugs if joint else (), shank_angles=task.shanks.get(loads.case, {}),
     )  # fmt: skip
+    in_cuts = [name for name in task.clamps if name in task.pin.cuts]
+    if in_cuts:  # of which the profile knows nothing
+        on_profile = tuple(name for name in task.clamps if name not in in_cuts)
+        why = f"the force that the clamp takes in {', '.join(in_cuts)}, which no formula gives"
+        return replace(s, clamps=on_profile, complete=False), why
     along = joint.along if joint else None
     now = loads
     if along is not None and along.times is not None and len(along.times) != len(loads):
