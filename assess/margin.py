@@ -18,6 +18,7 @@ JOINT_MODEL_BASIS = "joint model"  # as the basis of section forces
 COMPARISON_SUFFIX = "for comparison"
 # Methods of margins that stand for several checks that could not be made.
 FORMULA_CHECKS, CLAMPED_LUG_PREFIX = "checks by formula", "lug of "
+OMITS_CUTS = "the cuts of the pin"  # as what a check by formula does not cover
 BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")  # of TOML
 
 
@@ -70,6 +71,11 @@ class Margin:
         """The method, and the joint model where it takes the section forces of that."""
         named = JOINT_MODEL_BASIS in self.method or not self.basis.startswith(JOINT_MODEL_BASIS)
         return self.method if named else f"{self.method} ({JOINT_MODEL_BASIS})"
+
+    @property
+    def omits_cuts(self) -> bool:
+        """Whether it is of the pin without its cuts, which may be where it would be least."""
+        return OMITS_CUTS in self.omits
 
     @property
     def safety_factor(self) -> float | None:

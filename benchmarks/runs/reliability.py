@@ -54,7 +54,7 @@ class Formula(SolvedDesigns):
         """As that of SolvedDesigns."""
         self.count += len(u)
         used = self.case.used(self.space.physical(u))[:, None]
-        return Answers(used, np.zeros_like(used), used)
+        return Answers(used, np.zeros_like(used), used, np.zeros(used.shape, dtype=bool))
 
 
 class _Smooth:

@@ -87,6 +87,8 @@ class Risk:
     mesh: by the estimated error of the stress. joint: by the range over the joint. None if unknown.
     beneath: the probability that the row fails or depends on the stress beneath contact, with its
     error; None where that is never more than the row's own.
+    unbounded: the probability that the row fails or is singular, so that its factor is not known;
+    None where no design is singular.
     curve: of the distribution (factor, probability to be lower, by plain (0) or importance sampling
     (1)).
     """
@@ -105,6 +107,7 @@ class Risk:
     mesh: ByErrors | None = None
     joint: ByErrors | None = None
     beneath: Spread | None = None
+    unbounded: Spread | None = None
     drivers: tuple[Driver, ...] = ()
     curve: tuple[tuple[float, float, int], ...] = ()
 
@@ -136,15 +139,18 @@ class Risk:
     def result(self, allowed: float) -> str:
         """Return the outcome: whether the probability of failure is within the allowed one.
 
-        The interval with the error of the stress decides. A singular row cannot be safe. A row that
-        is safe by surface and section depends on the stress beneath contact where the probability
-        with it may exceed the allowed one.
+        The interval with the error of the stress decides. A singular row cannot be safe, nor one
+        that may fail or be singular with more than the allowed probability. A row that is safe by
+        surface and section depends on the stress beneath contact where the probability with it may
+        exceed the allowed one.
         """
         ends = self.probability
         low, high = ends.low, ends.high
         if self.mesh is not None:
             low, high = min(low, self.mesh.lower.low), max(high, self.mesh.higher.high)
-        if self.disagrees or (high <= allowed and self.verdict == "singular"):
+        may_be_singular = self.unbounded is not None and self.unbounded.high > allowed
+        singular = self.verdict == "singular" or may_be_singular
+        if self.disagrees or (high <= allowed and singular):
             return NOT_DECIDED
         if high <= allowed and self.beneath is not None and self.beneath.high > allowed:
             return DEPENDS

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import chain
-from math import inf, prod
+from math import inf, prod, sqrt
 from typing import Literal
 
 from assess.fatigue.records import ERROR_OF_STRESS
@@ -53,6 +53,7 @@ OUTCOME_OF_ROW: Mapping[str, Outcome] = {
     DEPENDS: "depends",
     NOT_DECIDED: "not decided",
 }
+CUTS_NEEDED = "the stress of sections and bands with the cuts of the pin, by hand"
 OUTCOMES: tuple[Outcome, ...] = ("missed", "depends", "not decided", "not checked", "met")
 METHODS_OF_CHECK: Mapping[RequiredCheck, tuple[str, ...]] = {
     "yield": (YIELD_METHOD,),
@@ -263,7 +264,8 @@ def _assumed(
 def _judged(plain: RequirementRow, margins: list[Margin], row: PinResult | None) -> RequirementRow:
     """Return a requirement as its margins have it, or the row's stress if it is of that."""
     if plain.check not in ("yield", "rupture") or row is None:
-        return _of_margins(plain, margins, row.most_loads if row else None)
+        by_formula = _of_margins(plain, margins, row.most_loads if row else None)
+        return _beside_cuts(by_formula, margins, row)
     hardened = row.places is not None and row.places.hardened
     if hardened and plain.check == "rupture":  # its largest stress need not be the row's
         return _of_margins(plain, margins, {**row.most_loads, "joint": row.joint_growth})
@@ -273,6 +275,27 @@ def _judged(plain: RequirementRow, margins: list[Margin], row: PinResult | None)
     if not strengths:
         return replace(plain, needs=_needs(margins))
     return _of_stress(plain, row, strengths[0])
+
+
+def _beside_cuts(
+    by_formula: RequirementRow, margins: list[Margin], row: PinResult | None
+) -> RequirementRow:
+    """Return a requirement on shear or bearing, whose formulas may leave out cuts of the pin.
+
+    Then they show what is missed, but not what is met. The mean shear stress of any section is at
+    most the largest von Mises stress of the model over the root of 3, which shows that, too.
+    """
+    omitting = [m for m in margins if m.omits_cuts]
+    stated = by_formula.check in METHODS_BY_FORMULA
+    if not stated or not omitting or by_formula.outcome not in (MET, DEPENDS):
+        return by_formula
+    strengths = [m.allowable for m in omitting if m.allowable is not None]
+    if by_formula.check == "shear" and row is not None and row.max_von_mises is not None:
+        by_stress = _of_stress(by_formula, row, sqrt(3.0) * min(strengths))
+        if by_stress.outcome == MET:
+            known = [x for x in (by_formula.reached, by_stress.reached) if x is not None]
+            return replace(by_formula, reached=min(known, default=None))
+    return replace(by_formula, outcome="not checked", needs=CUTS_NEEDED, over="")
 
 
 def _of_stress(plain: RequirementRow, row: PinResult, strength: float) -> RequirementRow:

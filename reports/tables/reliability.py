@@ -109,6 +109,12 @@ def remark(risk: Risk) -> str:
         said.append(f"no design point: {risk.form.why}")
     if risk.form is not None and risk.form.points > 1:
         said.append(f"{risk.form.points} design points; FORM is of the nearest one alone")
+    if risk.unbounded is not None and risk.verdict != "singular":
+        said.append(
+            "stress is unbounded at a corner or an edge in some designs, whose factors are those "
+            "outside the excluded zones: the probability of that or of failure is "
+            f"{chance_range(risk.unbounded)}"
+        )
     if risk.unknown:
         said.append(f"{risk.unknown} designs have no result and count both ways")
     return "; ".join(said)

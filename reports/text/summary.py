@@ -28,8 +28,10 @@ def summary(results: Results) -> str:
 
 
 def caveats(results: Results) -> list[str]:
-    """Return sentences on rows beyond yield, and on those without a converged maximum."""
-    ways = (_yielding, _unknown)
+    """Return sentences on rows beyond yield, on those without a converged maximum, and on checks by
+    formula that leave out cuts.
+    """
+    ways = (_yielding, _unknown, _without_cuts)
     return [part for part in (way(results) for way in ways) if part] if results.pins else []
 
 
@@ -117,6 +119,13 @@ def _yielding(results: Results) -> str:
     if not pins:
         return ""
     return f"{BEYOND_YIELD.capitalize()}, where linear elasticity is not valid: {_names(pins)}."
+
+
+def _without_cuts(results: Results) -> str:
+    omitting = (m.pin for m in results.margins if m.margin.governs and m.margin.omits_cuts)
+    if not (pins := list(dict.fromkeys(omitting))):
+        return ""
+    return f"Checks by formula leave out the cuts, which only the model has: {_names(pins)}."
 
 
 def _negative(results: Results) -> str:

@@ -18,6 +18,7 @@ from reports.data.decision import factor_ends
 from reports.data.headline import worst_checks
 from reports.data.requirements import RequirementRow, requirement_rows
 from reports.data.row import SharingRange
+from reports.text.summary import caveats
 from tests.conftest import ROOT
 from tests.pinstress.analysis.test_margins import STRENGTHS, study
 from tests.pinstress.explore.reliability.test_reliability import BAR
@@ -212,3 +213,31 @@ def test_checks_by_formula_hold_over_the_stiffness_of_links() -> None:
         changed = replace(results, pins=(replace(results.pins[0], sharing=shared),))
         (bearing,) = (r for r in requirement_rows(changed) if r.check == "bearing" and r.stated)
         assert (bearing.outcome, bearing.over) == (outcome, "links" * (outcome == "depends"))
+
+
+@pytest.mark.slow
+def test_formulas_that_leave_out_cuts_do_not_meet_requirements() -> None:
+    """Of a pin with a hole in a band: shear is met where the model's stress meets it."""
+    tree = study(model="auto", tolerance=0.3)
+    pin = tree["pin"]["P"] | {"hole": [{"z": 16.5, "diameter": 4, "angle": "90 deg"}]}
+    every = [{"check": "shear", "factor": 2}, {"check": "bearing", "factor": 1.1}]
+    more = [{"check": "shear", "factor": 8, "level": "proof"}]
+    tree |= {"pin": {"P": pin}, "require": every + more}
+    results = run(study_from(tree))
+    (low,) = (row.safety_factor for row in results.pins)
+    assert low is not None
+    assert 2.0 < low < 8.0
+    found = {(row.level, row.check): row for row in stated(results)}
+    assert found["limit", "shear"].outcome == "met"
+    assert found["limit", "shear"].reached == pytest.approx(low)
+    for key in (("proof", "shear"), ("limit", "bearing")):
+        row = found[key]
+        assert row.outcome == "not checked"
+        assert "the cuts of the pin" in row.needs
+        assert row.reached is not None
+        assert row.reached > row.required
+    omitting = {m.margin.method for m in results.margins if m.margin.omits_cuts}
+    assert {"bearing", "single shear, mean", "bending"} <= omitting
+    assert "Checks by formula leave out the cuts, which only the model has: pin P." in caveats(
+        results
+    )

@@ -16,6 +16,7 @@ from assess.margin import (
     CLAMPED_LUG_PREFIX,
     COMPARISON_SUFFIX,
     FORMULA_CHECKS,
+    OMITS_CUTS,
     Margin,
     skipped,
     worst_places,
@@ -23,16 +24,18 @@ from assess.margin import (
 from assess.plastic.records import LimitLoad, LugCollapse
 from assess.situation import LoadFactors, Situation, SolvedRow, with_solved, with_supports
 from assess.strength.bending_arms import BendingArms, bending_arms
-from assess.strength.hand_checks import BENDING_TEXTS
+from assess.strength.hand_checks import BEARING_METHODS, BENDING_TEXTS
 from assess.strength.model_stress import YIELD_METHOD
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.support.lugs.fit import on_structure
 from fea.support.records import JointResult
+from geometry import PinLike
 from pinstress.study.model.lost_fits import lost_fits
 from pinstress.study.model.requirements import required_by_formula, required_factor
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
+from reports.data.lug_modes import lug_mode
 from reports.data.row import PinResult
 
 L = TypeVar("L", LimitLoad | None, LugCollapse)
@@ -44,13 +47,14 @@ CASED_METHODS = {"plastic bending and shear", *(method for method, _ in BENDING_
 FORCE_OF_CLAMP = (
     "the force that a clamp takes, which contact with the lug instead of the clamp gives"
 )
+BEARING_MODE, PIN_AND_LUGS_MODE = "bearing", "pin and lugs together"  # reports.data.lug_modes
 LOAD_FACTOR_KEYS = ("limit_factor", "ultimate_factor", "fitting_factor")
 
 
 def assessed(study: Study, task: Task, row: PinResult) -> PinResult:
     """Return a row with its judgement, and its margins by formula and by the model.
 
-    A pin with cuts is checked as if it had none.
+    A pin with cuts is checked as if it had none, and its margins say so.
     """
     loads = next(x for x in task.loads if x.case == row.case)
     required = required_factor(study, row.pin, row.case)
@@ -62,6 +66,7 @@ def assessed(study: Study, task: Task, row: PinResult) -> PinResult:
     if s.complete and rigid and not why:
         why = "supports of the pin or loads in equilibrium"
     margins = [_of_core(s, margin) for margin in _with_ranges(s, margins_of(s))]
+    margins = _without_cuts(task.pin, margins)
     counted = margins
     if s.complete and (rigid or not s.across.any()):
         counted = [m for m in margins if m.kind not in FORMULA_KINDS]
@@ -128,6 +133,35 @@ def _of_core(s: Situation, margin: Margin) -> Margin:
     return replace(margin, basis="; ".join(filter(None, (margin.basis, known))))
 
 
+def _without_cuts(pin: PinLike, margins: Sequence[Margin]) -> list[Margin]:
+    """Return margins with the cuts of the pin among what those by formula omit, where they may
+    matter: to the pressure on bands, of which the worst is reported, those that open into any; to
+    what is along the pin, all.
+    """
+    if not pin.cuts:
+        return list(margins)
+    made = [m for m in margins if m.kind in FORMULA_KINDS and m.demand is not None]
+    bands = [pin.band(name) for name in {m.at for m in made if _on_bands(m)}]
+    openings = [cut.opens for cut in pin.cuts.values()]
+    open_ = any(low < band.z1 and band.z0 < high for band in bands for low, high in openings)
+
+    def matter(m: Margin) -> bool:
+        if m.kind not in FORMULA_KINDS or m.demand is None:
+            return False
+        return open_ if _on_bands(m) else lug_mode(m.method) in (None, PIN_AND_LUGS_MODE)
+
+    def omitting(m: Margin) -> Margin:
+        return replace(m, omits="; ".join(filter(None, (m.omits, OMITS_CUTS))))
+
+    return [omitting(m) if matter(m) else m for m in margins]
+
+
+def _on_bands(margin: Margin) -> bool:
+    """Return whether a margin is of the pressure on a band."""
+    method = margin.method.removesuffix(f", {COMPARISON_SUFFIX}")
+    return method in BEARING_METHODS or lug_mode(method) == BEARING_MODE
+
+
 def load_factors(study: Study) -> LoadFactors:
     """Return the load factors of a study; assess.checks adds the fitting factor that a code demands
     where the study states none.
@@ -155,8 +189,8 @@ def _situation(
 ) -> tuple[Situation, str]:
     """Return the situation of a row and the reason why it is incomplete.
 
-    The reason says why there is no profile, or that neither the joint nor equilibrium gives all
-    forces; it is empty for a complete situation.
+    The reason says why there is no profile, that a clamp is in a cut, or that neither the joint nor
+    equilibrium gives all forces; it is empty for a complete situation.
     """
     table = study.table.pin[task.pin.name]
     sized = tuple(x for x in task.given if table.lug[x.connection].outer_diameter)
@@ -172,6 +206,11 @@ def _situation(
         lug_factors={name: LugFactors(**dict(lug.factors)) for name, lug in table.lug.items()},
         lug_stresses=joint.lugs if joint else (), shank_angles=task.shanks.get(loads.case, {}),
     )  # fmt: skip
+    in_cuts = [name for name in task.clamps if name in task.pin.cuts]
+    if in_cuts:  # of which the profile knows nothing
+        on_profile = tuple(name for name in task.clamps if name not in in_cuts)
+        why = f"the force that the clamp takes in {', '.join(in_cuts)}, which no formula gives"
+        return replace(s, clamps=on_profile, complete=False), why
     along = joint.along if joint else None
     now = loads
     if along is not None and along.times is not None and len(along.times) != len(loads):

@@ -72,11 +72,14 @@ class Answers:
     errors: (n, r) of the stress, relative.
     deep: (n, r), as `used`, or the value for the stress beneath contact with its error, if that is
     larger, on which a row then depends.
+    unbounded: (n, r) whether the stress is unbounded where it governs; `used` is then that outside
+    the singular zones.
     """
 
     used: Array
     errors: Array
     deep: Array
+    unbounded: NDArray[np.bool_]
 
     @property
     def factors(self) -> Array:
@@ -86,15 +89,16 @@ class Answers:
 
     @property
     def system(self) -> Answers:
-        """Return the answers of the row with the largest use, as (n, 1); unknown where any row
-        is.
+        """Return the answers of the row with the largest use, as (n, 1); unknown, or unbounded,
+        where any row is.
         """
         worst, deepest = (
             np.argmax(np.where(np.isnan(x), np.inf, x), axis=1)[:, None]
             for x in (self.used, self.deep)
         )
         used, errors = (np.take_along_axis(x, worst, axis=1) for x in (self.used, self.errors))
-        return Answers(used, errors, np.take_along_axis(self.deep, deepest, axis=1))
+        deep = np.take_along_axis(self.deep, deepest, axis=1)
+        return Answers(used, errors, deep, np.asarray(self.unbounded.any(axis=1))[:, None])
 
     @property
     def depends(self) -> NDArray[np.bool_]:
@@ -199,7 +203,8 @@ class SolvedDesigns:
         for rows in designs:
             for reason in {row.reason for row in rows if np.isnan(_used(row))}:
                 self.reasons[reason or "no result"] += 1
-        return Answers(used, errors, used * np.maximum(1.0, below))
+        singular = np.array([[row.verdict == "singular" for row in rows] for rows in designs])
+        return Answers(used, errors, used * np.maximum(1.0, below), singular)
 
 
 def _name(purpose: str, count: int, total: int) -> str:

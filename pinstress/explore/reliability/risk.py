@@ -36,6 +36,20 @@ class RiskColumn:
         selected = answers.system if self.row is None else answers
         return selected.deep[:, self.row or 0]
 
+    def increased(self, answers: Answers, part: float) -> Array:
+        """Return use (n,) with each stress increased by a part of its error.
+
+        Of all rows it is the largest then: the row with the largest stress need not have the
+        largest error.
+        """
+        used = answers.used * (1.0 + part * answers.errors)
+        return np.asarray(used.max(axis=1) if self.row is None else used[:, self.row])
+
+    def unbounded(self, answers: Answers) -> NDArray[np.bool_]:
+        """Return whether the stress is unbounded where it governs, (n,)."""
+        selected = answers.system if self.row is None else answers
+        return np.asarray(selected.unbounded[:, self.row or 0])
+
     def depends(self, answers: Answers) -> bool:
         """Return whether the stress beneath contact ever governs."""
         return bool(answers.depends.any() if self.row is None else answers.depends[self.row])
@@ -55,8 +69,13 @@ class Sample:
 
         part: part of its error by which each stress is increased.
         """
-        used, errors = column.of(self.answers)
-        margin = 1.0 - settings.factor * used * (1.0 + part * errors)
+        margin = 1.0 - settings.factor * column.increased(self.answers, part)
+        return probability(self.draws, margin, 0.0, settings.confidence)
+
+    def unbounded(self, settings: ReliabilityTable, column: RiskColumn) -> Estimate:
+        """Return the probability of failure or of unbounded stress, whose factor is not known."""
+        margin = 1.0 - settings.factor * column.increased(self.answers, 0.0)
+        margin = np.where(column.unbounded(self.answers), -1.0, margin)
         return probability(self.draws, margin, 0.0, settings.confidence)
 
     def deep(self, settings: ReliabilityTable, column: RiskColumn) -> Estimate:
@@ -111,6 +130,7 @@ def risk_of(
         mesh=_by_errors(best, row, settings),
         joint=_by_joint(best, row, settings),
         beneath=_beneath(sampled, weighted, row, settings),
+        unbounded=_unbounded(sampled, weighted, row, settings),
         curve=(*_curve(sampled, row, 0), *(_curve(weighted, row, 1) if weighted else ())),
     )
 
@@ -123,6 +143,19 @@ def _beneath(
         return None
     plain = _bounded(sampled.deep(settings, row.column))
     return plain.or_narrower(_bounded(weighted.deep(settings, row.column)) if weighted else None)
+
+
+def _unbounded(
+    sampled: Sample, weighted: Sample | None, row: AssessedRow, settings: ReliabilityTable
+) -> Spread | None:
+    """Return the probability of failure or of unbounded stress; None where stress is bounded in all
+    designs.
+    """
+    if not any(row.column.unbounded(x.answers).any() for x in (sampled, weighted) if x):
+        return None
+    plain = _bounded(sampled.unbounded(settings, row.column))
+    by_weights = weighted and weighted.unbounded(settings, row.column)
+    return plain.or_narrower(_bounded(by_weights) if by_weights else None)
 
 
 def _by_errors(best: Sample, row: AssessedRow, settings: ReliabilityTable) -> ByErrors | None:

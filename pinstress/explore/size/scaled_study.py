@@ -7,6 +7,7 @@ import math
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -77,8 +78,8 @@ def resized(
 
     Diameters, bores, fillets, the distances of flats and offsets of passages and holes change;
     lengths, other sizes of holes and slots stay. Diameters are rounded up, to a standard one or to
-    four digits, bores and fillets down; scale 1 without standard diameters changes nothing.
-    Provenance that no longer holds is replaced.
+    four digits, bores and fillets down, the latter to no more than their steps; scale 1 without
+    standard diameters changes nothing. Provenance that no longer holds is replaced.
 
     required: the study's new required factor of safety, if any.
     """
@@ -104,6 +105,7 @@ def _resized(
                     diameter = 1.0 if key == "diameter" else None
                     for here, at in _numbers(table, key):
                         _scale(here, at, scale, system, up, standard, diameter)
+        _fit_fillets(table_of_pin, system)
         for table in (t for cut in ("passage", "hole") for t in _plain(table_of_pin.get(cut, []))):
             if "offset" not in table:
                 continue
@@ -116,6 +118,20 @@ def _resized(
                     _scale(corner, 2, scale, system, -1)
     require(study, required)
     return study
+
+
+def _fit_fillets(pin: Any, system: UnitSystem) -> None:
+    """Reduce the fillets between cylinders of a pin's table that are larger than their steps, which
+    rounded diameters may make smaller.
+    """
+    for left, right in pairwise(_plain(pin.get("profile", []))):
+        owner = left if "fillet" in left else pin
+        diameters = [value_of(segment["diameter"]) for segment in (left, right)]
+        if "fillet" not in owner or any(isinstance(d, list) for d in diameters):
+            continue
+        radius, a, b = (to_si(x, "length", system) for x in (value_of(owner["fillet"]), *diameters))
+        if 0.0 < 0.5 * abs(a - b) < radius * (1.0 - 1e-12):
+            _write(owner, "fillet", 0.5 * abs(a - b), "length", system, -1)
 
 
 def require(document: Any, required: float | None) -> None:
@@ -249,9 +265,12 @@ def _scale(
         replace_number(table, key, number, unit_of(old, "length", system)[0])
 
 
-def _write(table: Any, key: str, si: float, dimension: str, system: UnitSystem) -> None:
+def _write(
+    table: Any, key: str, si: float, dimension: str, system: UnitSystem, up: int = 1
+) -> None:
+    """Write a number in SI, in the unit in which the old one is written; up: as in `_scale`."""
     unit, one = unit_of(value_of(table[key]), dimension, system)
-    replace_number(table, key, rounded(si / one, None, 1), unit)
+    replace_number(table, key, rounded(si / one, None, up), unit)
 
 
 def unit_of(old: Any, dimension: str, system: UnitSystem) -> tuple[str, float]:

@@ -223,3 +223,25 @@ def test_past_yield_from_the_study_to_the_files(
     (row,) = [m for m in written["margins"] if m["method"] == "limit load, collapse"]
     assert row["margin"] == pytest.approx(limit["lower"] / 1.5 - 1.0)
     assert Path("out/vtk/P_pull.limit-load.vtu").is_file()
+
+
+@pytest.mark.slow
+def test_a_pin_held_in_a_hole_has_the_margins_of_its_model_alone() -> None:
+    """The profile knows nothing of the hole, so no formula gives the forces."""
+    pin = {
+        "material": "steel",
+        "clamp": ["hole 1"],
+        "profile": [
+            {"length": 20, "diameter": 20},
+            {"length": 20, "diameter": 20, "connection": "M"},
+        ],
+        "hole": [{"z": 10, "diameter": 10}],
+    }
+    case = {"kind": "given", "forces": {"M": [5000, 0]}}
+    tree = study(model="solid") | {"pin": {"P": pin}, "case": {"pull": case}}
+    results = run(study_from(tree))
+    (row,) = results.pins
+    assert row.max_von_mises is not None
+    assert {m.kind for m in row.margins if m.margin is not None} == {"model"}
+    needs = [m.needs for m in row.worst if m.needs]
+    assert any("the force that the clamp takes in hole 1" in text for text in needs), needs

@@ -7,6 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from pinstress.explore.reliability.designs import Answers
+from pinstress.explore.reliability.risk import RiskColumn, Sample
+from pinstress.explore.reliability.sampling import plain_draws
+from pinstress.study.schema.vary import ReliabilityTable
 from reports.data.reliability import ByErrors, FirstOrder, Reliability, Risk, Spread
 from reports.plots.reliability import distribution_plot
 from reports.tables.reliability import chance_range, factor_interval, remark, risks_table
@@ -66,11 +69,35 @@ def test_the_sentence_and_the_plot() -> None:
 def test_the_worst_row_of_each_design() -> None:
     used = np.array([[0.5, 0.9], [0.8, 0.1], [np.nan, 0.3], [0.0, 0.0]])
     errors = np.array([[0.1, 0.2], [0.3, 0.4], [0.0, 0.0], [0.0, 0.0]])
-    worst = Answers(used, errors, used).system
+    bounded = np.zeros(used.shape, dtype=bool)
+    worst = Answers(used, errors, used, bounded).system
     assert worst.used[:2, 0].tolist() == [0.9, 0.8]
     assert worst.errors[:2, 0].tolist() == [0.2, 0.3]
     assert np.isnan(worst.used[2, 0])
-    assert Answers(used, errors, used).factors[3].tolist() == [np.inf, np.inf]
+    assert Answers(used, errors, used, bounded).factors[3].tolist() == [np.inf, np.inf]
+
+
+def test_the_error_that_fails_any_row_counts_not_that_of_the_worst_row() -> None:
+    """The first row is stressed most; with its error, the second fails in one of two designs."""
+    used, errors = np.array([[0.95, 0.93], [0.5, 0.4]]), np.array([[0.01, 0.1], [0.01, 0.1]])
+    answers = Answers(used, errors, used, np.zeros(used.shape, dtype=bool))
+    sample, every = Sample(plain_draws(2, 1, 1), answers), RiskColumn(None)
+    at = [sample.probability(ReliabilityTable(), every, part).value for part in (-1.0, 0.0, 1.0)]
+    assert at == [0.0, 0.0, 0.5]
+
+
+def test_a_row_that_may_be_singular_is_not_safe() -> None:
+    """Of three designs one fails and another is singular in one of its rows."""
+    used = np.array([[0.5, 0.2], [1.2, 0.2], [0.5, 0.2]])
+    singular = np.array([[False, True], [False, False], [False, False]])
+    answers = Answers(used, np.zeros_like(used), used, singular)
+    sample, settings = Sample(plain_draws(3, 1, 1), answers), ReliabilityTable()
+    found = [sample.unbounded(settings, RiskColumn(k)).value for k in (0, 1, None)]
+    assert found == [1.0 / 3.0, 1.0 / 3.0, 2.0 / 3.0]
+    row = replace(ROW, unbounded=Spread(0.2, 0.1, 0.3))
+    assert [row.result(p) for p in (0.01, 0.05, 0.3)] == ["fails", "not decided", "safe"]
+    assert "unbounded at a corner or an edge in some designs" in remark(row)
+    assert "unbounded" not in remark(replace(row, verdict="singular"))
 
 
 def test_a_range_that_does_not_contain_the_maximum_is_not_a_plus_or_minus() -> None:

@@ -229,3 +229,52 @@ def test_probabilities_do_not_take_the_goal_to_decide() -> None:
     found = for_values(parse_study(Path("bar.toml"), decide))
     assert found.table.analysis.goal == "value"
     assert found.table.material == parse_study(Path("bar.toml"), BAR).table.material
+
+
+# Fillets of 0.2 mm are the place of the largest stress; beside larger ones it is the clamp's edge.
+STUB = """
+title = "Stub"
+units = "mm-N-s"
+
+[material.steel]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+yield_strength = 800
+
+[pin.A]
+material = "steel"
+clamp = ["start"]
+profile = [
+  { length = 20, diameter = 20, fillet = 0.2 },
+  { length = 30, diameter = 18.5, connection = "A" },
+]
+
+[case.pull]
+kind = "given"
+forces = { A = [0, 1500] }
+
+[reliability]
+samples = 12
+importance_samples = 0
+sobol_samples = 0
+probability = 0.5
+
+[vary.parameters]
+"pin.A.profile[1].fillet" = { uniform = [0.15, 0.4] }
+"""
+
+
+@pytest.mark.slow
+def test_a_pin_that_is_singular_in_many_designs_is_not_safe(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Though it is not in the study as it is, and all factors outside of the zones are above 5."""
+    assert _run(tmp_path, STUB) == 1
+    printed = capsys.readouterr()
+    (risk,) = json.loads((tmp_path / "out" / "reliability.json").read_text())["risks"]
+    assert risk["verdict"] == "converged"
+    assert risk["failures"] == 0
+    assert risk["sampled"]["high"] < 0.5 < risk["unbounded"]["high"]
+    assert risk["result"] == "not decided"
+    assert "unbounded at a corner or an edge in some designs" in " ".join(printed.out.split())
+    assert "Not decided: pin A, case pull" in printed.err

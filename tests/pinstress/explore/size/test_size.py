@@ -113,6 +113,27 @@ hole = [{ z = 1.0, diameter = 0.5 }]
     assert pin["analysis"]["required_safety_factor"] == 4.0
 
 
+@pytest.mark.parametrize(
+    "fillet", ["fillet = 2\n", 'fillet = { value = "2 mm", provenance = "given" }\n']
+)
+def test_a_fillet_as_large_as_its_step_fits_after_rounding(fillet: str) -> None:
+    """Diameters are rounded up, some more than others: the step grows less than its fillet."""
+    text = ONE_PIN.replace('units = "in-lbf-s"', 'units = "mm-N-s"')
+    text = text.replace("diameter = 4.0", "diameter = 24").replace(
+        "diameter = 2.0", "diameter = 20"
+    )
+    text = text.replace("length = 2.0", "length = 30")
+    assert "fillet = 0.4 " in text
+    text = text.replace("fillet = 0.4 ", f"{fillet}#")
+    system = UNIT_SYSTEMS["mm-N-s"]
+    for scale in (*[0.9 + 0.0123 * k for k in range(40)], 1.0):
+        new = resized(text, {"B": scale}, system)
+        thick, thin = (s["diameter"] for s in tomllib.loads(new)["pin"]["B"]["profile"])
+        radius = parse_study(Path("B.toml"), new).table.pin["B"].fillet * 1e3
+        assert 0.997 * scale * 2.0 < radius <= 0.5 * (thick - thin) * (1.0 + 1e-9)
+        pin(parse_study(Path("B.toml"), new), "B")  # which refuses fillets that do not fit
+
+
 def test_every_shipped_profile_can_be_resized() -> None:
     for path in sorted((ROOT / "studies").glob("*.toml")):
         text = path.read_text()
