@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from geometry import PinLike
-from loads import Linkage, jump_times
+from loads import Linkage, Reactions, jump_times
 from loads.forces.sharing import undetermined
 from loads.motion.four_bar import four_bar
 from loads.motion.mobility import Mobility
@@ -32,7 +32,13 @@ from pinstress.study.model.mechanism.linkage import (
 from pinstress.study.model.pins import far_ends, outline, shape_notes, weight
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.sequence import require_times
-from pinstress.study.model.tasks import Task, assumed_distribution, require_models, tasks
+from pinstress.study.model.tasks import (
+    Task,
+    assumed_distribution,
+    require_models,
+    taper_assumption,
+    tasks,
+)
 from pinstress.study.model.temperature import temperature_assumption
 from pinstress.study.reading.errors import Errors
 from pinstress.study.reading.file import Study, named_materials
@@ -85,7 +91,10 @@ def examine(study: Study) -> Examination:
             # Without extremes: it is enough that the mechanism can follow.
             case_result = wrong.attempt(partial(case_loads, study, name, mechanism, extremes=False))
             loads |= {} if case_result is None else {name: case_result}
-    lines += [f"case {name}: {_words(study, name, case)}" for name, case in loads.items()]
+    lines += [
+        f"case {name}: {_words(study, name, case)}{_nothing(case.reactions)}"
+        for name, case in loads.items()
+    ]
     times = {name: case.reactions.times for name, case in loads.items()}
     wrong.attempt(partial(require_times, study, times))
     for name, sequence in table.sequence.items():
@@ -103,6 +112,7 @@ def examine(study: Study) -> Examination:
     )
     lines.append(f"model {a.model}, tolerance {a.tolerance:g}{goal}")
     lines += filter(None, [assumed_distribution(study, todo)])
+    lines += taper_assumption(todo)
     lines += map(_requirement, table.require)
     lines += fit_note(study) + temperature_assumption(study)
     warnings = other_warnings(study, todo) + lost_fit_warnings(study, todo)
@@ -159,7 +169,7 @@ def _impossible(study: Study) -> list[str]:
     Raises: InputError for given forces that vary one by one, out of equilibrium.
     """
     from pinstress.explore.sweep.evaluate import Evaluator  # imports what solves
-    from pinstress.explore.sweep.possible import drawn, impossible_ends, tried
+    from pinstress.explore.sweep.possible import drawn, impossible_designs
 
     vary = study.table.vary
     sampled = vary is not None and _sampled(vary)
@@ -168,8 +178,7 @@ def _impossible(study: Study) -> list[str]:
         values = designs_of(vary, parameters, correlations_of(study, parameters))
     else:
         values = drawn(study, parameters)
-    evaluator = Evaluator(study, parameters)
-    return impossible_ends(evaluator, parameters) + tried(study, evaluator, values).warnings
+    return impossible_designs(study, Evaluator(study, parameters), parameters, values)
 
 
 def _pin(study: Study, pin: PinLike) -> str:
@@ -263,6 +272,12 @@ def _redundant(mobility: Mobility, rule: str) -> str:
 def _teeth(mechanism: Linkage) -> str:
     pairs = len(mechanism.teeth)
     return f", {pairs} pair{'s' * (pairs > 1)} of teeth" if pairs else ""
+
+
+def _nothing(reactions: Reactions) -> str:
+    """Return a note where a case loads no pin."""
+    loaded = reactions.forces.any() or reactions.moments.any()
+    return "" if loaded else "; every force and moment on the pins is zero"
 
 
 def _words(study: Study, name: str, loads: CaseLoads) -> str:

@@ -36,7 +36,7 @@ def curve(
 
     key: as in messages and [vary], "pin.E.profile[2].diameter".
     ends: the first and the last value, in the study's units or as texts with a unit; by default
-    half and twice the number in the study.
+    half and twice the number in the study; of a temperature, half and twice its rise.
     pins: names; by default the pin that the key belongs to, else all.
     jobs: number of processes.
 
@@ -65,7 +65,7 @@ def curve(
     names = tuple(dict.fromkeys(row.pin for row in solved))
     required = None if _is_required(number) else common_required_factor(study, names)
     return FactorCurve(
-        study.name, key, number.unit, number.nominal / number.factor, required,
+        study.name, key, number.unit, number.shown(number.nominal), required,
         study.system.stress, tuple(solved), with_given_lugs(study, names),
         checks_besides_yield(study),
     )  # fmt: skip
@@ -84,7 +84,8 @@ def _is_required(number: Number) -> bool:
 
 
 def _range(study: Study, number: Number, ends: Ends) -> tuple[float, float]:
-    usual = sorted(share * number.nominal for share in USUAL_RANGE)
+    zero = _zero_of_range(study, number)
+    usual = sorted(zero + share * (number.nominal - zero) for share in USUAL_RANGE)
     values = []
     for name, end, default in zip(("--from", "--to"), ends, usual, strict=True):
         try:
@@ -94,18 +95,29 @@ def _range(study: Study, number: Number, ends: Ends) -> tuple[float, float]:
     low, high = values
     if low < high:
         return low, high
-    if number.nominal == 0.0 and None in ends:
-        text = "is 0 in the study, so there is no usual range: give --from and --to"
+    if number.nominal == zero and None in ends:
+        text = (
+            f"is {number.text(zero)} in the study, so there is no usual range: give --from and --to"
+        )
     else:
-        shown = [f"{x / number.factor:.6g} {number.unit}".rstrip() for x in values]
+        shown = [number.text(x) for x in values]
         text = f"the range from {shown[0]} to {shown[1]} is empty: --to must exceed --from"
     raise study.error(f"{number.key}: {text}", code="limits-out-of-order")
+
+
+def _zero_of_range(study: Study, number: Number) -> float:
+    """Return the value of which the usual range is a multiple: 0, but of a temperature the one of
+    the study's dimensions, as the rise above it is what acts.
+    """
+    if number.dimension == "temperature":
+        return study.table.analysis.reference_temperature
+    return 0.0
 
 
 def _solved(evaluator: Evaluator, values: Iterable[float], tell: Tell) -> list[list[DesignRow]]:
     number, designs = evaluator.numbers[0], []
     for value in values:
-        tell(f"{number.key} = {value / number.factor:.6g} {number.unit}".rstrip())
+        tell(f"{number.key} = {number.text(value)}")
         designs.append(evaluator.rows([value]))
     return designs
 
@@ -116,6 +128,6 @@ def _point(study: Study, number: Number, value: float, row: DesignRow) -> CurveP
         None if x is None else x / unit for x in (row.max_von_mises, row.error_estimate)
     )
     return CurvePoint(
-        value / number.factor, row.pin, row.case, stress, error, row.safety_factor, row.outcome,
+        number.shown(value), row.pin, row.case, stress, error, row.safety_factor, row.outcome,
         row.depends_on, row.verdict, row.reason,
     )  # fmt: skip

@@ -27,7 +27,7 @@ from pinstress.study.model.mechanism.linkage import fit_note
 from pinstress.study.model.pins import far_ends, outline, weight
 from pinstress.study.model.requirements import stated_requirements
 from pinstress.study.model.sequence import chosen_cases
-from pinstress.study.model.tasks import Task, assumed_distribution
+from pinstress.study.model.tasks import Task, assumed_distribution, taper_assumption
 from pinstress.study.model.temperature import temperature_assumption
 from pinstress.study.reading.file import Study, named_materials
 from pinstress.study.reading.inputs import inputs
@@ -207,6 +207,7 @@ def _results(
             *materials_assumption(study),
             *factor_assumption(study, (row for _, row in rows)),
             *filter(None, [assumed_distribution(study, (task for task, _ in rows))]),
+            *taper_assumption(task for task, _ in rows),
             *shanks_assumption(row for _, row in rows),
             *fit_note(study),
             *temperature_assumption(study),

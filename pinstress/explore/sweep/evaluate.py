@@ -193,15 +193,15 @@ class Evaluator:
             out += [self._answered(one, known) for one in posed]
         return out
 
-    def changed(self, values: Sequence[float]) -> Study:
+    def changed(self, values: Sequence[float] | Floats) -> Study:
         """Return the study with other values (SI) of its numbers.
 
         Raises: InputError.
         """
         raw = self._raw
         for number, value in zip(self.numbers, values, strict=True):
-            for path in number.paths:
-                raw = with_value(raw, path, number.in_study(value / number.factor))
+            for path in number.paths:  # numpy's numbers are none of a study: compared with [], say
+                raw = with_value(raw, path, number.in_study(number.shown(float(value))))
         return with_raw(self.study, raw)
 
     def _moves(self, number: Number, case: str) -> bool:

@@ -35,10 +35,10 @@ class Uniform:
         """
         return self.quantile(_ndtr(z))
 
-    def text(self, show: Show) -> str:
+    def text(self, show: Show, spread: Show) -> str:
         """Describe the law in words.
 
-        show: makes a text of a value.
+        show: makes a text of a value; spread: of a difference between two.
         """
         return f"uniform from {show(self.low)} to {show(self.high)}"
 
@@ -84,9 +84,9 @@ class Normal:
             return self.quantile(_ndtr(z))
         return np.asarray(self.mean + self.deviation * np.asarray(z), np.float64)
 
-    def text(self, show: Show) -> str:
+    def text(self, show: Show, spread: Show) -> str:
         """Describe the law as Uniform does."""
-        text = f"normal, mean {show(self.mean)}, deviation {show(self.deviation)}"
+        text = f"normal, mean {show(self.mean)}, deviation {spread(self.deviation)}"
         return text + _limits(self.low, self.high, show)
 
 
@@ -122,9 +122,9 @@ class LogNormal:
         """Return the values as Uniform does."""
         return np.asarray(np.clip(np.exp(self.logarithm.of_normal(z)), self.low, self.high))
 
-    def text(self, show: Show) -> str:
+    def text(self, show: Show, spread: Show) -> str:
         """Describe the law as Uniform does."""
-        text = f"lognormal, mean {show(self.mean)}, deviation {show(self.deviation)}"
+        text = f"lognormal, mean {show(self.mean)}, deviation {spread(self.deviation)}"
         low = self.low if self.low > 0.0 else -math.inf
         return text + _limits(low, self.high, show)
 
@@ -149,7 +149,7 @@ class Triangular:
         """Return the values as Uniform does."""
         return self.quantile(_ndtr(z))
 
-    def text(self, show: Show) -> str:
+    def text(self, show: Show, spread: Show) -> str:
         """Describe the law as Uniform does."""
         return f"triangular from {show(self.low)} over {show(self.mode)} to {show(self.high)}"
 

@@ -17,7 +17,7 @@ from pinstress.study.reading.file import Study, raw_study, with_value
 from pinstress.study.reading.in_python import PAIR_KEYS, key_parts, single_keys
 from pinstress.study.schema.lugs import with_lug_defaults
 from pinstress.study.schema.shown import as_text, nearest
-from pinstress.study.schema.thermal_units import THERMAL_UNITS
+from pinstress.study.schema.thermal_units import TEMPERATURES, THERMAL_UNITS, temperature_unit
 from pinstress.study.schema.types import Probe
 from pinstress.study.schema.units import (
     DIMENSION_EXPONENTS,
@@ -35,6 +35,7 @@ SI_UNITS = {
     "angular acceleration": "rad/s^2",
     **THERMAL_UNITS,
 }
+TEMPERATURE_DECIMALS = 9  # 353.15 K - 273.15 K is not 80 K to the last digit
 
 Path = tuple[str | int, ...]
 
@@ -47,7 +48,8 @@ class Number:
     path: its path in the content that `raw_study` returns.
     dimension: empty for a number without one.
     nominal: its value in SI.
-    unit: unit of a design's values in tables, `factor` its SI value.
+    unit: unit of a design's values in tables, `factor` its SI value; `zero` is the SI value of its
+    zero, which only temperatures have.
     written: whether the study must give it as a text with that unit.
     others: paths of numbers that are always the same: those of a key that stands for several, as
     "profile[1-3].diameter".
@@ -59,6 +61,7 @@ class Number:
     nominal: float
     unit: str = ""
     factor: float = 1.0
+    zero: float = 0.0
     written: bool = False
     others: tuple[Path, ...] = ()
 
@@ -66,6 +69,20 @@ class Number:
     def paths(self) -> tuple[Path, ...]:
         """Return all places of the number."""
         return self.path, *self.others
+
+    def shown(self, value: float) -> float:
+        """Return a value (SI) in the number's unit."""
+        if not self.zero:
+            return value / self.factor
+        return round((value - self.zero) / self.factor, TEMPERATURE_DECIMALS) + 0.0
+
+    def text(self, value: float) -> str:
+        """Return a value (SI) in the number's unit, as people read it."""
+        return f"{self.shown(value):.6g} {self.unit}".rstrip()
+
+    def spread_text(self, difference: float) -> str:
+        """Return a difference of two values (SI) in the number's unit, as people read it."""
+        return f"{difference / self.factor:.6g} {self.unit}".rstrip()
 
     def in_study(self, value: float) -> float | str:
         """Return a value in its unit (not SI) as the study may write it."""
@@ -152,6 +169,9 @@ def _number(study: Study, raw: dict[str, Any], key: str, path: Path, value: Any)
     nominal = to_si(value, dimension, study.system)
     if dimension in ANGLE_UNITS:
         return Number(key, path, dimension, nominal, *ANGLE_UNITS[dimension], written=True)
+    if dimension == "temperature":
+        unit = temperature_unit(study.system.imperial)
+        return Number(key, path, dimension, nominal, unit, *TEMPERATURES[unit], written=True)
     if dimension in DIMENSIONS_NEEDING_UNIT:
         return Number(key, path, dimension, nominal, SI_UNITS[dimension], written=True)
     system = study.system

@@ -71,11 +71,7 @@ class Parameter:
     @property
     def law_text(self) -> str:
         """Describe the law in words, in the number's unit."""
-
-        def show(value: float) -> str:
-            return f"{value / self.number.factor:.6g} {self.number.unit}".rstrip()
-
-        text = self.law.text(show)
+        text = self.law.text(self.number.text, self.number.spread_text)
         return f"{self.source}: {text}" if self.source else text
 
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections import Counter
+import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -24,25 +24,23 @@ from pinstress.study.schema.cases import GivenCase
 # mechanism a tenth of a second.
 TRIED_DESIGNS, TRIED_MECHANISMS = 32, 8
 MAX_TRIED_RANGES = 20  # each end takes as long as a design
+# A value in a message, but no index of a key ("profile[2]") and no number of a line (":18:").
+VALUE_PATTERN = re.compile(r"(?<![\w.\[:])[-+]?\d[\d,]*(?:\.\d+)?(?:[eE][-+]?\d+)?(?![\w\]])")
 
 
-@dataclass(frozen=True)
-class TriedDesigns:
-    """The designs that were tried, and why some of them are impossible.
+@dataclass
+class Cause:
+    """Why designs cannot be built: the message of one of them.
 
-    count: how many were tried. impossible: why designs cannot be built, with their number.
+    ends: of the ranges whose ends are such designs, by key. designs: how many of those tried are.
     """
 
-    count: int
-    impossible: dict[str, int]
+    reason: str
+    ends: dict[str, list[str]] = field(default_factory=dict)
+    designs: int = 0
 
-    @property
-    def warnings(self) -> list[str]:
-        """A warning for each reason."""
-        return [
-            f"vary: {n} of {self.count} designs tried cannot be built: {reason}"
-            for reason, n in self.impossible.items()
-        ]
+
+Causes = dict[tuple[str, str], Cause]  # by code, and by the message without its values
 
 
 def drawn(study: Study, parameters: Sequence[Parameter]) -> Floats:
@@ -53,10 +51,38 @@ def drawn(study: Study, parameters: Sequence[Parameter]) -> Floats:
     return np.stack([p.of_normal(z[:, k]) for k, p in enumerate(parameters)], axis=1)
 
 
-def tried(study: Study, evaluator: Evaluator, values: Floats) -> TriedDesigns:
-    """Build some designs and their loads, without solving any.
+def impossible_designs(
+    study: Study, evaluator: Evaluator, parameters: Sequence[Parameter], values: Floats
+) -> list[str]:
+    """Return a warning for each cause for which designs cannot be built: at ends of ranges, with
+    all other numbers as in the study, and in some of the designs.
+
+    values: (N, p) of the parameters, SI.
+
+    Raises: InputError as `tried` does.
+    """
+    causes = _impossible_ends(evaluator, parameters)
+    count = tried(study, evaluator, values, causes)
+    return [_warning(cause, count, parameters) for cause in causes.values()]
+
+
+def _warning(cause: Cause, count: int, parameters: Sequence[Parameter]) -> str:
+    many = f"{cause.designs} of {count} designs tried"
+    if not cause.ends:
+        only = f".parameters.{parameters[0].key}" if len(parameters) == 1 else ""
+        return f"vary{only}: {many} cannot be built: {cause.reason}"
+    (first, *others), values = cause.ends, cause.ends
+    where = f"vary.parameters.{first}: impossible at {' and '.join(values[first])}"
+    where += "".join(f", {key} at {' and '.join(values[key])}" for key in others)
+    also = f" and in {many}" if cause.designs else ""
+    return f"{where}{also}: {cause.reason}"
+
+
+def tried(study: Study, evaluator: Evaluator, values: Floats, causes: Causes) -> int:
+    """Build some designs and their loads, without solving any; return how many.
 
     values: (N, p) of the parameters, SI; some rows, evenly spaced, are tried.
+    causes: gains those for which designs cannot be built.
 
     Raises: InputError where given forces that vary one by one leave pins out of equilibrium that
     are in equilibrium as the study describes them.
@@ -64,7 +90,7 @@ def tried(study: Study, evaluator: Evaluator, values: Floats) -> TriedDesigns:
     most = TRIED_DESIGNS if study.table.mechanism is None else TRIED_MECHANISMS
     rows = np.unique(np.linspace(0, len(values) - 1, most).astype(int))
     held = _unheld_rows(evaluator.study, evaluator, [n.nominal for n in evaluator.numbers])
-    impossible, unbalanced = Counter[str](), dict[tuple[str, str], list[str]]()
+    unbalanced: dict[tuple[str, str], list[str]] = {}
     for row in rows:
         try:
             design = evaluator.changed(values[row])
@@ -72,7 +98,8 @@ def tried(study: Study, evaluator: Evaluator, values: Floats) -> TriedDesigns:
                 if key not in held:
                     unbalanced.setdefault(key, []).append(reason)
         except (InputError, ArithmeticError) as error:
-            impossible[str(error).partition("\n")[0]] += 1
+            for cause in _causes_of(error, causes):
+                cause.designs += 1
     for (pin, case), reasons in unbalanced.items():
         if isinstance(study.table.case[case], GivenCase) and study.table.pin[pin].balance is None:
             raise study.error(
@@ -83,17 +110,16 @@ def tried(study: Study, evaluator: Evaluator, values: Floats) -> TriedDesigns:
                 at="vary",
                 code="unbalanced-designs",
             )
-    return TriedDesigns(len(rows), dict(impossible))
+    return len(rows)
 
 
-def impossible_ends(evaluator: Evaluator, parameters: Sequence[Parameter]) -> list[str]:
-    """Return a warning for each end of a range at which the design cannot be built, with all other
-    numbers as in the study.
+def _impossible_ends(evaluator: Evaluator, parameters: Sequence[Parameter]) -> Causes:
+    """Return why designs at ends of ranges cannot be built, with all other numbers as in the study.
 
     Only uniform and triangular laws have ends.
     """
     nominal = [number.nominal for number in evaluator.numbers]
-    warnings = []
+    causes: Causes = {}
     for k, parameter in enumerate(parameters[:MAX_TRIED_RANGES]):
         if not isinstance(parameter.law, Uniform | Triangular):
             continue
@@ -102,17 +128,30 @@ def impossible_ends(evaluator: Evaluator, parameters: Sequence[Parameter]) -> li
             try:
                 _unheld_rows(evaluator.changed(values), evaluator, values)
             except (InputError, ArithmeticError) as error:
-                shown = f"{end / parameter.number.factor:.6g} {parameter.number.unit}".rstrip()
-                reason = str(error).partition("\n")[0]
-                warnings.append(f"vary.parameters.{parameter.key}: impossible at {shown}: {reason}")
-    return warnings
+                for cause in _causes_of(error, causes):
+                    cause.ends.setdefault(parameter.key, []).append(parameter.number.text(end))
+    return causes
+
+
+def _causes_of(error: InputError | ArithmeticError, causes: Causes) -> list[Cause]:
+    """Return the causes of a design that cannot be built; new ones are added to those known.
+
+    Messages that differ in their values alone, as "1.05 times as large" and "2 times as large",
+    have one cause.
+    """
+    if not isinstance(error, InputError):
+        error = InputError(str(error).partition("\n")[0])
+    codes, lines = error.codes, error.lines
+    keys = {(code, VALUE_PATTERN.sub("#", line)): line
+            for code, line in zip(codes, lines, strict=True)}  # fmt: skip
+    return [causes.setdefault(key, Cause(line)) for key, line in keys.items()]
 
 
 def require_balance(study: Study, evaluator: Evaluator, values: Floats) -> None:
     """Refuse designs as `tried` does, at once, where any given force varies."""
     paths = [path for number in evaluator.numbers for path in number.paths]
     if any(path[0] == "case" and path[2] in ("forces", "moments") for path in paths):
-        tried(study, evaluator, values)
+        tried(study, evaluator, values, {})
 
 
 def _unheld_rows(

@@ -59,8 +59,7 @@ def table_of(
         [row.case for _, _, row in flat],
     ]
     for k, parameter in enumerate(parameters):
-        factor = parameter.number.factor
-        columns.append([float(values[k]) / factor for _, values, _ in flat])
+        columns.append([parameter.number.shown(float(values[k])) for _, values, _ in flat])
     for column in RESULT_COLUMNS:
         cells = [column.cell(row) for _, _, row in flat]
         if column.numeric:

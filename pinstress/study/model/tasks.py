@@ -247,6 +247,28 @@ def assumed_distribution(study: Study, todo: Iterable[Task]) -> str:
     )
 
 
+def taper_assumption(todo: Iterable[Task]) -> tuple[str, ...]:
+    """Return a sentence on clamps on cones, which hold a pin as no tapered seat does; none without
+    such clamps.
+
+    todo: the tasks of an analysis.
+    """
+    tapers = dict.fromkeys(
+        f"{name} of pin {task.pin.name}"
+        for task in todo
+        if task.pin.profile is not None
+        for name in task.clamps
+        for segment, label in zip(task.pin.profile.segments, task.pin.profile.labels, strict=True)
+        if segment.cone and label == task.pin.surface(name)
+    )
+    if not tapers:
+        return ()
+    return (
+        f"The clamp on the cone {listed(list(tapers))} holds it in every direction, as if bonded; "
+        "a tapered seat only presses on it, so it holds no pull out of the taper.",
+    )
+
+
 def require_models(study: Study, todo: Iterable[Task], model: str) -> None:
     """Raise InputError, with all such tasks, for a model that cannot solve some."""
     wrong = Errors(study.path)

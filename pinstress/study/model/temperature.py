@@ -28,7 +28,7 @@ def rise_of(study: Study, case: str | None) -> float:
 def temperature_words(study: Study, rise: float) -> str:
     """Return the temperature that is `rise` (K) above that of the study's dimensions, in words."""
     kelvin = study.table.analysis.reference_temperature + rise
-    return shown_temperature(kelvin, study.table.units == "in-lbf-s")
+    return shown_temperature(kelvin, study.system.imperial)
 
 
 def band_radius(pin: Pin, lug: Lug) -> float:

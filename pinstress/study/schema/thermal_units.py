@@ -66,9 +66,16 @@ def thermal_si(number: float, unit: str, dimension: str, text: str) -> float:
     return number * one + zero
 
 
+def temperature_unit(imperial: bool) -> str:
+    """The unit in which temperatures are shown: degrees Fahrenheit for imperial units, else
+    Celsius.
+    """
+    return "degF" if imperial else "degC"
+
+
 def shown_temperature(kelvin: float, imperial: bool) -> str:
-    """A temperature in words, in degrees Fahrenheit for imperial units, else Celsius."""
-    unit = "degF" if imperial else "degC"
+    """A temperature in words, in the unit in which temperatures are shown."""
+    unit = temperature_unit(imperial)
     one, zero = TEMPERATURES[unit]
     return f"{round((kelvin - zero) / one, 1) + 0.0:.10g} {unit}"
 

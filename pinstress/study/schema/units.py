@@ -76,6 +76,11 @@ class UnitSystem:
     stress: str
     in_si: tuple[float, float, float]
 
+    @property
+    def imperial(self) -> bool:
+        """Whether lengths are in inches, so that temperatures are in degrees Fahrenheit."""
+        return self.length == "in"
+
     def factor(self, dimension: str) -> float:
         """SI value of this system's unit of a dimension."""
         return self._factors[dimension]

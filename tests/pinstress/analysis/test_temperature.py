@@ -257,7 +257,10 @@ def test_a_temperature_varies_and_its_deviation_is_a_difference() -> None:
         (one,) = parameters_of(study_from(STUDY + vary), sampled=False)
         assert isinstance(one.law, Normal)
         assert (one.law.mean, one.law.deviation) == pytest.approx((393.15, spread))
-        assert (one.number.unit, one.number.in_study(400.0)) == ("K", "400.0 K")
+        assert one.law_text == "normal, mean 120 degC, deviation 5 degC"
+        assert (
+            one.number.in_study(one.number.shown(353.15)) == "80.0 degC"
+        )  # 353.15 - 273.15 is not 80
     vary = '[vary.parameters]\n"case.hot.temperature" = { tolerance = "±6 degC" }\n'
     (one,) = parameters_of(study_from(STUDY + vary), sampled=False)
     assert isinstance(one.law, Normal)

@@ -87,3 +87,23 @@ def test_cases_that_no_model_solves(clamp: str, model: str, code: str) -> None:
 def test_requirements_of_what_does_not_exist(key: str, what: str) -> None:
     with pytest.raises(InputError, match=what):
         study(model=f'[[require]]\n{key}\ncheck = "yield"\nfactor = 2')
+
+
+def test_a_case_without_loads_is_noted() -> None:
+    nothing = "forces = { left = [0, 0], middle = [0, 0], right = [0, 0] }"
+    note = "every force and moment on the pins is zero"
+    for forces, noted in ((nothing, True), (BALANCED, False)):
+        summary, unheld, warnings = describe(study(forces=forces))
+        assert (note in summary) == noted
+        assert not unheld
+        assert not warnings
+
+
+@each(("clamp", "noted"), [('["middle"]', False), ('["taper"]', True), ('["end", "taper"]', True)])
+def test_a_clamp_on_a_cone_is_said_to_hold_more_than_a_taper(clamp: str, noted: bool) -> None:
+    """The pull along the axis leaves a tapered seat, but not a clamp."""
+    taper = '  { length = 10, diameter = [20, 16], name = "taper" },\n]\n[case'
+    text = PIN.replace("CLAMP", f"clamp = {clamp}").replace("FORCES", "forces = { left = [0, 9] }")
+    cone = pinstress.study_from(text.replace("MODEL", "").replace("]\n[case", taper))
+    said = "The clamp on the cone taper of pin P holds it in every direction, as if bonded"
+    assert (said in describe(cone)[0]) == noted

@@ -12,7 +12,7 @@ import pinstress
 from pinstress.cli.commands import run_command_line
 from pinstress.explore.curve import curve
 from pinstress.study.reading.errors import InputError
-from pinstress.study.reading.in_python import changed_study
+from pinstress.study.reading.in_python import changed_study, study_from
 from reports.data.curve import CurvePoint, FactorCurve
 from reports.text.curve import reached_lines
 from tests.support.each import each
@@ -177,7 +177,7 @@ def test_designs_that_cannot_be_built_are_named(
         ("pin.B.profile[3].diameter", "the study has no [3] there"),
         ("pin.B.profil[1].diameter", "did you mean 'profile'?"),
         ("pin.B", "is a table, not a number"),
-        ("case.landing.forces.B[1]", "is 0 in the study, so there is no usual range"),
+        ("case.landing.forces.B[1]", "is 0 lbf in the study, so there is no usual range"),
         ("profile[2].diameter", "did you mean 'pin.B.profile[2].diameter'?"),
         ("title", "is the text 'One pin', not a number"),
     ],
@@ -193,3 +193,34 @@ def _study(folder: Path) -> Path:
     path = folder / "one_pin.toml"
     path.write_text(ONE_PIN)
     return path
+
+
+def hot(units: str, temperature: str) -> str:
+    """The one pin with a temperature in its case."""
+    text = ONE_PIN.replace('units = "in-lbf-s"', f'units = "{units}"')
+    assert units in text
+    return text.replace('kind = "given"', f'kind = "given"\ntemperature = "{temperature}"')
+
+
+@each(
+    ("units", "written", "unit", "value"),
+    [
+        ("mm-N-s", "120 degC", "degC", 120.0),
+        ("mm-N-s", "393.15 K", "degC", 120.0),
+        ("in-lbf-s", "120 degC", "degF", 248.0),
+        ("in-lbf-s", "248 degF", "degF", 248.0),
+    ],
+)
+def test_a_curve_has_temperatures_in_degrees(
+    units: str, written: str, unit: str, value: float
+) -> None:
+    """Half and twice the rise above 20 degC, not of the kelvins."""
+    result = curve(study_from(hot(units, written)), "case.landing.temperature", points=2)
+    assert (result.unit, result.nominal) == (unit, value)
+    base = 20.0 if unit == "degC" else 68.0
+    assert result.values == (base + 0.5 * (value - base), value, base + 2.0 * (value - base))
+
+
+def test_a_temperature_without_a_rise_has_no_usual_range() -> None:
+    with pytest.raises(InputError, match="is 20 degC in the study, so there is no usual range"):
+        curve(study_from(hot("mm-N-s", "20 degC")), "case.landing.temperature")

@@ -32,7 +32,7 @@ def test_rows_are_those_of_a_run_of_the_changed_study() -> None:
         values = [s * x for s, x in zip(scales, at, strict=True)]
         (row,) = evaluator.rows(values)
         changes = {
-            n.key: n.in_study(v / n.factor) for n, v in zip(evaluator.numbers, values, strict=True)
+            n.key: n.in_study(n.shown(v)) for n, v in zip(evaluator.numbers, values, strict=True)
         }
         found = pinstress.run(changed_study(study, changes)).pins[0]
         assert row.max_von_mises is not None

@@ -43,7 +43,7 @@ def test_any_number_has_its_dimension_and_unit() -> None:
     for key, (dimension, unit) in expected.items():
         number = number_at(gear, key)
         assert (number.dimension, number.unit) == (dimension, unit), key
-        written = number.nominal / number.factor
+        written = number.shown(number.nominal)
         system = gear.system
         si = to_si(number.in_study(written), dimension, system) if dimension else written
         assert si == pytest.approx(number.nominal, rel=1e-15)

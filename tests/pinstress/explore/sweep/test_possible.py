@@ -137,4 +137,33 @@ def test_check_tells_which_end_of_a_range_cannot_be_built(
     _, _, warnings = describe(study_from(text))
     ends = [line for line in warnings if line.startswith(f"vary.parameters.{key}: impossible at")]
     assert len(ends) == (end is not None)
-    assert all(f"impossible at {end}: " in line and "fillet" in line for line in ends)
+    assert all(f"impossible at {end} " in line and "fillet" in line for line in ends)
+
+
+@each(
+    ("varies", "says"),
+    [
+        ({"profile[2].diameter": (21, 23)}, ["profile[2].diameter: impossible at 21 mm and in "]),
+        (  # two ranges, one cause: the fillet against the step
+            {"fillet": (0.5, 6), "profile[2].diameter": (21, 30)},
+            ["fillet: impossible at 6 mm, pin.P.profile[2].diameter at 21 mm and in "],
+        ),
+        (  # one design may have two causes; numpy's numbers were no input of a study
+            {"profile[1].length": (-2, 10), "profile[1].diameter": (-5, 20)},
+            ["profile[1].length: impossible at -2 mm", "profile[1].diameter: impossible at -5 mm"],
+        ),
+    ],
+)
+def test_check_tells_each_cause_once(
+    varies: dict[str, tuple[float, float]], says: list[str]
+) -> None:
+    laws = [f'"pin.P.{key}" = {{ uniform = [{a}, {b}] }}\n' for key, (a, b) in varies.items()]
+    text = clevis().split("[vary.parameters]")[0] + "[vary.parameters]\n" + "".join(laws)
+    text = text.replace("length = 20, diameter = 20", "length = 20, diameter = 24")
+    if "fillet" in varies or len(varies) == 1:
+        text = text.replace("profile = [", "fillet = 1.0\nprofile = [")
+    _, _, warnings = describe(study_from(text))
+    assert len(warnings) == len(says), warnings
+    for line, begins in zip(warnings, says, strict=True):
+        assert line.startswith(f"vary.parameters.pin.P.{begins}"), line
+        assert line.count("of 8 designs tried") <= 1

@@ -83,7 +83,7 @@ def _designs(evaluator: Evaluator, count: int) -> Floats:
 
 def _changes(evaluator: Evaluator, design: Floats) -> dict[str, float | str]:
     pairs = zip(evaluator.numbers, design.tolist(), strict=True)
-    return {n.key: n.in_study(x / n.factor) for n, x in pairs}
+    return {n.key: n.in_study(n.shown(x)) for n, x in pairs}
 
 
 @each(
