@@ -47,7 +47,8 @@ class Requirement:
     decided.
 
     A support adds what it knows:
-    minor: the cases whose maximum, for their required factors, is surely far below that of another.
+    minor: the cases whose maximum, for their required factors, is surely far below that of another,
+    and not known to the tolerance.
     elsewhere: by case, stress, Pa, of sections; a surface that surely has less needs no finer mesh.
     besides: by case, the relative error in addition to that of meshes and instants.
     """
@@ -113,9 +114,15 @@ def accurate_enough(requirement: Requirement, material: Material, seen: MeshHist
         return False
     return (
         seen.known(requirement.left(seen.case))
-        or decided(requirement.of_case(seen.case), material, *seen.range)
+        # The cells of a minor case may be coarse, its meshes cost little.
+        or (requirement.goal == "decide" and decides(requirement, material, seen))
         or below_sections(requirement, seen)
     )
+
+
+def decides(requirement: Requirement, material: Material, seen: MeshHistory) -> bool:
+    """Return whether the meshes of a case decide its required factor where that is the goal."""
+    return decided(requirement.of_case(seen.case), material, *seen.range)
 
 
 def below_sections(requirement: Requirement, seen: MeshHistory) -> bool:

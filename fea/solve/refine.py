@@ -21,7 +21,7 @@ from fea.core.requirement import (
     Requirement,
     accurate_enough,
     below_sections,
-    decided,
+    decides,
 )
 from fea.core.verdict import evidence_of
 from fea.core.zone import Zone
@@ -166,7 +166,7 @@ def posed_for(
 
 def met(requirement: Requirement, material: Material, seen: MeshHistory) -> Reason:
     """The reason why the meshes of a case were enough, or why there are no more."""
-    enough = decided(requirement.of_case(seen.case), material, *seen.range)
+    enough = decides(requirement, material, seen)
     if enough and seen.case in requirement.minor:
         return Reason(f"; another case governs: {DECIDED_TEXT}", (MINOR_CASE,))
     if seen.known(requirement.tolerance):

@@ -94,9 +94,9 @@ class Compared:
         They would not if the error of the cells is a small part of the tolerance, or if the
         required factor is decided whatever the cells, also for the stress beneath the contact.
         """
-        error, largest = self._error(), self._largest()
-        if error <= CELL_ERROR_SHARE * requirement.tolerance:
+        if self.precise(requirement):
             return True
+        error, largest = self._error(), self._largest()
         # Otherwise a decision is enough: for the row, and for the stress beneath contact, unless
         # the row alone already exceeds the limit.
         low, high = largest / (1.0 + error), largest * (1.0 + error)
@@ -105,6 +105,10 @@ class Compared:
             decided(requirement, material, below / beneath_factor, below * beneath_factor)
             or decided(requirement, material, low, math.inf)
         )
+
+    def precise(self, requirement: Requirement) -> bool:
+        """Return whether the error of the cells is a small part of the tolerance."""
+        return self._error() <= CELL_ERROR_SHARE * requirement.tolerance
 
     @property
     def range(self) -> tuple[float, float]:
@@ -161,7 +165,10 @@ def with_minor(requirement: Requirement, compared: Mapping[str, Compared]) -> Re
             low, high = known.range
             used[case] = factor * low, factor * high
     largest = MINOR_SHARE * max((low for low, _ in used.values()), default=0.0)
-    return replace(requirement, minor=tuple(c for c, (_, high) in used.items() if high < largest))
+    below = (case for case, (_, high) in used.items() if high < largest)
+    return replace(
+        requirement, minor=tuple(case for case in below if not compared[case].precise(requirement))
+    )
 
 
 class PressedCases:

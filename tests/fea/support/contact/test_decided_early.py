@@ -128,6 +128,7 @@ def test_when_cells_are_fine_enough(
         (80.0, 0.1, {"light": 2.4}, False, ()),  # 105 of 198 MPa, for the same factor
         (80.0, 0.1, {"heavy": 1.5}, False, ()),  # 88 of 148 MPa
         (80.0, 0.1, {}, True, ()),  # its maximum is wanted
+        (80.0, 0.01, {}, False, ()),  # and known to the tolerance
     ],
 )
 def test_a_case_is_minor_that_surely_has_less_than_half_of_another_for_its_factor(
@@ -145,10 +146,10 @@ def test_a_case_is_minor_that_surely_has_less_than_half_of_another_for_its_facto
 
 def test_stress_beneath_contact_counts_for_what_is_minor_and_a_factor_is_needed() -> None:
     heavy = compared(200.0, 100.0, 100.0, AtPlaces(0.01, 0.0, 0.0))
-    deep = compared(80.0, 40.0, 95.0, AtPlaces(0.01, 0.0, 0.1))
+    deep = compared(80.0, 40.0, 95.0, AtPlaces(0.1, 0.0, 0.1))
     both = {"light": deep, "heavy": heavy}
     assert not with_minor(Requirement(required=2.0, every=False), both).minor
-    light = {**both, "light": compared(80.0, 40.0, 40.0, AtPlaces(0.01, 0.0, 0.1))}
+    light = {**both, "light": compared(80.0, 40.0, 40.0, AtPlaces(0.1, 0.0, 0.1))}
     assert with_minor(Requirement(required=2.0, every=False), light).minor == ("light",)
     assert not with_minor(Requirement(every=False), light).minor
 
