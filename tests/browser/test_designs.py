@@ -282,6 +282,22 @@ def test_the_table_sorts_and_its_file_has_every_digit(page: Any, table: pa.Table
     assert rows[-1]["reason"] == FAILING[0]  # those without a value are the last
 
 
+def test_the_table_has_no_empty_column(browser: Any, tmp_path: Path) -> None:
+    heads = shown(browser, ODD["one"], tmp_path).execute_script(HEADS)
+    assert not any(head.startswith("governing time") for head in heads)
+    assert any(head.startswith("safety factor") for head in heads)
+
+
+def test_the_table_has_the_digits_that_errors_leave(page: Any) -> None:
+    heads = page.execute_script(HEADS)
+    for name, most in (("maximum von Mises [MPa]", 4), ("± of maximum [MPa]", 2)):
+        at = heads.index(name)
+        digits = [len(row[at].replace(",", "").replace(".", "").lstrip("0"))
+                  for row in page.execute_script(CELLS) if row[at] != "–"]  # fmt: skip
+        assert digits
+        assert max(digits) <= most
+
+
 def test_scales_can_be_logarithmic(page: Any) -> None:
     canvas = page.find_element("css selector", "#scatter canvas")
     before = page.execute_script(PIXELS, canvas)

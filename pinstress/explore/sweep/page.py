@@ -54,7 +54,8 @@ def summary(designs: Designs) -> str:
     parts += [f"{varied} varied {'parameter' if varied == 1 else 'parameters'}"]
     if designs.required is not None:
         parts += [f"required safety factor {short(designs.required)}"]
-    return f"{'; '.join(parts)}. {not_judged(designs.in_lugs, designs.other_checks)}".rstrip()
+    beside = not_judged(designs.in_lugs, designs.other_checks).replace("`", "")  # of the terminal
+    return f"{'; '.join(parts)}. {beside}".rstrip()
 
 
 def page_data(designs: Designs) -> dict[str, Any]:

@@ -18,6 +18,7 @@ from pinstress.study.model.lugs import with_given_lugs
 from pinstress.study.model.requirements import checks_besides_yield, common_required_factor
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
+from pinstress.study.schema.units import UnitSystem
 from reports.folder.inside import write_inside
 from reports.tables.column import Column, fields
 
@@ -63,7 +64,7 @@ def table_of(
     for column in RESULT_COLUMNS:
         cells = [column.cell(row) for _, _, row in flat]
         if column.numeric:
-            factor = study.system.factor(str(column.dimension)) if column.dimension else 1.0
+            _, factor = _unit(study.system, str(column.dimension or ""))
             cells = [None if cell is None else cell / factor for cell in cells]
         columns.append(cells)
     arrays = [pa.array(c, f.type) for c, f in zip(columns, schema, strict=True)]
@@ -133,7 +134,7 @@ def _schema(study: Study, parameters: Sequence[Parameter]) -> pa.Schema:
     ]
     schema_fields += [_field(p.key, pa.float64(), p.number.unit) for p in parameters]
     for column in RESULT_COLUMNS:
-        unit = unit_of(study.system, str(column.dimension)) if column.dimension else ""
+        unit, _ = _unit(study.system, str(column.dimension or ""))
         kind = pa.float64() if column.numeric else pa.string()
         schema_fields.append(_field(column.key, kind, unit))
     stated = {
@@ -149,6 +150,13 @@ def _schema(study: Study, parameters: Sequence[Parameter]) -> pa.Schema:
     return pa.schema(
         schema_fields, metadata={METADATA_KEY: json.dumps(stated, ensure_ascii=False).encode()}
     )
+
+
+def _unit(system: UnitSystem, dimension: str) -> tuple[str, float]:
+    """Return name and SI value of the unit of a result."""
+    if dimension == "mass":
+        return system.scales
+    return (unit_of(system, dimension), system.factor(dimension)) if dimension else ("", 1.0)
 
 
 def _field(name: str, kind: pa.DataType, unit: str = "") -> pa.Field:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -43,12 +44,14 @@ class InputError(Exception):
 
 def cannot_write(path: object, error: OSError) -> InputError:
     """Return the error that a file cannot be written."""
-    return InputError(f"{path}: cannot be written ({error.strerror})", code="cannot-write")
+    files = [p for p in Path(str(path)).parents if os.path.isfile(p)]  # never raises
+    why = f"{files[0]} is a file, not a folder" if files else error.strerror
+    return InputError(f"{path}: cannot be written ({why})", code="cannot-write")
 
 
 def cannot_write_out(directory: Path, error: OSError) -> InputError:
     """Return the error that the folder of --out cannot be written to."""
-    why = "it is a file, no folder" if directory.is_file() else error.strerror
+    why = "it is a file, not a folder" if directory.is_file() else error.strerror
     text = f"--out: cannot write to {directory} ({why})"
     return InputError(text, code="cannot-write")
 

@@ -81,6 +81,14 @@ class UnitSystem:
         """Whether lengths are in inches, so that temperatures are in degrees Fahrenheit."""
         return self.length == "in"
 
+    @property
+    def scales(self) -> tuple[str, float]:
+        """Name and SI value of the unit in which masses are read: the system's own, such as
+        N s^2/mm, is on no scales.
+        """
+        name = "lb" if self.imperial else "kg"
+        return name, USUAL_UNITS[name][1]
+
     def factor(self, dimension: str) -> float:
         """SI value of this system's unit of a dimension."""
         return self._factors[dimension]

@@ -19,6 +19,8 @@ const worded = (column, value, digits = 6) => {
   if (column.names) return value >= 0 ? column.names[value] : "–";
   return Number.isFinite(value) ? short(value, digits) : value === Infinity ? "∞" : "–";
 };
+// Digits of a column: results have no more than their errors leave them.
+const digitsOf = ({ key, of }) => (/(^|_)error/.test(key) ? 2 : of === "row" ? 4 : 6);
 const exact = (column, value) => (column.names ? worded(column, value) : Number.isNaN(value) ? "" : String(value));
 
 const nameOf = (text, r) => (r >= 0 && text.at[r] >= 0 ? text.names[text.at[r]] : "");
@@ -78,7 +80,8 @@ const tableColumns = (model, now) => [
   ...model.columns.map((c) => ({
     key: c.key, title: titled(c), numeric: !c.names,
     of: (d) => now.values[c.index][d],
-    text: (d) => worded(c, now.values[c.index][d], c.key === "error_estimate" ? 2 : 6),
+    empty: !c.names && !c.all.some((value) => value === value),
+    text: (d) => worded(c, now.values[c.index][d], digitsOf(c)),
     exact: (d) => exact(c, now.values[c.index][d]),
   })),
   ...["verdict", "reason", "code"].map((key) => textColumn(model, now, key)),

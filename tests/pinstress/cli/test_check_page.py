@@ -12,10 +12,11 @@ import pytest
 import pinstress
 from pinstress.cli.check import examine
 from pinstress.cli.check_page import write_check_page
+from pinstress.cli.commands import run_command_line
 from tests.conftest import ROOT
 from tests.pinstress.test_import import DRAW, SOLVE, loaded_by
 from tests.support.described import describe
-from tests.support.programs.command_line import QUICK, run_here
+from tests.support.programs.command_line import ONE_PIN, QUICK, run_here
 
 GEAR = ROOT / "studies" / "landing_gear.toml"
 SVG = "{http://www.w3.org/2000/svg}"
@@ -143,3 +144,13 @@ def test_the_terminal_has_a_line_for_a_pin() -> None:
     ) in summary.splitlines()
     stepped, *_ = describe(pinstress.study_from(QUICK))
     assert "3.5 in long, ⌀ 2 to 4," in stepped
+
+
+def test_a_page_below_a_file_is_refused_for_what_it_is(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "one.toml").write_text(ONE_PIN, encoding="utf-8")
+    (tmp_path / "afile").write_text("", encoding="utf-8")
+    page = tmp_path / "afile" / "page.html"
+    assert run_command_line(["check", str(tmp_path / "one.toml"), "--out", str(page)]) == 2
+    assert f"{page.parent} is a file, not a folder" in capsys.readouterr().err

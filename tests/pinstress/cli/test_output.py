@@ -178,7 +178,7 @@ def test_workers_end_when_their_run_is_killed(earlier: Path) -> None:
 
 def test_a_file_where_a_folder_belongs_is_called_so(tmp_path: Path) -> None:
     (tmp_path / "out").write_text("a file")
-    why = r"--out: cannot write to .*out \(it is a file, no folder\)"
+    why = r"--out: cannot write to .*out \(it is a file, not a folder\)"
     with pytest.raises(InputError, match=why), replacing(tmp_path / "out" / "trial"):
         pass
     assert (tmp_path / "out").read_text() == "a file"

@@ -83,7 +83,9 @@ def test_units_and_the_study_are_in_the_file(table: pa.Table, tmp_path: Path) ->
     units = {f.name: f.metadata[b"unit"].decode() for f in read.schema}
     assert units[DIAMETER] == "in"
     assert units["max_von_mises"] == units[STRENGTH] == "psi"
-    assert units["mass"] == "lbf s^2/in"
+    assert units["mass"] == "lb"
+    volume = np.pi / 4.0 * (4.0**2 * 1.5 + 1.5**2 * 2.0)  # in^3, without the fillet
+    assert read["mass"][0].as_py() == pytest.approx(0.2836 * volume, rel=0.03)
     assert units["pin"] == ""
     stated = facts(read)
     study = swept(VARIED, "", QUICK)
