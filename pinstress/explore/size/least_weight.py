@@ -120,9 +120,8 @@ def _unconfirmed(
     """
     more = aim.of_pin(pin.pin)
     rows = [p for p in results.pins if p.pin == pin.pin]
-    if any(p.verdict == "unconverged" and p.decided for p in rows) and all(
-        p.decided is not False for p in rows
-    ):
+    ended = any(p.verdict == "unconverged" and p.decided and not p.minor for p in rows)
+    if ended and all(p.decided is not False for p in rows):
         return None  # it ended where that was decided
     low = [
         f / times
