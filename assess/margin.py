@@ -18,7 +18,7 @@ JOINT_MODEL_BASIS = "joint model"  # as the basis of section forces
 COMPARISON_SUFFIX = "for comparison"
 # Methods of margins that stand for several checks that could not be made.
 FORMULA_CHECKS, CLAMPED_LUG_PREFIX = "checks by formula", "lug of "
-OMITS_CUTS = "the cuts of the pin"  # as what a check by formula does not cover
+OMITS_CUTS = "Not covered: the cuts of the pin."  # by a check by formula
 BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")  # of TOML
 
 

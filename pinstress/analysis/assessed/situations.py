@@ -151,7 +151,7 @@ def _without_cuts(pin: PinLike, margins: Sequence[Margin]) -> list[Margin]:
         return open_ if _on_bands(m) else lug_mode(m.method) in (None, PIN_AND_LUGS_MODE)
 
     def omitting(m: Margin) -> Margin:
-        return replace(m, omits="; ".join(filter(None, (m.omits, OMITS_CUTS))))
+        return replace(m, omits=" ".join(filter(None, (m.omits, OMITS_CUTS))))
 
     return [omitting(m) if matter(m) else m for m in margins]
 
