@@ -16,6 +16,7 @@ from reports.format.units import unit_name
 from reports.tables.strength.margins import not_made_briefly
 from reports.text.load_path import names
 
+OPEN_DIGITS = 4  # of open values, of which a fit has many
 MAX_FLIPS = 3  # values of one kind that change an outcome, in a sentence
 MEASURED = {
     "landing": "force over time at landing",
@@ -131,7 +132,7 @@ def range_words(unknown: Unknown, units: Units) -> str:
     parts = [state for state in unknown.states if state != given_words(unknown)]
     if unknown.ends:
         dimension = unknown.rows[0][1].dimension
-        ends = dict.fromkeys(short(float(f"{end:.6g}")) for end in unknown.ends)
+        ends = dict.fromkeys(short(float(f"{end:.{OPEN_DIGITS}g}")) for end in unknown.ends)
         parts.insert(0, f"{' to '.join(ends)} {unit_name(dimension, units)}")
     return ("; " if any("," in part for part in parts) else ", ").join(parts)
 
@@ -140,7 +141,7 @@ def given_words(unknown: Unknown) -> str:
     """Return the study's own value in the unit of the range; a dash for none, or several."""
     given = {value.given for _, value in unknown.rows}
     value = given.pop() if len(given) == 1 else None
-    return short(float(f"{value:.6g}")) if isinstance(value, float) else value or DASH
+    return short(float(f"{value:.{OPEN_DIGITS}g}")) if isinstance(value, float) else value or DASH
 
 
 def _flip(row: PinResult, d: Dependence, units: Units) -> str:

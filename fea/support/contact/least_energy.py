@@ -62,7 +62,9 @@ def require_forces(resultants: Floats, required: Floats) -> None:
         raise unsettled()
     if least.fun > FEASIBLE_RESIDUAL:
         raise SolveError(
-            "the links leave a couple on the pin that no lug reacts", "couple-not-reacted"
+            "the links leave a couple on the pin that no lug reacts: give a lug the stiffness of "
+            "its tilt, or the links their moments",
+            "couple-not-reacted",
         )
 
 

@@ -48,8 +48,8 @@ STEP_FRACTION = 0.01  # step of any other parameter, of its value; of a force, o
 POISSON_RATIO_STEP = 0.01
 CLEARANCE_STEP = 0.01  # of the step of a dimension: that of a clearance
 IN_LUGS_NOTE = (
-    "in contact with its lugs, whose derivatives take about as long as the solution: "
-    "--sensitivities gives them"
+    "held by lugs in contact; derivatives, which take about as long as the solution, "
+    "by --sensitivities"
 )
 NO_CONTACT_NOTE = 'no derivatives of a pin on foundations: analysis.joints = "contact" has them'
 HARDENED_NOTE = "not for a pin with a hardened surface, whose case and core have two strengths"
