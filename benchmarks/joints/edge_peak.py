@@ -16,7 +16,8 @@ from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.support.contact.edge_peak import contact_edges
-from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
+from fea.support.contact.resolution import Resolution
+from fea.support.contact.solve_joint import ContactModel, JointContact
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 

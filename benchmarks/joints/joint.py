@@ -22,7 +22,8 @@ from fea.core.requirement import Requirement
 from fea.harmonic.field import HarmonicField
 from fea.harmonic.superposition import Circumference
 from fea.solve.solve import solve_pin
-from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
+from fea.support.contact.resolution import Resolution
+from fea.support.contact.solve_joint import ContactModel, JointContact
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 

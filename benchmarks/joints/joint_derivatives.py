@@ -30,7 +30,8 @@ from fea.solve.solve import solve_in_lugs
 from fea.support.contact.contact_state import ContactState, rotation
 from fea.support.contact.flexibility import RingBody, lug_rings
 from fea.support.contact.held import HeldContact
-from fea.support.contact.solve_joint import ContactModel, Resolution
+from fea.support.contact.resolution import Resolution
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Bushing, Lug
 from fea.support.support import PinProblem, Solution
 from geometry import Pin

@@ -11,8 +11,9 @@ from typing import Literal
 from benchmarks.joints.named_pins import clevis
 from benchmarks.timing import table
 from fea.core.requirement import Requirement
-from fea.support.contact.held import RESOLUTIONS, ROUGH, profile_of
-from fea.support.contact.solve_joint import ContactModel, Resolution
+from fea.support.contact.contact_support import profile_of
+from fea.support.contact.resolution import RESOLUTIONS, ROUGH, Resolution
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.contact.variations import ResolutionComparison, compare, nowhere
 from fea.support.lugs.lug import Lug
 

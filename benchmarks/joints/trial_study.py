@@ -10,7 +10,7 @@ import numpy as np
 from benchmarks.joints.random_pins import STEEL, PinTrial
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.support.contact.held import profile_of
+from fea.support.contact.contact_support import profile_of
 from fea.support.lugs.lug import Lug
 from fea.support.support import PinProblem
 from geometry import Pin, Segment

@@ -121,7 +121,8 @@ def rungs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
 
 
 def _in_lugs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
-    from fea.support.contact.held import RESOLUTIONS, ROUGH, Alone, Arcs, ContactSupport
+    from fea.support.contact.contact_support import Alone, Arcs, ContactSupport
+    from fea.support.contact.resolution import RESOLUTIONS, ROUGH
     from fea.support.foundation.held import FoundationSupport
 
     joints, foundation = requirement.joints, FoundationSupport()

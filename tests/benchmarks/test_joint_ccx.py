@@ -10,7 +10,7 @@ import pytest
 from assess.opinion.calculix import CalculixError
 from benchmarks.joints import joint_ccx
 from benchmarks.joints.joint_ccx import COUNT, SEED, drawn, ours
-from fea.support.contact.solve_joint import Resolution
+from fea.support.contact.resolution import Resolution
 
 
 def test_what_is_drawn() -> None:

@@ -32,7 +32,7 @@ from fea.core.requirement import Requirement
 from fea.harmonic.field import HarmonicField
 from fea.harmonic.free_surface import surface_points
 from fea.solve.solve import solve_in_lugs, solve_pin
-from fea.support.contact.solve_joint import Resolution
+from fea.support.contact.resolution import Resolution
 from fea.support.lugs.lug import Lug
 from fea.support.support import PinProblem, Solution
 from geometry import Pin, Segment

@@ -21,7 +21,7 @@ from fea.support.contact.edge_peak import (
     contact_edges,
     strength_at_edge,
 )
-from fea.support.contact.solve_joint import Resolution
+from fea.support.contact.resolution import Resolution
 
 RIGID = Material("rigid", 210e15, 0.3)
 

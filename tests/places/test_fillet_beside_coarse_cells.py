@@ -12,7 +12,8 @@ from fea.core.pin_loads import PinLoads
 from fea.harmonic.field import HarmonicField
 from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.singular.singularities import singularities_of
-from fea.support.contact.solve_joint import ContactModel, Resolution
+from fea.support.contact.resolution import Resolution
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 

@@ -17,7 +17,8 @@ from fea.harmonic.free_surface import FreeSurface, SurfacePoints, surface_points
 from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.harmonic.superposition import Circumference
 from fea.support.contact.pressure_loads import stacked
-from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
+from fea.support.contact.resolution import Resolution
+from fea.support.contact.solve_joint import ContactModel, JointContact
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 from pinbase.arrays import Mask

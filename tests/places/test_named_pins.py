@@ -27,7 +27,7 @@ from benchmarks.joints.named_pins import (
 )
 from benchmarks.joints.turned_ccx import DENSER, turned_opinion
 from fea.core.voigt import von_mises
-from fea.support.contact.held import profile_of
+from fea.support.contact.contact_support import profile_of
 from fea.support.support import PinProblem
 from geometry import Segment
 from tests.support.each import sampled

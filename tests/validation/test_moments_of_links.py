@@ -21,7 +21,8 @@ from assess.opinion.calculix_joint_mesh import Fineness
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.section.section_stress import SectionField
-from fea.support.contact.solve_joint import ContactModel, Resolution
+from fea.support.contact.resolution import Resolution
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.foundation.foundation_model import PLAIN_MOMENT_ERROR, FoundationModel
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment

@@ -8,7 +8,6 @@ stress, its error and verdict come from fea.solve.solve, of a pin that nothing c
 from __future__ import annotations
 
 import copy
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -39,13 +38,13 @@ from fea.support.contact.pressure_loads import (
     amplitudes,
     pressure_modes,
 )
+from fea.support.contact.resolution import USUAL, Resolution
 from fea.support.contact.seen_cuts import SeenCuts, seen_cuts
 from fea.support.lugs.changes import with_stiffness
 from fea.support.lugs.fit import fitted, on_structure
 from fea.support.lugs.links import link_forces, link_moments, link_numbers, tilting_bands
 from fea.support.lugs.lug import Bushing, Lug
 from fea.support.lugs.rings import (
-    USUAL_RING_COUNT,
     annulus,
     beside_fillets,
     ring_ends,
@@ -61,51 +60,7 @@ LUG_SIZE_DIGITS = 12  # digits to which lugs of the same size agree
 LARGEST_FORCE_SHARE = 1.0 - 1e-6  # of the largest: a force that is as good as it
 # Times the sectors: harmonics in which neighbouring rings feel each other
 COUPLED_HARMONICS_PER_SECTOR = 4
-# Half angle of contact times the harmonics that follow its pressure to 2 %, and sectors for each of
-# these; measured on the clevis of benchmarks/joints/narrow_arcs.py.
-HARMONICS_PER_ARC, SECTORS_PER_NARROW_HARMONIC = 8.0, 2
-MAX_SECTORS = 180  # two of the arcs in which the surface is read (fea.core.pressed) each
-MAX_CELLS = 6000  # a dense matrix of them takes 300 MB
 Alike = tuple[float, Material, Bushing | None, bytes, Material]
-
-
-@dataclass(frozen=True)
-class Resolution:
-    """The resolution of contact.
-
-    rings: of a band with sharp edges (lugs.rings).
-    sectors: over its circumference.
-    highest: harmonic of elasticity that is computed.
-    across: elements over the pin's diameter where flexibilities are found.
-    beside: length of the rings where rounding begins, of an edge's radius, if the peak of pressure
-    there is to be resolved.
-
-    The usual values give the moment and the stress at mid-span to 0.3 %
-    (benchmarks/joints/joint.py). They do not give the peak of pressure at rounded edges: contact
-    reaches only a few hundredths of the radius into the rounding, and the peak to 3 % takes rings
-    of a tenth of that: `beside` 0.004.
-    """
-
-    rings: int = 8
-    sectors: int = 36
-    highest: int = 12
-    across: float = 10.0
-    beside: float | None = None
-
-    def for_arcs(self, half_angle: float, ring_count: int) -> Resolution:
-        """The resolution with the harmonics and sectors that follow the pressure on an arc, as far
-        as the number of cells allows, and the usual rings where these are more.
-
-        half_angle: of contact, rad.
-        ring_count: number of usual rings of all lugs.
-        """
-        wanted = math.ceil(HARMONICS_PER_ARC * self.rings / USUAL_RING_COUNT / half_angle)
-        most = min(MAX_CELLS // ring_count, MAX_SECTORS)
-        highest = min(wanted, most // SECTORS_PER_NARROW_HARMONIC) // 2 * 2
-        if highest <= self.highest:
-            return self
-        sectors = SECTORS_PER_NARROW_HARMONIC * highest  # whose halves are whole, too
-        return replace(self, rings=USUAL_RING_COUNT, sectors=sectors, highest=highest)
 
 
 @dataclass(frozen=True)
@@ -158,7 +113,7 @@ class ContactModel:
         pin: Pin,
         material: Material,
         lugs: Sequence[Lug],
-        cells: Resolution = Resolution(),
+        cells: Resolution = USUAL,
         memo: Memo | None = None,
     ) -> None:
         self.first: FirstMesh | None = FirstMesh(memo)
@@ -251,6 +206,10 @@ class ContactModel:
             other.__dict__.pop(known, None)
         other._shape(pin, material, lugs)
         return other
+
+    def ring_count(self, of_band: int) -> int:
+        """The approximate number of rings with so many of a band with sharp edges."""
+        return len(self.rings) * of_band // self.cells.rings
 
     @property
     def high(self) -> Ints:

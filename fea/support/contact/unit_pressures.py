@@ -19,7 +19,8 @@ from fea.harmonic.fields import MeridianFields
 from fea.harmonic.first_mesh import FirstMesh, Key, UnitFields
 from fea.harmonic.model import HarmonicModel
 from fea.support.contact.pressure_loads import PressureModes
-from fea.support.contact.solve_joint import ContactModel, Resolution
+from fea.support.contact.resolution import Resolution
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.fit import fitted, on_structure
 from fea.support.lugs.lug import Lug, LugRange
 from geometry import Pin

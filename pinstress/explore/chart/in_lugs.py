@@ -12,7 +12,7 @@ from fea.core.linear_solver import SolveError
 from fea.core.mesh_history import MeshHistory
 from fea.core.peak import Maximum
 from fea.support.contact.cell_error import unresolved
-from fea.support.contact.solve_joint import MAX_CELLS, Resolution
+from fea.support.contact.resolution import MAX_CELLS, Resolution
 from fea.support.lugs.rings import ring_ends
 from fea.support.records import JointResult
 from pinstress.explore.chart.mesh_sequences import Climb

@@ -30,8 +30,8 @@ from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.section.section_stress import AtSection, SectionField
 from fea.singular.singularities import outside, singularities_of
 from fea.solve.refine import MESH_RATIO
-from fea.support.contact.held import ROUGH
-from fea.support.contact.solve_joint import ContactModel, Resolution
+from fea.support.contact.resolution import ROUGH, Resolution
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.foundation.foundation_model import FoundationModel
 from fea.support.foundation.held import FoundPlaces, point_of
 from fea.support.foundation.stress import FoundationStress

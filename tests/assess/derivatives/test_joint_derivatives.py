@@ -22,7 +22,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.solve.solve import solve_in_lugs
-from fea.support.contact.solve_joint import Resolution
+from fea.support.contact.resolution import Resolution
 from fea.support.lugs.lug import Bushing, Lug
 from fea.support.support import PinProblem
 from geometry import Pin, Segment

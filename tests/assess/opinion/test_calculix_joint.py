@@ -22,7 +22,8 @@ from fea.core.requirement import Requirement
 from fea.harmonic.field import HarmonicField
 from fea.harmonic.superposition import Circumference
 from fea.solve.solve import solve_pin
-from fea.support.contact.solve_joint import ContactModel, Resolution
+from fea.support.contact.resolution import Resolution
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, Pin, Segment
 from tests.support.each import sampled

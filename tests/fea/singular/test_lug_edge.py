@@ -22,7 +22,8 @@ from fea.singular.lug_edge import edge_exponent, lug_edge_exponent
 from fea.singular.williams import plane_exponent
 from fea.support.bands import Bands
 from fea.support.contact.contact import ContactProblem
-from fea.support.contact.solve_joint import ContactModel, Resolution
+from fea.support.contact.resolution import Resolution
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, Pin, Segment
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh

@@ -12,7 +12,8 @@ from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.support.contact.cell_error import MIN_CELL_ERROR
 from fea.support.contact.coarser_cells import on_coarser_cells
-from fea.support.contact.solve_joint import ContactModel, Resolution
+from fea.support.contact.resolution import Resolution
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.contact.variations import compare
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment

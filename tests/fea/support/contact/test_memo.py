@@ -13,8 +13,8 @@ from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.solve.solve import solve_in_lugs
 from fea.support.contact import variations
-from fea.support.contact.held import RESOLUTIONS
-from fea.support.contact.solve_joint import ContactModel, Resolution
+from fea.support.contact.resolution import RESOLUTIONS, Resolution
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from fea.support.support import PinProblem
 from geometry import Pin, Segment

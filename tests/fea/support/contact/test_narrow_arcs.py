@@ -10,8 +10,9 @@ import pytest
 from benchmarks.joints.named_pins import clevis
 from fea.core.requirement import MINOR_CASE, Requirement
 from fea.solve.solve import solve
-from fea.support.contact.held import RESOLUTIONS, ROUGH, profile_of
-from fea.support.contact.solve_joint import MAX_CELLS, ContactModel, Resolution
+from fea.support.contact.contact_support import profile_of
+from fea.support.contact.resolution import MAX_CELLS, RESOLUTIONS, ROUGH, Resolution
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.contact.variations import ResolutionComparison, compare, nowhere
 from fea.support.lugs.lug import LugRange
 from fea.support.records import JointResult

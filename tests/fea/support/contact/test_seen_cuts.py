@@ -11,7 +11,8 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.support.contact.contact_state import ContactState
-from fea.support.contact.solve_joint import ContactModel, Resolution
+from fea.support.contact.resolution import Resolution
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Bushing, Lug
 from geometry import Cut, CutPin, Flat, Hole
 from pinbase.arrays import Floats

@@ -11,7 +11,8 @@ from scipy.optimize import brentq
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.support.contact.solve_joint import ContactModel, Resolution
+from fea.support.contact.resolution import Resolution
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from fea.support.lugs.rings import MAX_RING_LENGTH, graded, ring_ends, ringed, rings
 from geometry import Band, Pin, Segment

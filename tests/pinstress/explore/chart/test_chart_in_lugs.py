@@ -9,7 +9,7 @@ import pytest
 
 from assess.opinion import calculix
 from fea.core.mesh_result import MeshMaximum
-from fea.support.contact.solve_joint import Resolution
+from fea.support.contact.resolution import Resolution
 from geometry import ArgumentError
 from pinstress import load_study
 from pinstress.cli.commands import run_command_line

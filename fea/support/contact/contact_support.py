@@ -1,0 +1,182 @@
+"""Pins in their lugs: contact at every instant of every case, stress, its error, and by how much
+the maximum depends on what is not known of the joint.
+
+Stress under the pressures is found as under any loads (fea.solve.solve), of a pin that nothing
+clamps. To the error of meshes and instants comes that of the cells: contact at the instant that
+governs on the first mesh is solved once more on cells twice as large, and from the difference, by
+the order of cells, follows their error; they are refined until it is a part of the tolerance. Where
+only a required factor is to be decided, larger cells come first, which take a third of the time,
+and are enough if they decide it with their error, also for what lies beneath the contact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Literal
+
+from fea.core.equilibrium import centre_of_volume
+from fea.core.linear_solver import SolveError
+from fea.core.peak import NO_REASON, Maximum
+from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
+from fea.cut.region import refusal
+from fea.support.contact.held import HeldContact
+from fea.support.contact.pressed_cases import Candidates, PressedCases
+from fea.support.contact.resolution import MAX_CELLS, ROUGH, Resolution
+from fea.support.contact.solve_joint import ContactModel
+from fea.support.contact.unit_pressures import unit_model, unit_patterns
+from fea.support.lugs.axial import seats_note
+from fea.support.lugs.fit import fitted, on_structure
+from fea.support.lugs.links import link_forces, link_moments
+from fea.support.prescribed import balanced
+from fea.support.support import HeldPin, PinProblem, Progress, silent
+from geometry import CutPin, Pin, PinLike
+from pinbase.memo import Memo
+
+Alone = Literal["unit", "alone"]
+Arcs = Literal["wide", "narrow"]
+
+
+class ContactSupport:
+    """A support by lugs in contact, on cells of one resolution (fea.support.support.Support).
+
+    finer: the next resolution, None for the last.
+    arcs: the cases that are held: "wide", those whose arcs of contact the usual cells follow;
+    "narrow", all that are left, on cells that follow their arcs; None, all on usual cells.
+    alone: without an error of the cells or variations of the joint; "unit": by unit pressures of
+    the rings, which a memo has (fea.support.contact.unit_pressures).
+    """
+
+    def __init__(
+        self,
+        cells: Resolution,
+        finer: Resolution | None = None,
+        alone: Alone | None = None,
+        arcs: Arcs | None = None,
+    ) -> None:
+        self.cells, self.finer, self.alone, self.arcs = cells, finer, alone, arcs
+
+    def hold(
+        self,
+        problem: PinProblem,
+        requirement: Requirement,
+        coarser: HeldPin | None = None,
+        progress: Progress = silent,
+    ) -> HeldContact:
+        """Hold the pin, as every support does; a case that no contact can carry fails before
+        anything is meshed.
+        """
+        refused: dict[str, Maximum] = {}
+        near: Mapping[str, Candidates] = {}
+        cells, finer, left = self.cells, self.finer, problem.cases
+        if isinstance(coarser, HeldContact):
+            near, left = coarser.candidates, self._of_arcs(coarser, left)
+            if not left:
+                return replace(coarser, starts={})  # none is held
+            cells, finer = self._cells(coarser, left, requirement)
+        else:
+            refused = _refused(problem)
+            left = tuple(case for case in left if case.case not in refused)
+        progress(f"pin {problem.pin.name}, flexibility of {cells.rings} rings of each lug")
+        profile, cut = profile_of(problem.pin), isinstance(problem.pin, CutPin)
+        of, between, also = (profile, problem.material, problem.lugs), problem.between, problem.also
+        if self.alone:
+            unit, memo = self.alone == "unit", problem.memo or Memo()
+            model = unit_model(*of, cells, memo, together=not unit)
+            model = _seeing(model, problem.pin)
+            patterns = unit_patterns(model) if unit else None
+            contact = PressedCases(model, left, between, {}, cut, patterns)
+        else:
+            model = ContactModel(*of, cells, problem.memo)
+            model = _seeing(model, problem.pin)
+            progress(f"pin {problem.pin.name}, contact")
+            contact = PressedCases(model, left, between, also, cut)
+        if not contact.instants.keys() <= near.keys():
+            near = contact.near(requirement)
+        contact.follow(near)
+        # More cells than memory allows are none; and on the last ones all cases are answered.
+        finest = finer in (None, cells)
+        if finer is not None:
+            finest |= model.ring_count(finer.rings) * finer.sectors > MAX_CELLS
+        if self.alone:
+            compared = contact.uncompared(near)
+        else:
+            compared = contact.compared(near, requirement, finest)
+        if isinstance(coarser, HeldContact):  # which has cases that later cells hold
+            compared = {**coarser.compared, **compared}
+        starts = {case: contact.press(links) for case, links in contact.instants.items()}
+        held = HeldContact(
+            problem, contact, starts, near, compared, finest, refused,
+            alone=self.alone is not None, rough=self.cells is ROUGH,
+        )  # fmt: skip
+        if finer is None or self.cells is not ROUGH:  # rough ones are a trial only
+            failed = {case: _failed(problem, case, why) for case, why in contact.failed.items()}
+            held = replace(held, failures=held.failures | failed)
+        pressed = tuple(starts.values())
+        rigid, _, notes = balanced(held.pin, problem.material, pressed, "harmonic")
+        for links in left:
+            if (said := seats_note(links, problem.lugs)) is not None:
+                notes[links.case] = said + notes.get(links.case, NO_REASON)
+        return replace(held, failures=held.failures | rigid, notes=notes)
+
+    def _of_arcs(self, coarser: HeldContact, cases: tuple[PinLoads, ...]) -> tuple[PinLoads, ...]:
+        """The cases that are held.
+
+        Cells that follow narrow arcs have many harmonics and few rings, so that they neither suit a
+        case with wide ones nor should be solved for it.
+        """
+        if self.arcs != "wide":
+            return cases
+        return tuple(case for case in cases if not coarser.narrow(case))
+
+    def _cells(
+        self, coarser: HeldContact, cases: Sequence[PinLoads], requirement: Requirement
+    ) -> tuple[Resolution, Resolution | None]:
+        """The cells on which some cases are held after coarser ones, and the finer ones."""
+        if self.arcs == "narrow":
+            finer = self.finer and coarser.for_arcs(self.finer, cases)
+            return coarser.for_arcs(self.cells, cases), finer
+        if self.finer is not None and coarser.far_from(cases, requirement):
+            return self.finer, None
+        return self.cells, self.finer
+
+
+def _seeing(model: ContactModel, pin: PinLike) -> ContactModel:
+    """The model that sees the cuts of a pin, if it has any with which stress can be solved.
+
+    (Others are refused when it is.)
+    """
+    if not isinstance(pin, CutPin) or refusal(pin, (), pin.connections) is not None:
+        return model
+    return model.seeing(pin)
+
+
+def profile_of(pin: PinLike) -> Pin:
+    """The pin without its cuts, for which contact is solved."""
+    profile = pin.profile if isinstance(pin, CutPin) else pin
+    assert isinstance(profile, Pin)
+    return profile
+
+
+def _refused(problem: PinProblem) -> dict[str, Maximum]:
+    """The failures of cases whose loads no contact can carry, found before anything is meshed.
+
+    Raises: ArgumentError for lugs that do not fit.
+    """
+    pin, lugs = profile_of(problem.pin), problem.lugs
+    whole = on_structure(pin, lugs)
+    inside = fitted(whole, problem.material, lugs)
+    structure = len(lugs) > len(pin.connections)
+    mass, out = (problem.material.density or 0.0) * whole.volume, dict[str, Maximum]()
+    for case in problem.cases:
+        try:
+            forces = link_forces(pin, mass, case, structure)
+            link_moments((pin, whole), inside, case, forces, (mass, centre_of_volume(whole)))
+        except SolveError as error:
+            out[case.case] = _failed(problem, case.case, str(error))
+    return out
+
+
+def _failed(problem: PinProblem, case: str, why: str) -> Maximum:
+    return Maximum(problem.pin.name, case, "harmonic", "failed", why)
