@@ -39,8 +39,8 @@ BIAS_SHARE, MIN_RATIO_ERROR = 0.5, 0.02
 # studies/clevis.toml and H of landing_gear.toml with clearances of 0 to 2 % and loads down to 1 %.
 SPREAD_SHARE, MAX_SPREAD = 0.15, 0.4
 # Half of an arc, degrees: more than one and a half of the rough cells
-# (fea.support.contact.resolution.ROUGH). On narrower arcs stress is off by up to 50 %, and on larger
-# cells, by which the error is found, as much.
+# (fea.support.contact.resolution.ROUGH). On narrower arcs stress is off by up to 50 %, and on
+# larger cells, by which the error is found, as much.
 MIN_HALF_ARC = 25.0
 NOMINAL_STRENGTH = 1e9  # Pa: of what is solved for any strength
 CLEARANCE_DIGITS = 12  # of clearances in metres that are compared
