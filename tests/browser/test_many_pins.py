@@ -50,7 +50,8 @@ def test_folded_parts_are_text_at_first(page: Any) -> None:
 def test_requirements_of_many_pins_fit_the_screen(page: Any) -> None:
     for width in (1400, 1024, 390):
         with screen(page, width):
-            assert page.execute_script(WIDER) == [], width
+            # Many pins take some time to be laid out anew.
+            assert wait(page, lambda: not page.execute_script(WIDER)), width
             assert page.execute_script(
                 "return document.documentElement.scrollWidth <= innerWidth"
             ), width
