@@ -151,8 +151,8 @@ def _unknown(results: Results) -> str:
     total = len(results.pins)
     verdicts = [p.verdict for p in results.pins]
     singular = verdicts.count("singular")
-    wide = [p.outcome for p in results.pins if p.verdict == "unconverged"]
-    loose = wide.count(NOT_DECIDED)
+    wide = [p for p in results.pins if p.verdict == "unconverged"]
+    loose = sum(p.outcome == NOT_DECIDED for p in wide)
     unsolved = verdicts.count("rigid") + verdicts.count("failed")
     text = ""
     if singular:
@@ -162,7 +162,7 @@ def _unknown(results: Results) -> str:
     if decided := len(wide) - loose:
         tolerance = f"{short(100.0 * results.tolerance)} %"
         text += f" {_of(decided, total)} {_is(decided)} decided with an error above {tolerance}"
-        minor = sum(p.minor and p.outcome != NOT_DECIDED for p in results.pins)
+        minor = sum(p.minor and p.outcome != NOT_DECIDED for p in wide)
         text += f", {minor} far below another case of the pin." if minor else "."
     if unsolved:
         text += f" {_of(unsolved, total)} could not be solved."
