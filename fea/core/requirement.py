@@ -20,7 +20,6 @@ NEGLIGIBLE_SHARE = 0.1  # of an error: another one of this size adds little. Cho
 # stress that is 15 to 55 % too small, with clearances of 0 to 1 %.
 MAX_ROUGH_ERROR = 0.08
 DECIDED_TEXT = "its error does not affect whether the required factor is reached"
-
 MINOR_CASE = "minor-case"  # code of the reason why a case is only decided
 
 

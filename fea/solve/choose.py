@@ -149,12 +149,12 @@ def _in_lugs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
     alone: Alone | None = None if requirement.compared else "alone"
     # Those that all cases share: where arcs are narrow, they may do for a decision, too.
     shared = 2 if resolutions[0] is ROUGH else 1
-    for cells, finer in zip_longest(resolutions[:shared], resolutions[1 : shared + 1]):
+    steps = list(zip_longest(resolutions, resolutions[1:]))
+    for cells, finer in steps[:shared]:
         yield Rung(ContactSupport(cells, finer, alone), _contact)
-    others = resolutions[shared:]
     arcs: Arcs
     for arcs in ("wide", "narrow"):
-        for cells, finer in zip_longest(others, others[1:]):
+        for cells, finer in steps[shared:]:
             yield Rung(ContactSupport(cells, finer, alone, arcs), _contact)
 
 

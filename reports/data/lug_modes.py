@@ -7,7 +7,8 @@ from types import MappingProxyType
 
 from assess.strength.press_fit import METHOD as PRESS_FIT_METHOD
 
-BORE_STRESS = "stress at the bore"
+BORE_STRESS, BEARING = "stress at the bore", "bearing"
+PIN_AND_LUGS = "pin and lugs together"
 # The beginnings of the names of checks, by mode, in the order of a table.
 LUG_MODES: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
@@ -20,7 +21,7 @@ LUG_MODES: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "shear-out": ("lug, shear-out", "BTH-1 plate, double-plane shear", "AISC shear rupture"),
         "fracture beyond the bore": ("BTH-1 plate, single-plane fracture",),
         "shear-out and bearing": ("AFFDL lug bearing", "Melcon-Hoblit shear-bearing"),
-        "bearing": (
+        BEARING: (
             "lug, bearing", "BTH-1 plate, bearing", "AISC bearing", "EN 1993 bearing",
             "EN 1993 contact",
         ),
@@ -30,7 +31,7 @@ LUG_MODES: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "oblique": ("Melcon-Hoblit oblique",),
         "bushing": ("AFFDL bushing",),
         "press fit": (PRESS_FIT_METHOD,),
-        "pin and lugs together": ("AFFDL joint in double shear",),
+        PIN_AND_LUGS: ("AFFDL joint in double shear",),
         "collapse": ("lug, limit load",),
     }
 )  # fmt: skip

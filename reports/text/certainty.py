@@ -132,7 +132,7 @@ def range_words(unknown: Unknown, units: Units) -> str:
     parts = [state for state in unknown.states if state != given_words(unknown)]
     if unknown.ends:
         dimension = unknown.rows[0][1].dimension
-        ends = dict.fromkeys(short(float(f"{end:.{OPEN_DIGITS}g}")) for end in unknown.ends)
+        ends = dict.fromkeys(_number(end) for end in unknown.ends)
         parts.insert(0, f"{' to '.join(ends)} {unit_name(dimension, units)}")
     return ("; " if any("," in part for part in parts) else ", ").join(parts)
 
@@ -141,7 +141,11 @@ def given_words(unknown: Unknown) -> str:
     """Return the study's own value in the unit of the range; a dash for none, or several."""
     given = {value.given for _, value in unknown.rows}
     value = given.pop() if len(given) == 1 else None
-    return short(float(f"{value:.{OPEN_DIGITS}g}")) if isinstance(value, float) else value or DASH
+    return _number(value) if isinstance(value, float) else value or DASH
+
+
+def _number(value: float) -> str:
+    return short(float(f"{value:.{OPEN_DIGITS}g}"))
 
 
 def _flip(row: PinResult, d: Dependence, units: Units) -> str:

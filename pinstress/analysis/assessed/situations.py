@@ -35,7 +35,7 @@ from pinstress.study.model.lost_fits import lost_fits
 from pinstress.study.model.requirements import required_by_formula, required_factor
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
-from reports.data.lug_modes import lug_mode
+from reports.data.lug_modes import BEARING, PIN_AND_LUGS, lug_mode
 from reports.data.row import PinResult
 
 L = TypeVar("L", LimitLoad | None, LugCollapse)
@@ -47,7 +47,6 @@ CASED_METHODS = {"plastic bending and shear", *(method for method, _ in BENDING_
 FORCE_OF_CLAMP = (
     "the force that a clamp takes, which contact with the lug instead of the clamp gives"
 )
-BEARING_MODE, PIN_AND_LUGS_MODE = "bearing", "pin and lugs together"  # reports.data.lug_modes
 LOAD_FACTOR_KEYS = ("limit_factor", "ultimate_factor", "fitting_factor")
 
 
@@ -148,7 +147,7 @@ def _without_cuts(pin: PinLike, margins: Sequence[Margin]) -> list[Margin]:
     def matter(m: Margin) -> bool:
         if m.kind not in FORMULA_KINDS or m.demand is None:
             return False
-        return open_ if _on_bands(m) else lug_mode(m.method) in (None, PIN_AND_LUGS_MODE)
+        return open_ if _on_bands(m) else lug_mode(m.method) in (None, PIN_AND_LUGS)
 
     def omitting(m: Margin) -> Margin:
         return replace(m, omits=" ".join(filter(None, (m.omits, OMITS_CUTS))))
@@ -159,7 +158,7 @@ def _without_cuts(pin: PinLike, margins: Sequence[Margin]) -> list[Margin]:
 def _on_bands(margin: Margin) -> bool:
     """Return whether a margin is of the pressure on a band."""
     method = margin.method.removesuffix(f", {COMPARISON_SUFFIX}")
-    return method in BEARING_METHODS or lug_mode(method) == BEARING_MODE
+    return method in BEARING_METHODS or lug_mode(method) == BEARING
 
 
 def load_factors(study: Study) -> LoadFactors:
