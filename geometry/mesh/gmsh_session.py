@@ -13,6 +13,7 @@ from typing import Any
 
 from pinbase.errors import CodedError
 from pinbase.platform import portable
+from pinbase.processes.interrupts import blocked
 
 # gmsh has one state for all threads of a process. So has the C library's rand(): whatever else
 # draws from it takes this lock, too, or meshes would differ from run to run.
@@ -47,7 +48,7 @@ def gmsh_model(name: str) -> Iterator[Any]:
             raise RuntimeError(
                 f"gmsh session {name!r} was opened inside another one; close that first"
             )
-        with signals_kept():
+        with blocked(), signals_kept():  # for a moment gmsh has the system's own handlers
             gmsh.initialize(readConfigFiles=False, interruptible=False)
         _open = True
         try:
