@@ -91,6 +91,7 @@ def same(given: PinProblem, found: JointOpinion, within: float) -> None:
     assert peak.places.section.max_von_mises == pytest.approx(section.value, rel=0.02)
 
 
+@pytest.mark.long
 @pytest.mark.peers
 def test_calculix_agrees_on_grooves() -> None:
     """681 and 698 MPa with 3 and 4 layers across the pin, ours 709 +- 1.5 %; both have a moment of
@@ -118,6 +119,7 @@ def test_calculix_agrees_on_a_tube() -> None:
     same(given, found, 0.05)
 
 
+@pytest.mark.long
 @pytest.mark.peers
 def test_calculix_agrees_on_a_shrink_fit() -> None:
     """The pressed tension fibre, far from edges: as it is, it has no more than the row; with the

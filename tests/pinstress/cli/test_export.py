@@ -264,6 +264,7 @@ def test_calculix_finds_the_expected_stress_of_a_prescribed_pin(tmp_path: Path) 
     assert at_node == pytest.approx(float(numbers["max_von_mises"]), rel=MAX_MAXIMUM_DIFFERENCE)
 
 
+@pytest.mark.long
 @pytest.mark.peers
 def test_calculix_finds_the_expected_stress_and_moment_of_a_pin_in_lugs(tmp_path: Path) -> None:
     """The moment at the section is that of the contact forces on the rings before it."""
