@@ -34,37 +34,34 @@ class RingFields:
 
 def ring_fields(inner: float, outer: float, material: Material, highest: int) -> RingFields:
     """The fields of a ring of two radii, m, to the harmonic `highest`."""
-    each = [_harmonic(n, inner, outer, material) for n in range(highest + 1)]
-    flexibility, hoop = (np.stack(x) for x in zip(*each, strict=True))
-    return RingFields(flexibility, hoop)
-
-
-def _harmonic(n: int, inner: float, outer: float, material: Material) -> tuple[Floats, Floats]:
     E, nu = material.youngs_modulus, material.poisson_ratio
-    half = 0.5 * (outer - inner)
+    half, n = 0.5 * (outer - inner), np.arange(highest + 1.0)[:, None, None]
     x, w = np.polynomial.legendre.leggauss(2 * DEGREE)
-    r = 0.5 * (inner + outer) + half * x
+    r = (0.5 * (inner + outer) + half * x)[:, None]
     P, dP = _legendre(x)
-    zero = np.zeros_like(P)
-    e_r = np.hstack([dP / half, zero])
-    e_t = np.hstack([P, n * P]) / r[:, None]
-    g = np.hstack([-n * P / r[:, None], dP / half - P / r[:, None]])
-    weight = E * half * w * r
+    e_r = _both(dP / half, np.zeros_like(P))
+    e_t = _both(P / r + 0.0 * n, n * P / r)
+    g = _both(-n * P / r, dP / half - P / r + 0.0 * n)
+    weight = E * half * w[:, None] * r
     K = _product(e_r, e_r, weight) + _product(e_t, e_t, weight)
-    K += nu * (_product(e_r, e_t, weight) + _product(e_t, e_r, weight))
+    K = K + nu * (_product(e_r, e_t, weight) + _product(e_t, e_r, weight))
     K = (K / (1.0 - nu * nu)) + _product(g, g, weight) / (2.0 * (1.0 + nu))
     ends, _ = _legendre(np.array([-1.0, 1.0]))
-    away = np.hstack([ends * np.array([[1.0], [-1.0]]), np.zeros_like(ends)])
-    loads = away * np.array([[inner], [outer]])
-    # pinv: the rigid motion of n = 1, and the twist of n = 0, move nothing
-    u = np.linalg.pinv(K, rcond=1e-13, hermitian=True) @ loads.T
+    away = _both(ends * np.array([[1.0], [-1.0]]), np.zeros_like(ends))
     radii = np.array([[inner], [outer]])
-    stretch = np.hstack([ends, n * ends]) @ u / radii
-    return np.asarray(away @ u), np.asarray(E * stretch - nu * np.eye(2))
+    # pinv: the rigid motion of n = 1, and the twist of n = 0, move nothing
+    u = np.linalg.pinv(K, rcond=1e-13, hermitian=True) @ (away * radii).T
+    stretch = _both(ends + 0.0 * n, n * ends) @ u / radii
+    return RingFields(np.asarray(away @ u), np.asarray(E * stretch - nu * np.eye(2)))
+
+
+def _both(U: Floats, V: Floats) -> Floats:
+    """The parts of the coefficients of U and V beside each other."""
+    return np.concatenate([U, V], axis=-1)
 
 
 def _product(a: Floats, b: Floats, weight: Floats) -> Floats:
-    return np.asarray((a * weight[:, None]).T @ b)
+    return np.asarray((a * weight).swapaxes(-2, -1) @ b)
 
 
 def _legendre(x: Floats) -> tuple[Floats, Floats]:
@@ -72,6 +69,5 @@ def _legendre(x: Floats) -> tuple[Floats, Floats]:
     from numpy.polynomial import legendre
 
     unit = np.eye(DEGREE + 1)
-    values = np.stack([legendre.legval(x, c) for c in unit], axis=1)
-    slopes = np.stack([legendre.legval(x, legendre.legder(c)) for c in unit], axis=1)
+    values, slopes = legendre.legval(x, unit).T, legendre.legval(x, legendre.legder(unit)).T
     return np.asarray(values, np.float64), np.asarray(slopes, np.float64)
