@@ -224,38 +224,43 @@ def nodal_forces(
 ) -> Floats:
     """Nodal forces (N, 3), N, of all loads."""
     out = np.zeros_like(mesh.nodes)
+    on_bands: dict[str, list[tuple[float, Traction, int, int]]] = {}
     for load, phase, amount in acting:
         if load.kind == "body":
             out += amount * _body_force(rule, elements, phase if load.n else 2)
         for t in tractions_of(pin, load):
-            out += amount * _face_forces(pin, mesh, t, load.n, phase)
+            on_bands.setdefault(t.surface, []).append((amount, t, load.n, phase))
+    for name, tractions in on_bands.items():  # in contact, thousands on a few bands
+        _push(out, pin, mesh, name, tractions)
     return out
 
 
-def _face_forces(pin: Pin, mesh: HexMesh, t: Traction, n: int, phase: int) -> Floats:
-    """Nodal forces (N, 3), N, of a traction of harmonic n and a phase on a band."""
-    cells = mesh.elements[_on(pin, mesh, t.surface)]
+def _push(
+    out: Floats,
+    pin: Pin,
+    mesh: HexMesh,
+    name: str,
+    tractions: list[tuple[float, Traction, int, int]],
+) -> None:
+    """Add the forces of tractions on a band, each an amount, a traction, its harmonic and phase, to
+    those (N, 3), N, of all nodes.
+    """
+    nodes = mesh.elements[_on(pin, mesh, name)][:, _OUTER_FACE_NODES]
     g, weight = _gauss(3)
     # Quadrature on the outer faces of the cells: their shape functions, tangents and areas there.
     grid = np.stack([np.ones(9), np.repeat(g, 3), np.tile(g, 3)])
     basis = [ElementHexS2().lbasis(grid, k) for k in _OUTER_FACE_NODES]
     shapes, slopes = np.stack([b[0] for b in basis]), np.stack([b[1] for b in basis])
-    corners = mesh.nodes[cells[:, _OUTER_FACE_NODES]]
+    corners = mesh.nodes[nodes]
     x = np.einsum("kq,mka->mqa", shapes, corners)
     tangents = np.einsum("kaq,mkb->amqb", slopes[:, 1:], corners)
-    area = (
-        np.linalg.norm(np.cross(tangents[0], tangents[1]), axis=2)
-        * np.outer(weight, weight).ravel()
-    )
+    area = np.linalg.norm(np.cross(*tangents), axis=2) * np.outer(weight, weight).ravel()
     # The force of a shoulder's face is of a cylinder with its area, which is thinner.
-    area *= pin.band(t.surface).radius / pin.bands[_segment(pin, t.surface)].radius
-    out = np.zeros_like(mesh.nodes)
-    np.add.at(
-        out,
-        cells[:, _OUTER_FACE_NODES],
-        np.einsum("mq,kq,mqa->mka", area, shapes, components(t, x, n, phase)),
-    )
-    return out
+    area *= pin.band(name).radius / pin.bands[_segment(pin, name)].radius
+    whole = np.zeros_like(x)
+    for amount, t, n, phase in tractions:
+        whole += amount * components(t, x, n, phase)
+    np.add.at(out, nodes, np.einsum("mq,kq,mqa->mka", area, shapes, whole, optimize=True))
 
 
 def _body_force(rule: FlowRule, elements: Elements, axis: int) -> Floats:
@@ -292,11 +297,12 @@ def _balanced(pin: Pin, mesh: HexMesh, ties: Ties, force: Floats) -> tuple[Float
     possible = np.abs(whole @ free - modes).max(axis=0) < 1e-9
     free = free[:, possible]
     # Closing tractions whose amounts cancel the resultant in each of these motions.
-    closing = [
-        sum(_face_forces(pin, mesh, t, n, phase) for t in everywhere)
-        for n, phase in ((1, 0), (1, 1), (0, 0), (0, 1))
-        for everywhere in closing_tractions(pin, n, phase)
-    ]
+    closing = []
+    for n, phase in ((1, 0), (1, 1), (0, 0), (0, 1)):
+        for everywhere in closing_tractions(pin, n, phase):
+            closing.append(np.zeros_like(mesh.nodes))
+            for t in everywhere:
+                _push(closing[-1], pin, mesh, t.surface, [(1.0, t, n, phase)])
     columns = whole.T @ np.stack([np.ravel(c) for c in closing], axis=1)
     columns /= np.linalg.norm(columns, axis=0)[None]
     unbalanced = free.T @ (whole.T @ force.ravel())
