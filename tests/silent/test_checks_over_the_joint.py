@@ -28,6 +28,7 @@ yield_strength = "700 MPa"
 ultimate_strength = "900 MPa"
 [analysis]
 required_safety_factor = 1.0
+limit_load = "never"
 [pin.P]
 material = "steel"
 profile = [

@@ -44,6 +44,7 @@ forces = { left = [0, 5000], middle = [0, -10000], right = [0, 5000] }
 joints = "contact"
 required_safety_factor = 2
 tolerance = 0.05
+limit_load = "never"
 """
 FORCES = {"left": [0, 8000], "middle": [0, -16000], "right": [0, 8000]}
 SMALL_FORCES = {"left": [0, 100], "middle": [0, -200], "right": [0, 100]}
