@@ -136,6 +136,7 @@ def test_torsion_of_a_rectangle(width: float) -> None:
         assert section.modulus_torsion == pytest.approx(width * THICK**2 / 3.0, rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_plate_of_solid_elements() -> None:
     """At half of its length a plate that is held at one end has the stress that statics gives, at
     its corners and, with torsion, at the middle of its sides.
