@@ -290,10 +290,8 @@ def not_judged(pins: Iterable[str], checks: Iterable[str]) -> str:
     alone, beside which a run judges these checks; empty without any.
     """
     names, others = (", ".join(dict.fromkeys(x)) for x in (pins, checks))
-    of_lugs = (
-        f"The lugs of {names} are not judged here, the pin alone: `pinstress run` judges both."
-    )
-    of_checks = f"Of pins, yield alone is judged here: `pinstress run` also judges {others}."
+    of_lugs = f"The lugs of {names} are not checked here: `pinstress run` checks them, too."
+    of_checks = f"Pins are checked against yield only: `pinstress run` also checks {others}."
     return " ".join([of_lugs] * bool(names) + [of_checks] * bool(others))
 
 
