@@ -118,8 +118,7 @@ class _Sizing:
         stages = [self._text(self.pins), self._text(self.pins[:-1])]
         if self._target.read_bytes() not in stages:
             raise InputError(
-                f"--resume: {self._target} has changed since it was written; move it, and go on "
-                "with --resume",
+                f"--resume: {self._target} has changed since it was written; move it, and resume",
                 code="changed-since",
             )
         self.written = True

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from math import inf
 
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
 from reports.data.decision import worst_first
@@ -254,7 +253,8 @@ def _all_safe(results: Results, least: JudgedCheck, pins: int) -> str:
     factor, needed = _factor_words(row)
     safe = row.outcome == SAFE
     every = "Both pins" if pins == 2 else f"All {pins} pins"
-    other = "" if least.row else f"; {_margin_words(least)}, pin {least.pin}"
+    loaded = least.row is None and least.used != 0.0
+    other = f"; {_margin_words(least)}, pin {least.pin}" if loaded else ""
     if row.max_von_mises == 0.0:
         who = f"Pin {row.pin} is" if pins == 1 else f"{every} are"
         return f"{who} safe: no load stresses {'it' if pins == 1 else 'them'}{other}."
@@ -300,5 +300,7 @@ def spare_words(check: JudgedCheck) -> str:
     if check.stated:
         factor = factor_text(check.factor, check.required)
         return f"factor {factor}, {short(check.required)} required"
-    spare = inf if check.used == 0.0 else 1.0 / check.used - 1.0
+    if check.used == 0.0:
+        return "∞"
+    spare = 1.0 / check.used - 1.0
     return f"{'+' if spare > 0.0 else ''}{engineering(spare, 3)}"

@@ -64,7 +64,7 @@ COLUMNS: list[Column[StepRow]] = [
     Column("what", lambda row: row.of.what, heading="what", numeric=False),
     Column("at", lambda row: row.of.at, "", "at", lambda row: row.of.at or DASH, numeric=False,
            drop_if_empty=True),
-    Column("effect", lambda row: row.of.effect, heading="lets go", numeric=False),
+    Column("effect", lambda row: row.of.effect, heading="effect", numeric=False),
     Column("clause", lambda row: row.of.clause, "", "clause", lambda row: row.of.clause or DASH,
            numeric=False, rank=1),
     *fields("of.in_proportion of.needs"),
