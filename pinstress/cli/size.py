@@ -206,7 +206,10 @@ def target_of(study: Study, out: Path | None, new: bool = True) -> Path:
     if new:
         require_new(target, OTHER_FILE_REMEDY)
     if not target.parent.is_dir():
-        raise InputError(f"--out: there is no folder {target.parent}", code="no-folder")
+        parent = target.parent
+        is_file = f"{parent} is a file, not a folder"
+        why = is_file if parent.exists() else f"there is no folder {parent}"
+        raise InputError(f"--out: {why}", code="no-folder")
     return target
 
 
