@@ -57,12 +57,12 @@ def chart_and_write(
     require_replaceable(directory, CHART_CSV)
     require_positive("time_limit", limits.seconds, endless=True)
     require_positive("memory_limit", limits.memory, endless=True)
-    plan = plan_chart(study, pin, case, tolerance)
-    if calculix:
-        _require_contact(plan)
-        if not quiet:
-            click.echo(CALCULIX_TAKES_LONG, err=True)
     with replacing(directory, CHART_CSV) as staging:
+        plan = plan_chart(study, pin, case, tolerance)
+        if calculix:
+            _require_contact(plan)
+            if not quiet:
+                click.echo(CALCULIX_TAKES_LONG, err=True)
         with progress_bar(quiet=quiet) as progress:
             result = chart(plan, partial(measure, limits=limits), meshes, runs, progress, calculix)
         chart_table(result).write(staging)

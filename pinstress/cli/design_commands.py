@@ -27,8 +27,8 @@ from pinstress.cli.shared import (
     "hypercube or a random sample of any of its numbers. Writes designs.parquet, a row for each "
     "design, pin and case, and a page to explore them; a design that fails is a row with its "
     "reason.\n\n"
-    "A sweep that was interrupted or killed goes on with --resume; one of a Sobol sequence or a "
-    "random sample also to a larger count.\n\n"
+    "A sweep that was interrupted or killed is continued with --resume; one of a Sobol sequence or "
+    "a random sample also to a larger count.\n\n"
     "Exit status: 0 done; 1 done, but every design failed; 2 bad input; 130 interrupted.",
 )
 @STUDY

@@ -224,7 +224,7 @@ def completion(context: click.Context, shell: str) -> None:
     "links do not change; diameters, bores and fillets are scaled together, or with --least-weight "
     "independently, so that the pin is as light as it can be. Limits and standard diameters are "
     "stated in [size] of the study. Every size is confirmed as a run solves it.\n\n"
-    "A size that was interrupted goes on with --resume.\n\n"
+    "A size that was interrupted is continued with --resume.\n\n"
     "Exit status: 0 done; 1 done, but a pin is not shown to reach the factor; 2 bad input; "
     "3 the solution failed; 130 interrupted.",
 )

@@ -57,13 +57,13 @@ def reliability_and_write(
     most = processes(jobs)
     study = for_values(study)
     random_numbers(study)  # mistakes there should not wait for the stresses, nor those of a cluster
-    todo = prepare(study, pins=pins, cases=cases).tasks
-    require_strengths(study, (task.pin.name for task in todo))
-    if connection is not None:
-        from pinstress.explore.sweep.scheduler import require_cluster
-
-        require_cluster(connection)
     with replacing(directory, RELIABILITY_JSON) as staging:
+        todo = prepare(study, pins=pins, cases=cases).tasks
+        require_strengths(study, (task.pin.name for task in todo))
+        if connection is not None:
+            from pinstress.explore.sweep.scheduler import require_cluster
+
+            require_cluster(connection)
         with progress_bar(alone=most == 1, quiet=quiet) as progress:
             preload(*RUN_LIBRARIES, *RUN_MODELS)
             progress("the study as it is", 0.0)

@@ -124,13 +124,16 @@ def run_and_write(
     if wanted.junit is not None:
         require_junit(wanted.junit, directory)
     also: Any = wanted.vtk if wanted.vtk in ("motion", "solid") else None
-    plan = replace(prepare(study, also=also, **chosen), sensitive=wanted.sensitive)
-    for warning in (*other_warnings(study, plan.tasks), *lost_fit_warnings(study, plan.tasks)):
-        click.echo(f"Warning: {warning}", err=True)
     most = processes(wanted.jobs)
-    ask = _second_opinion(plan, wanted.quiet) if wanted.second else {}
     cache = user_cache() if wanted.cached else None
-    with replacing(directory) as staging:
+    with replacing(directory) as staging:  # from now on a second run into it is refused
+        plan = replace(prepare(study, also=also, **chosen), sensitive=wanted.sensitive)
+        for warning in (
+            *other_warnings(study, plan.tasks),
+            *lost_fit_warnings(study, plan.tasks),
+        ):
+            click.echo(f"Warning: {warning}", err=True)
+        ask = _second_opinion(plan, wanted.quiet) if wanted.second else {}
         if wanted.vtk != "none":
             (staging / "vtk").mkdir()
         keep = partial(_keep, staging, units_of(study), wanted.vtk)
@@ -258,8 +261,8 @@ def loads_and_write(
     Raises: InputError.
     """
     require_replaceable(directory)
-    results = loads_only(study, cases)
     with replacing(directory) as staging:
+        results = loads_only(study, cases)
         write_loads(results, staging)
     with unneeded(directory):
         print_loads(results, console())

@@ -126,7 +126,7 @@ def resumable(kept: Callable[[], str]) -> Iterator[None]:
     except BaseException as error:
         if not (finished := kept()):
             raise
-        text = f"{finished} kept: the same command with --resume goes on"
+        text = f"{finished} kept: run the same command with --resume to continue"
         if isinstance(error, KeyboardInterrupt) or interrupts.came():
             raise Unfinished(text) from None
         if isinstance(error, InputError):

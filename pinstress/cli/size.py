@@ -118,8 +118,7 @@ class _Sizing:
         stages = [self._text(self.pins), self._text(self.pins[:-1])]
         if self._target.read_bytes() not in stages:
             raise InputError(
-                f"--resume: {self._target} has changed since it was written; move it, and go on "
-                "with --resume",
+                f"--resume: {self._target} has changed since it was written; move it, and resume",
                 code="changed-since",
             )
         self.written = True
@@ -207,7 +206,10 @@ def target_of(study: Study, out: Path | None, new: bool = True) -> Path:
     if new:
         require_new(target, OTHER_FILE_REMEDY)
     if not target.parent.is_dir():
-        raise InputError(f"--out: there is no folder {target.parent}", code="no-folder")
+        parent = target.parent
+        is_file = f"{parent} is a file, not a folder"
+        why = is_file if parent.exists() else f"there is no folder {parent}"
+        raise InputError(f"--out: {why}", code="no-folder")
     return target
 
 

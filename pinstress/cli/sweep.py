@@ -142,11 +142,26 @@ def _require_usable(directory: Path, parts: BatchFolder, resume: bool) -> None:
     if resume:
         parts.require_same()
     elif parts.there():
+        _locked(directory)()
         raise InputError(
-            f"--out: {directory} has a sweep that did not end: go on with --resume, or delete its "
-            f"folder {PARTS_FOLDER} to begin anew",
+            f"--out: {directory} has a sweep that did not end: resume it with --resume, or delete "
+            f"its folder {PARTS_FOLDER} to start again",
             code="unfinished-sweep",
         )
+
+
+def _locked(directory: Path) -> Release:
+    """Lock the folder of a sweep and return the function that releases it.
+
+    Raises: InputError while another sweep is writing it.
+    """
+    try:
+        return lock(directory.resolve())
+    except BlockingIOError:
+        raise InputError(
+            f"--out: another sweep is writing {directory}; wait for it or choose another folder",
+            code="locked",
+        ) from None
 
 
 @contextmanager
@@ -159,17 +174,12 @@ def _claimed(directory: Path, parts: BatchFolder, resume: bool) -> Iterator[None
     existed = directory.exists()
     try:
         directory.mkdir(parents=True, exist_ok=True)
-        release = lock(directory.resolve())
+        release = _locked(directory)
         if not manifest.entries(directory):
             manifest.begin(directory)
         if not resume:
             parts.begin()
         yield
-    except BlockingIOError:
-        raise InputError(
-            f"--out: another sweep is writing {directory}; wait for it or choose another folder",
-            code="locked",
-        ) from None
     except OSError as error:
         if error.filename is None and error.errno is None:
             raise

@@ -27,8 +27,10 @@ def action(row: PinResult) -> str:
 
 
 def place_words(row: PinResult, shape: PinShape | None) -> str:
-    """Return where a row's maximum lies: "shear between F1 and F2", "surface, step beside E2"."""
-    if row.places is None or row.location is None:
+    """Return where a row's maximum lies: "shear between F1 and F2", "surface, step beside E2";
+    nothing of a row without stress.
+    """
+    if row.places is None or row.location is None or not row.max_von_mises:
         return ""
     section = row.places.section
     governs = row.places.governs

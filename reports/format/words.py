@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from math import inf
 
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
 from reports.data.decision import worst_first
@@ -254,7 +253,8 @@ def _all_safe(results: Results, least: JudgedCheck, pins: int) -> str:
     factor, needed = _factor_words(row)
     safe = row.outcome == SAFE
     every = "Both pins" if pins == 2 else f"All {pins} pins"
-    other = "" if least.row else f"; {_margin_words(least)}, pin {least.pin}"
+    loaded = least.row is None and least.used != 0.0
+    other = f"; {_margin_words(least)}, pin {least.pin}" if loaded else ""
     if row.max_von_mises == 0.0:
         who = f"Pin {row.pin} is" if pins == 1 else f"{every} are"
         return f"{who} safe: no load stresses {'it' if pins == 1 else 'them'}{other}."
@@ -290,10 +290,8 @@ def not_judged(pins: Iterable[str], checks: Iterable[str]) -> str:
     alone, beside which a run judges these checks; empty without any.
     """
     names, others = (", ".join(dict.fromkeys(x)) for x in (pins, checks))
-    of_lugs = (
-        f"The lugs of {names} are not judged here, the pin alone: `pinstress run` judges both."
-    )
-    of_checks = f"Of pins, yield alone is judged here: `pinstress run` also judges {others}."
+    of_lugs = f"The lugs of {names} are not checked here: `pinstress run` checks them, too."
+    of_checks = f"Pins are checked against yield only: `pinstress run` also checks {others}."
     return " ".join([of_lugs] * bool(names) + [of_checks] * bool(others))
 
 
@@ -302,5 +300,7 @@ def spare_words(check: JudgedCheck) -> str:
     if check.stated:
         factor = factor_text(check.factor, check.required)
         return f"factor {factor}, {short(check.required)} required"
-    spare = inf if check.used == 0.0 else 1.0 / check.used - 1.0
+    if check.used == 0.0:
+        return "∞"
+    spare = 1.0 / check.used - 1.0
     return f"{'+' if spare > 0.0 else ''}{engineering(spare, 3)}"

@@ -38,8 +38,8 @@ RANGE_NOTE = (
     "all else as the study describes or assumes it."
 )
 FOUNDATION_NOTE = (
-    "Where the load is by a beam on foundations, contact angles are those of plane contact at the "
-    "largest load per length."
+    "Where a beam on elastic foundations gives the load, contact angles are those of plane contact "
+    "at the largest load per length."
 )
 
 

@@ -97,7 +97,7 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "nothing": _nothing(lines),
         "command": steps.command,
         "curve": draw_factor_curve(lines[0], results.units.length) if lines else None,
-        "accuracy": [*_accurate(lines), *certainty(lines), *measure_first(unknown, lines)],
+        "accuracy": [*_accurate(lines, results), *certainty(lines), *measure_first(unknown, lines)],
         "unknowns": [_unknown(x, results, lines) for x in unknown[:MAX_UNKNOWNS]],
         "caveats": _caveats(results, lines, formulas=not matrix),
     }
@@ -161,8 +161,8 @@ def _about(results: Results, pins: Sequence[str]) -> str:
     return "; ".join(parts)
 
 
-def _accurate(lines: Sequence[PinLine]) -> list[str]:
-    told = [f"Error of the maxima {text}" for text in accuracy(lines)]
+def _accurate(lines: Sequence[PinLine], results: Results) -> list[str]:
+    told = [f"Error of the maxima {text}" for text in accuracy(lines, results)]
     told += needed_error(lines, "one") if told else needed_error(lines)
     return [" ".join(told)] if told else []
 

@@ -27,14 +27,30 @@ MEASURED = {
 Content = list[str]
 
 
-def accuracy(lines: Sequence[PinLine]) -> Content:
-    """Return a sentence on the errors of the maxima; nothing where none has one."""
-    rows = [x.row for x in lines if x.row.max_von_mises]
-    sound = [r for r in rows if r.verdict != "singular" and r.error_estimate is not None]
-    if not sound:
+def accuracy(lines: Sequence[PinLine], results: Results) -> Content:
+    """Return a sentence on the errors of the maxima in the cases that govern, and on those of the
+    other cases where they exceed both these and the tolerance; nothing where no maximum has one.
+    """
+    most = _largest_error([x.row for x in lines])
+    if most is None:
         return []
-    most = max((r.error_estimate or 0.0) / (r.max_von_mises or 1.0) for r in sound)
-    return [f"up to {engineering(100.0 * most, 2)} %." if most >= 1e-4 else "below 0.01 %."]
+    text = f"up to {engineering(100.0 * most, 2)} %" if most >= 1e-4 else "below 0.01 %"
+    every = _largest_error(results.pins) or 0.0
+    if every > max(most, results.tolerance):
+        text += f" in the governing cases, {engineering(100.0 * every, 2)} % in others"
+    return [f"{text}."]
+
+
+def _largest_error(rows: Sequence[PinResult]) -> float | None:
+    """Return the largest relative error of rows with a maximum that exists."""
+    return max(
+        (
+            row.error_estimate / row.max_von_mises
+            for row in rows
+            if row.max_von_mises and row.verdict != "singular" and row.error_estimate is not None
+        ),
+        default=None,
+    )
 
 
 def needed_error(lines: Sequence[PinLine], noun: str = "an error") -> Content:

@@ -7,7 +7,7 @@ METHOD_NOTE = (
     "of a body of revolution on its half section, or a tetrahedral solid model. Meshes are refined "
     "until the grid convergence index is within the requested tolerance. All instants are "
     "superposed from unit-load solutions, so the maximum covers the whole motion.",
-    "Stress is read on the surface of a pin, but for what lugs press on at their edges, and in its "
+    "Stress is read on the surface of a pin, except where lugs press at their edges, and in its "
     "sections, by axial force, bending, shear and torsion; the larger governs. Contact has its own "
     "numbers: the strength of each lug's edge, mean bearing pressures, and the largest stress "
     "beneath, farther than a tenth of the diameter from where lugs press.",

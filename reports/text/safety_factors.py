@@ -90,7 +90,7 @@ def _parts(
     steps = actions(results, lines, study)
     brief = bool(steps.command) and len(results.changes) > 1  # the table has the diameters
     notes = [note for note in caveats(results) if not note.startswith(ALL_CONVERGED)]
-    errors = accuracy(lines)
+    errors = accuracy(lines, results)
     if not errors and any(x.row.max_von_mises != 0.0 for x in lines):
         errors = ["not known, as every row is singular or unsolved."]
     errors = [*errors, *measure_first(unknown, lines)]
@@ -129,6 +129,8 @@ def _margins(results: Results) -> list[str]:
         return []
     worst = checks[0]
     m = worst.margin
+    if worst.used == 0.0:
+        return ["no load in any."]
     sign = "+" if (m.margin or 0.0) > 0.0 else ""
     negative = sum(1 for x in checks if x.used > 1.0)
     some = f"; {negative} negative" if negative > 1 else ""

@@ -12,7 +12,7 @@ import pyarrow as pa
 import pytest
 
 from pinstress.explore.sweep.page import write_designs_page
-from reports.format.numbers import short
+from reports.format.numbers import engineering, short
 from tests.browser.test_page import AXE, FAULTS
 from tests.support.results.browser_page import PIXELS, errors, screen, wait
 from tests.support.results.html_page import EVIL
@@ -221,7 +221,7 @@ def test_pointing_shows_a_design_with_all_its_numbers(page: Any, table: pa.Table
     governing = min(known, key=lambda r: r["safety_factor"])
     text = page.execute_script(CARD)
     assert f"Design {number} (kept)" in text
-    assert f"{short(governing['max_von_mises'])} ± " in text
+    assert f"{engineering(governing['max_von_mises'])} ± " in text
     assert f"{short(governing[FIRST])} mm" in text
     assert f"Pin {governing['pin']}, case {governing['case']}. {governing['verdict']}: " in text
     values = page.execute_script(

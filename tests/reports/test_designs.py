@@ -162,7 +162,7 @@ def test_names_run_nothing(tmp_path: Path) -> None:
     path = write(table, tmp_path)
     page = parse(path)
     assert page.tags.count("script") == 2
-    assert f"Designs of {EVIL}" in page.text
+    assert f"Designs: {EVIL}" in page.text
     assert EVIL not in path.read_text(encoding="utf-8")
     assert data_of(path)["texts"]["reason"]["names"] == [EVIL]
 

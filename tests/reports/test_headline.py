@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from reports.data.row import PinResult
 from reports.format.words import headline
 from reports.page.loads import loads_at, timings
 from reports.text.summary import summary
+from tests.support.programs.command_line import QUICK, run_here
 from tests.support.results.rows import with_values
 
 
@@ -119,3 +121,14 @@ def test_times_add_up(results: Results) -> None:
     assert len(grid.body) == len(results.pins) + 1
     assert float(grid.body[-1][-1]) == pytest.approx(sum(p.seconds for p in results.pins), rel=0.05)
     assert timings(replace(results, pins=())) is None
+
+
+def test_a_pin_without_load_is_told_no_margin_of_safety(tmp_path: Path) -> None:
+    """Of its checks the rupture, with an infinite margin, was named "+–"."""
+    text = QUICK.replace("forces = {", "forces = { B = [0, 0] } #")
+    text = text.replace("yield_strength", 'ultimate_strength = "250 ksi"\nyield_strength')
+    (tmp_path / "study.toml").write_text(text)
+    made = run_here("run", "study.toml", "--no-cache", "--jobs", "1", cwd=tmp_path)
+    assert made.stdout.startswith("Pin B is safe: no load stresses it.\n")
+    assert "Other checks: no load in any." in made.stdout
+    assert not {"+–", "surface", "rupture"} & set(made.stdout.split())

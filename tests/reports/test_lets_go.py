@@ -199,7 +199,7 @@ def test_ladder_of_the_clevis(shipped: Shipped) -> None:
     assert (net["at"], net["in_proportion"]) == ("LEFT, EYE, RIGHT", True)
     assert net["load_factor"] == pytest.approx(700.0 / 95.36429760303544)
     page = (folder / "report.html").read_text(encoding="utf-8")
-    assert "What lets go first" in page
+    assert "Order of failure" in page
     assert f"{len(known) - 12} more" in page
 
 

@@ -247,8 +247,26 @@ def test_an_error_that_vanishes_is_not_given_in_millionths(few: Results) -> None
     for error, text in ((4e-9, "below 0.01 %."), (0.0, "below 0.01 %."), (0.004, "up to 0.40 %.")):
         row = with_values(few.pins[0], verdict="converged", max_von_mises=100.0,
                           error_estimate=100.0 * error)  # fmt: skip
-        lines = pin_lines(replace(few, pins=(row,)))
-        assert accuracy(lines) == [text]
+        made = replace(few, pins=(row,))
+        assert accuracy(pin_lines(made), made) == [text]
+
+
+def test_the_error_of_a_case_that_does_not_govern_is_told_where_it_exceeds_the_tolerance(
+    few: Results,
+) -> None:
+    governing = with_values(few.pins[0], verdict="converged", max_von_mises=100.0,
+                            error_estimate=1.5)  # fmt: skip
+    told = {}
+    for error in (1.0, 1.9, 3.6):
+        minor = with_values(governing, case="minor", max_von_mises=1.0, error_estimate=0.01 * error,
+                            safety_factor=99.0)  # fmt: skip
+        made = replace(few, pins=(governing, minor), tolerance=0.02)
+        told[error] = accuracy(pin_lines(made)[:1], made)
+    assert told == {
+        1.0: ["up to 1.5 %."],
+        1.9: ["up to 1.5 %."],
+        3.6: ["up to 1.5 % in the governing cases, 3.6 % in others."],
+    }
 
 
 def test_names_of_pins() -> None:

@@ -64,7 +64,7 @@ def test_a_scheduler_that_is_killed_leaves_what_is_sized_to_another(tmp_path: Pa
             _, said = size.communicate(timeout=300)
     assert size.returncode == 2, said
     assert "is lost" in said
-    assert "kept: the same command with --resume goes on" in " ".join(said.split())
+    assert "kept: run the same command with --resume to continue" in " ".join(said.split())
     with dask_cluster(tmp_path / "two") as cluster:
         first = cluster.worker()
         with started([*command, "--resume", *cluster.options], cwd=tmp_path, **piped) as size:

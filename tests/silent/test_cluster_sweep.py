@@ -84,7 +84,7 @@ def _refused(sweep: subprocess.Popen[str], *messages: str) -> None:
     """It ends with status 2 and says so, and what is kept."""
     _, said = sweep.communicate(timeout=300)
     assert sweep.returncode == 2, said
-    for message in (*messages, "kept: the same command with --resume goes on"):
+    for message in (*messages, "kept: run the same command with --resume to continue"):
         assert message in " ".join(said.split())
     assert "Traceback" not in said
 
@@ -239,7 +239,7 @@ def test_an_interrupted_sweep_leaves_the_cluster_to_others(
             sweep.send_signal(signal.SIGTERM)
             _, said = sweep.communicate(timeout=300)
         assert sweep.returncode == 130, said
-        assert "kept: the same command with --resume goes on" in said
+        assert "kept: run the same command with --resume to continue" in said
         assert "Traceback" not in said
         made = _on(cluster, tmp_path, "--resume")
     assert made.returncode == 0, made.stderr

@@ -152,7 +152,7 @@ def test_threads_workers_that_come_and_go_and_an_interrupt(
             sweep.send_signal(signal.SIGINT)
             _, said = sweep.communicate(timeout=300)
         assert sweep.returncode == 130, said
-        assert "kept: the same command with --resume goes on" in said
+        assert "kept: run the same command with --resume to continue" in said
         arguments = "sweep", "study.toml", "--out", "out", *cluster.options, "--resume"
         made = pinstress(*arguments, cwd=tmp_path)
     assert made.returncode == 0, made.stderr
@@ -201,7 +201,7 @@ def test_reliability_that_ends_too_early_says_what_is_kept(tmp_path: Path, end: 
             _, said = program.communicate(timeout=300)
     assert program.returncode == (2 if end == "scheduler" else 130), said
     assert "is lost" in said or end != "scheduler"
-    assert "are kept in the cache: the same command goes on with them" in said
+    assert "are kept in the cache: the same command reuses them" in said
     assert "Traceback" not in said
     assert [path.name for path in tmp_path.iterdir() if "out" in path.name] == []
 

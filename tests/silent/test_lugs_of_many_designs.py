@@ -57,14 +57,14 @@ samples = 20
 importance_samples = 0
 sobol_samples = 0
 """
-SAID = "The lugs of P are not judged here, the pin alone: `pinstress run` judges both."
+SAID = "The lugs of P are not checked here: `pinstress run` checks them, too."
 KEY = "material.steel.yield_strength"
 REQUIRED = """[[require]]
 check = "rupture"
 level = "ultimate"
 factor = 100
 """
-YIELD_ALONE = "Of pins, yield alone is judged here: `pinstress run` also judges "
+YIELD_ALONE = "Pins are checked against yield only: `pinstress run` also checks "
 FORMULAS_SAID = f"{YIELD_ALONE}shear, bearing, bending."
 REQUIRED_SAID = f"{YIELD_ALONE}rupture, shear, bearing, bending."
 # 50 kN / (20 x 10 mm) = 250 MPa of bearing and 50 kN / (2 x 314 mm^2) = 80 MPa of shear at limit

@@ -23,7 +23,7 @@ from pinstress.explore.sweep.scheduler import contents_of, hash_of, solve_on
 from pinstress.explore.sweep.workers import BatchQueue, failed_rows
 from pinstress.study.reading.errors import InputError
 
-KEPT = "Designs that are solved are kept in the cache: the same command goes on with them"
+KEPT = "Designs that are solved are kept in the cache: the same command reuses them"
 
 
 @dataclass(frozen=True)

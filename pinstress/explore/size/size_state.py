@@ -65,8 +65,8 @@ class SizeState:
             self.path.open("xb").close()
         except FileExistsError:
             raise InputError(
-                f"{self._target} has a size that did not end: go on with --resume, or delete "
-                f"{self.path.name} and {self._target.name} to begin anew",
+                f"{self._target} has a size that did not end: resume it with --resume, or delete "
+                f"{self.path.name} and {self._target.name} to start again",
                 code="unfinished-size",
             ) from None
         except OSError as error:
@@ -84,21 +84,21 @@ class SizeState:
         """
         if not self.path.is_file():
             raise InputError(
-                f"--resume: there is no size of {self._target} to go on with; leave out --resume",
+                f"--resume: there is no size of {self._target} to resume; leave out --resume",
                 code="nothing-to-resume",
             )
         try:
             finished = unpack(FinishedPins, self.path.read_bytes())
         except DAMAGED:
             raise InputError(
-                f"--resume: {self.path} is damaged; delete it and {self._target.name} to begin "
-                "anew",
+                f"--resume: {self.path} is damaged; delete it and {self._target.name} to start "
+                "again",
                 code="damaged-state",
             ) from None
         if finished.identity != self._identity:
             raise InputError(
                 f"--resume: the size of {self._target} is of another study, factor, step or pins, "
-                "or of another version of pinstress; go on with those, or choose another file",
+                "or of another version of pinstress; resume with those, or choose another file",
                 code="other-size",
             )
         return finished.pins

@@ -78,7 +78,7 @@ class BatchFolder:
         known, ours, before = self._stated, self.identity, self.count_before
         if not known:
             raise InputError(
-                f"--resume: {self.folder.parent} has no sweep to go on with; leave out --resume",
+                f"--resume: {self.folder.parent} has no sweep to resume; leave out --resume",
                 code="nothing-to-resume",
             )
         if before is not None and ours.sample not in CONTINUABLE_SAMPLES:
@@ -99,7 +99,7 @@ class BatchFolder:
         if known.get("sweep") != self.sweep and before is None:
             raise InputError(
                 f"--resume: the sweep in {self.folder.parent} is of another study, other [vary], "
-                "pins or cases, other tables, or of another version of pinstress; go on with "
+                "pins or cases, other tables, or of another version of pinstress; resume with "
                 "those, or choose another folder",
                 code="other-sweep",
             )

@@ -69,7 +69,7 @@ def summary(table: pa.Table, console: Console) -> None:
     rough = Counter(row["pin"] for row in rows if row["verdict"] in ("unconverged", "singular"))
     if rough:
         console.print(
-            "rows without a converged maximum (verdict, error_estimate): "
+            "rows whose maximum is not converged (see verdict, error_estimate): "
             + ", ".join(f"{pin} {count:,}" for pin, count in rough.items()),
             highlight=False,
             markup=False,

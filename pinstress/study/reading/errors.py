@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pinstress.study.schema.shown import ELLIPSIS
+from pinstress.study.schema.shown import ELLIPSIS, printable
 
 T = TypeVar("T")
 
@@ -30,7 +30,7 @@ class InputError(Exception):
     def __init__(
         self, message: str, listed: Iterable[tuple[str, str]] = (), more: int = 0, code: str = ""
     ) -> None:
-        super().__init__("\n".join(map(clipped, message.split("\n"))))
+        super().__init__("\n".join(clipped(printable(line)) for line in message.split("\n")))
         errors = tuple(listed) or ((str(self), code),)
         self.lines = tuple(line for line, _ in errors)
         self.codes = tuple(error_code for _, error_code in errors)

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from pinstress.study.reading.damage import Damage, stand_in
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.toml_lines import Place
-from pinstress.study.schema.shown import in_toml, nearest
+from pinstress.study.schema.shown import in_toml, nearest, printable
 from pinstress.study.schema.types import UNKNOWN_KEY_ERROR, hint_for_key
 
 # By pydantic's type of error: our code, and what would be right. Its other types need a field of a
@@ -135,7 +135,9 @@ def _key(loc: tuple[int | str, ...], kind: str) -> str:
     for i, part in enumerate(loc):
         if str(part).startswith(("<", "[key]")) or (i == 2 and loc[0] == "case"):
             continue
-        key += f"[{part + 1}]" if isinstance(part, int) else f"{'.' if key else ''}{part}"
+        key += (
+            f"[{part + 1}]" if isinstance(part, int) else f"{'.' if key else ''}{printable(part)}"
+        )
     return f"{key}.kind" if kind.startswith("union_tag") else key
 
 

@@ -24,6 +24,13 @@ def cut(text: str, most: int = MAX_TEXT_LENGTH) -> str:
     return text if len(text) <= most else text[: most - 1] + ELLIPSIS
 
 
+def printable(text: str) -> str:
+    """Return the text with its unprintable characters as Python escapes them: raw, they could
+    reorder a message or act on a terminal.
+    """
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
+
+
 def as_text(value: object) -> str:
     """Return a value as Python writes it, shortened; also an integer too long for Python to
     write.

@@ -219,6 +219,8 @@ def to_si(value: object, dimension: str, system: UnitSystem) -> float:
             si = _plain(float(value), dimension, system)
         except OverflowError:  # a whole number
             raise ArgumentError(f"{as_text(value)} is {_beyond()}", "too-large") from None
+    if math.isinf(si) and isinstance(value, int | float) and math.isfinite(value):
+        raise ArgumentError(f"{as_text(value)} is {_beyond()}", "too-large")
     if not math.isfinite(si):
         raise ArgumentError(f"must be finite, not {as_text(value)}", "not-finite")
     if abs(si) > MAX_SI_VALUE:

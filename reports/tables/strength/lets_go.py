@@ -13,10 +13,10 @@ from reports.format.numbers import DASH, engineering, short
 from reports.tables.column import Column, Table, fields, read_only
 
 LETS_GO_NOTE = (
-    "Load factor: on all loads of the case, in proportion. Yield that begins locally, at a fillet "
-    "or a bore, is no failure: the part carries more until a section is plastic, or it collapses "
-    "or ruptures. Checks by formula and clauses are at what they allow, their own factors "
-    "included. Fatigue has no load factor."
+    "Load factor: multiplies all loads of the case. Local yielding, at a fillet or a bore, is not "
+    "failure: the part carries more until a section is plastic, or it collapses or ruptures. "
+    "Checks by formula and clauses are at their allowables, with their own factors included. "
+    "Fatigue has no load factor."
 )
 LOAD_FACTOR_NOTE = (
     "≈: by contact with a clearance or rounded edges, which spreads as the load grows; the factor "
@@ -64,7 +64,7 @@ COLUMNS: list[Column[StepRow]] = [
     Column("what", lambda row: row.of.what, heading="what", numeric=False),
     Column("at", lambda row: row.of.at, "", "at", lambda row: row.of.at or DASH, numeric=False,
            drop_if_empty=True),
-    Column("effect", lambda row: row.of.effect, heading="lets go", numeric=False),
+    Column("effect", lambda row: row.of.effect, heading="effect", numeric=False),
     Column("clause", lambda row: row.of.clause, "", "clause", lambda row: row.of.clause or DASH,
            numeric=False, rank=1),
     *fields("of.in_proportion of.needs"),

@@ -11,12 +11,13 @@ from reports.format.numbers import DASH, engineering
 from reports.tables.column import ArrayTable, Column, Table, fields, json_of, read_only
 
 LIMIT_LOAD_NOTE = (
-    "A pin whose safety factor is below one yields somewhere, which need not matter. It collapses "
-    "when all its loads, in proportion, reach the limit load; below, it bends and stays bent."
+    "A pin whose safety factor is below one yields somewhere, which may be acceptable. It "
+    "collapses when all its loads, in proportion, reach the limit load; below it, some bending "
+    "remains."
 )
 LEFT_OUT_NOTE = (
-    "Left out: fracture, buckling, large displacements, and what flow does to the pressures of "
-    "lugs."
+    "Not included: fracture, buckling, large displacements, and the effect of plastic flow on the "
+    "pressures of lugs."
 )
 COLUMNS: list[Column[tuple[PinResult, LimitLoad]]] = [
     Column("pin", lambda row: row[0].pin),

@@ -185,11 +185,11 @@ def error_words(line: PinLine) -> str:
 
 
 def check_words(line: PinLine) -> str:
-    """Return the worst check where it is another than the maximum against yield, with its factor
-    and the required one: "lug L, bore: 1.85 of 1.5".
+    """Return the worst check where it is another than the maximum against yield and has a load,
+    with its factor and the required one: "lug L, bore: 1.85 of 1.5".
     """
     check = line.check
-    if check.check == YIELD_METHOD:
+    if check.check == YIELD_METHOD or check.used == 0.0:
         return DASH
     name = check.check
     if check.lug:

@@ -23,10 +23,10 @@ MAX_SHOWN_ROWS = 8  # rows of a pin that are shown
 MAX_BRIEF_ROWS = 3
 MIN_SHOWN_EFFECT = 1e-3  # relative effect of what is shown
 SENSITIVITIES_NOTE = (
-    "What a little more of one dimension does to the factor of safety while the loads stay as they "
-    "are: derivatives of the reported maximum, times the step. The largest effects of each pin are "
-    "shown; sensitivities.csv has all, those of loads and material too. Steps are small; what a "
-    "large change does is not in proportion."
+    "How a small increment of one dimension changes the factor of safety at unchanged loads: the "
+    "derivative of the reported maximum times the increment. The largest effects of each pin are "
+    "shown; sensitivities.csv has all, also those of loads and material. A large change does not "
+    "act in proportion."
 )
 SINGULAR_SENSITIVITIES_NOTE = (
     "Of singular rows this is of the maximum outside the excluded zones, whose size goes with the "

@@ -95,7 +95,7 @@ const explore = (model) => {
     const columns = tableColumns(model, now), by_key = columns.find((c) => c.key === shown.sort.key) ?? columns[0];
     listed = sorted(mask, by_key, shown.sort.down);
     fillTable(by("selection"), columns, listed, shown.sort, { sort });
-    const failed = counts.failed ? `, ${counts.failed.toLocaleString("en-US")} of them without result` : "";
+    const failed = counts.failed ? `, ${counts.failed.toLocaleString("en-US")} of them without a result` : "";
     const rest = listed.length > MOST ? ` The table has the first ${MOST}; the CSV file has all.` : "";
     by("status").textContent = `${by("count").textContent}${failed}; ${front.length.toLocaleString("en-US")} on the front.${rest}`;
     by("save").disabled = !listed.length;

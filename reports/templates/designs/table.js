@@ -14,13 +14,13 @@ const titled = ({ title, unit }) => (unit ? `${title} [${unit}]` : title);
 // A key may be broken after its dots.
 const breakable = (text) => text.replace(/([.\]_])(?=\w)/g, "$1\u200b");
 
+// Digits of a column: results have no more than their errors leave them.
+const digitsOf = ({ key, of }) => (/(^|_)error/.test(key) ? 2 : of === "row" ? 4 : 6);
 // A value of a column for reading; the file has all digits.
-const worded = (column, value, digits = 6) => {
+const worded = (column, value, digits = digitsOf(column)) => {
   if (column.names) return value >= 0 ? column.names[value] : "–";
   return Number.isFinite(value) ? short(value, digits) : value === Infinity ? "∞" : "–";
 };
-// Digits of a column: results have no more than their errors leave them.
-const digitsOf = ({ key, of }) => (/(^|_)error/.test(key) ? 2 : of === "row" ? 4 : 6);
 const exact = (column, value) => (column.names ? worded(column, value) : Number.isNaN(value) ? "" : String(value));
 
 const nameOf = (text, r) => (r >= 0 && text.at[r] >= 0 ? text.names[text.at[r]] : "");
@@ -42,7 +42,7 @@ const card = (host, model, now, d, kept) => {
   for (const c of columns) {
     const value = now.values[c.index][d];
     if (c.of === "row" && (now.failed[d] || c.key === "error_estimate")) continue;
-    const error = c.key === "max_von_mises" && byKey.error_estimate ? ` ± ${worded(byKey.error_estimate, now.values[byKey.error_estimate.index][d], 2)}` : "";
+    const error = c.key === "max_von_mises" && byKey.error_estimate ? ` ± ${worded(byKey.error_estimate, now.values[byKey.error_estimate.index][d])}` : "";
     item(c.title, `${worded(c, value)}${error}${c.unit && Number.isFinite(value) ? ` ${c.unit}` : ""}`, exact(c, value));
   }
   told.push(list);
@@ -65,7 +65,7 @@ const everyRow = ({ texts, byKey, first }, d, governing) => {
   for (let r = first[d]; r < first[d + 1]; r++) {
     const row = body.insertRow();
     if (r === governing) row.className = "governs";
-    const cells = [nameOf(texts.pin, r), nameOf(texts.case, r), ...shown.map((c) => worded(c, c.all[r], 4)), nameOf(texts.verdict, r) || nameOf(texts.reason, r)];
+    const cells = [nameOf(texts.pin, r), nameOf(texts.case, r), ...shown.map((c) => worded(c, c.all[r])), nameOf(texts.verdict, r) || nameOf(texts.reason, r)];
     row.append(...cells.map((text) => element("td", text)));
   }
   const wide = element("div", undefined, { class: "wide", tabindex: "0", role: "region", "aria-label": "All pins and cases of the design" });
@@ -81,7 +81,7 @@ const tableColumns = (model, now) => [
     key: c.key, title: titled(c), numeric: !c.names,
     of: (d) => now.values[c.index][d],
     empty: !c.names && !c.all.some((value) => value === value),
-    text: (d) => worded(c, now.values[c.index][d], digitsOf(c)),
+    text: (d) => worded(c, now.values[c.index][d]),
     exact: (d) => exact(c, now.values[c.index][d]),
   })),
   ...["verdict", "reason", "code"].map((key) => textColumn(model, now, key)),

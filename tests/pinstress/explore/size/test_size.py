@@ -284,6 +284,7 @@ def test_a_singular_pin_is_sized_but_nothing_is_claimed(
         Refused(["--step", "2 s"], ("", ""), 2, "--step: '2 s' is not a length"),
         Refused(["--step", "-1"], ("", ""), 2, "--step: must be positive"),
         Refused(["--out", "no/where.toml"], ("", ""), 2, "there is no folder no"),
+        Refused(["--out", "study.toml/x.toml"], ("", ""), 2, "study.toml is a file, not a folder"),
         Refused(["--pins", "Q"], ("", ""), 2, "no pin 'Q'"),
         Refused([], ('yield_strength = "225 ksi"', ""), 1, "has no yield_strength"),
         Refused([], ('["start"]', "[]"), 1, "it is unconstrained in case landing"),

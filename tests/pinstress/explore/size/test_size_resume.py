@@ -69,7 +69,7 @@ def test_an_interrupted_size_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyP
         out, err = process.communicate()
     assert process.returncode == 130, err
     assert out == ""
-    match = re.search(r"(\d) pins? (?:is|are) kept: the same command with --resume goes on", err)
+    match = re.search(r"(\d) pins? (?:is|are) kept: run the same command with --resume", err)
     assert match is not None, err
     finished = NAMES[: int(match[1])]
     assert 0 < len(finished) < len(NAMES)
@@ -80,7 +80,7 @@ def test_an_interrupted_size_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
     refused = run_here("size", "study.toml", cwd=tmp_path)
     assert refused.returncode == 2
-    assert "has a size that did not end: go on with --resume" in refused.stderr
+    assert "has a size that did not end: resume it with --resume" in refused.stderr
 
     solved = calls(monkeypatch)
     resumed = run_here("size", "study.toml", "--jobs", "1", "--resume", cwd=tmp_path)
@@ -101,7 +101,7 @@ def test_what_cannot_be_resumed_is_told(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(several("B"))
     nothing = run_here("size", "study.toml", "--resume", cwd=tmp_path)
     assert nothing.returncode == 2
-    assert "there is no size of study_sized.toml to go on with" in nothing.stderr
+    assert "there is no size of study_sized.toml to resume" in nothing.stderr
     lightest = run_here("size", "study.toml", "--resume", "--least-weight", cwd=tmp_path)
     assert lightest.returncode == 2
     assert "--resume is not for --least-weight" in lightest.stderr
@@ -147,7 +147,7 @@ def test_a_new_study_that_was_edited_is_not_overwritten(
     monkeypatch.setattr(module, "size_pin", failing)
     first = run_here("size", "study.toml", "--jobs", "1", cwd=tmp_path)
     assert first.returncode == 2
-    assert "1 pin is kept: the same command with --resume goes on" in first.stderr
+    assert "1 pin is kept: run the same command with --resume to continue" in first.stderr
     target = tmp_path / "study_sized.toml"
     edited = target.read_text() + "# mine\n"
     target.write_text(edited)

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from pyarrow import parquet
 
+from pinbase.processes.folder_lock import lock
 from tests.support.each import each, sampled
 from tests.support.programs.command_line import QUICK, pinstress, run_here
 from tests.support.programs.process_group import started
@@ -56,7 +57,7 @@ def test_designs_that_all_fail_are_told(tmp_path: Path) -> None:
     ("prepare", "arguments", "message"),
     [
         ("notes.txt", (), "contains files that are not results of this command"),
-        ("", ("--resume",), "has no sweep to go on with"),
+        ("", ("--resume",), "has no sweep to resume"),
         ("", ("--pins", "X"), "has no pin 'X'"),
     ],
 )
@@ -102,11 +103,16 @@ def test_an_unfinished_sweep_is_kept_and_goes_on(
     monkeypatch.setattr(module, "solve_batch", interrupted)
     made = run_here(*arguments, cwd=tmp_path)
     assert made.returncode == 130
-    assert "2 batches are kept: the same command with --resume goes on" in made.stderr
+    assert "2 batches are kept: run the same command with --resume to continue" in made.stderr
     monkeypatch.setattr(module, "solve_batch", whole)
     again = run_here(*arguments, cwd=tmp_path)
     assert again.returncode == 2
-    assert "has a sweep that did not end: go on with --resume" in again.stderr
+    assert "has a sweep that did not end: resume it with --resume" in again.stderr
+    release = lock(tmp_path / "out")  # as a sweep that is running does
+    second = run_here(*arguments, cwd=tmp_path)
+    release()
+    assert (second.returncode, "delete" in second.stderr) == (2, False)
+    assert "another sweep is writing out" in second.stderr
     text = (tmp_path / "study.toml").read_text()
     (tmp_path / "study.toml").write_text(text.replace("count = 6", "count = 6\nseed = 7"))
     other = run_here(*arguments, "--resume", cwd=tmp_path)
@@ -230,7 +236,7 @@ def test_a_sweep_that_is_killed_goes_on_to_the_same_bytes(
             time.sleep(0.1)
     if sign != signal.SIGKILL:
         assert process.returncode == 130
-        assert "kept: the same command with --resume goes on" in err
+        assert "kept: run the same command with --resume to continue" in err
         assert "Traceback" not in err
     kept = len(list(parts.glob("*.parquet")))
     assert kept >= 4
