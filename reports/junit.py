@@ -73,11 +73,13 @@ def _add_case(suite: Element, row: RequirementRow, study: str, by: str) -> None:
 
 
 def message(row: RequirementRow) -> str:
-    """Return what was reached and what is missing, in a line."""
+    """Return what was reached, what is missing and what a result depends on, in a line."""
     text = f"{row.outcome}: {row.title}"
     if row.reached is not None:
         text += f", factor {factor_text(row.reached, row.required)}"
     text += f", {short(row.required)} required"
+    if row.over:
+        text += f"; not reached over what is open: {row.over}"
     return f"{text}; needs {row.needs}" if row.needs else text
 
 

@@ -31,6 +31,7 @@ from fea.support.lugs.fit import fitted, on_structure
 from fea.support.lugs.links import link_forces, link_moments
 from fea.support.prescribed import balanced
 from fea.support.support import HeldPin, PinProblem, Progress, silent
+from fea.support.unheld import unheld, unsolved
 from geometry import CutPin, Pin, PinLike
 from pinbase.memo import Memo
 
@@ -111,7 +112,10 @@ class ContactSupport:
             alone=self.alone is not None, rough=self.cells is ROUGH,
         )  # fmt: skip
         if finer is None or self.cells is not ROUGH:  # rough ones are a trial only
-            failed = {case: _failed(problem, case, why) for case, why in contact.failed.items()}
+            name = problem.pin.name
+            failed = {
+                case: unsolved(name, case, "harmonic", x) for case, x in contact.failed.items()
+            }
             held = replace(held, failures=held.failures | failed)
         pressed = tuple(starts.values())
         rigid, _, notes = balanced(held.pin, problem.material, pressed, "harmonic")
@@ -160,7 +164,7 @@ def profile_of(pin: PinLike) -> Pin:
 
 
 def _refused(problem: PinProblem) -> dict[str, Maximum]:
-    """The failures of cases whose loads no contact can carry, found before anything is meshed.
+    """The results of cases whose loads no contact can carry, found before anything is meshed.
 
     Raises: ArgumentError for lugs that do not fit.
     """
@@ -168,15 +172,13 @@ def _refused(problem: PinProblem) -> dict[str, Maximum]:
     whole = on_structure(pin, lugs)
     inside = fitted(whole, problem.material, lugs)
     structure = len(lugs) > len(pin.connections)
-    mass, out = (problem.material.density or 0.0) * whole.volume, dict[str, Maximum]()
+    mass, out = (problem.material.density or 0.0) * whole.volume, unheld(problem, "harmonic")
     for case in problem.cases:
+        if case.case in out:
+            continue
         try:
             forces = link_forces(pin, mass, case, structure)
             link_moments((pin, whole), inside, case, forces, (mass, centre_of_volume(whole)))
         except SolveError as error:
-            out[case.case] = _failed(problem, case.case, str(error))
+            out[case.case] = unsolved(pin.name, case.case, "harmonic", error)
     return out
-
-
-def _failed(problem: PinProblem, case: str, why: str) -> Maximum:
-    return Maximum(problem.pin.name, case, "harmonic", "failed", why)

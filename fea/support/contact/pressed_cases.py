@@ -176,7 +176,7 @@ class PressedCases:
 
     Pressures made of the same patterns act on one mesh.
     instants: by case, the loads of which the patterns are made.
-    failed: the reason why a case has no contact.
+    failed: the error of each case without contact.
     patterns: those of any pressures; None: they are made from the pressures of the cases.
     """
 
@@ -191,7 +191,7 @@ class PressedCases:
     ) -> None:
         self.model, self.cut = model, cut
         self._whole = patterns is not None
-        self.failed: dict[str, str] = {}
+        self.failed: dict[str, SolveError] = {}
         self.instants: dict[str, PinLoads] = {}
         self._known: dict[tuple[str, float], ContactState] = {}
         self._besides: dict[str, Floats] = {}
@@ -207,7 +207,7 @@ class PressedCases:
                     states = model.pressed(besides[case.case])
                     self._besides[case.case] = model.waves(states)
             except SolveError as error:
-                self.failed[case.case] = str(error)
+                self.failed[case.case] = error
                 continue
             self.instants[case.case] = instants
             rings = [self.on_rings(instants)]

@@ -52,6 +52,7 @@ from fea.support.support import (
     UnderLinkLoads,
     silent,
 )
+from fea.support.unheld import unheld, unsolved
 from geometry import PinLike, body_of_revolution
 
 FOUNDATION_OMISSIONS = (
@@ -71,14 +72,16 @@ class FoundationSupport:
         coarser: HeldPin | None = None,
         progress: Progress = silent,
     ) -> HeldFoundation:
-        """Hold the pin, as every support does; nothing is discretised."""
+        """Hold the pin, as every support does; nothing is discretised, and cases that the lugs
+        cannot hold have no solution.
+        """
         progress(f"pin {problem.pin.name}, beam on foundations")
         pin = body_of_revolution(problem.pin)
         assert pin is not None
         over = FoundationRange(
             pin, problem.material, problem.lugs, requirement.distance, assumed=False
         )
-        return HeldFoundation(problem, over)
+        return HeldFoundation(problem, over, unheld(problem, "foundation"))
 
     def may_be_enough(self, problem: PinProblem, requirement: Requirement) -> bool:
         """Return whether the foundation's error, at least a tenth, may be small enough; never for a
@@ -118,7 +121,7 @@ class HeldFoundation(UnderLinkLoads):
         try:
             return self._solution(case, requirement)
         except SolveError as error:
-            peak = Maximum(self.pin.name, case.case, "foundation", "failed", str(error))
+            peak = unsolved(self.pin.name, case.case, "foundation", error)
             return Solution(peak, None, case, held=self)
 
     def _solution(self, case: PinLoads, requirement: Requirement) -> Solution:

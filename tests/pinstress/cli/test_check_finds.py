@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import pinstress
+from pinstress.cli.closing import report_missed
 from pinstress.study.model.balance import given_warnings
 from pinstress.study.reading.errors import InputError
 from tests.support.described import describe
@@ -55,6 +56,29 @@ def test_loads_that_nothing_balances(clamp: str, forces: str, says: str) -> None
     _, unheld, _ = describe(study(clamp, forces))
     assert bool(unheld) == bool(says)
     assert all(says in line for line in unheld)
+
+
+@each("joints", ["contact", "foundation"])
+@each(
+    ("lugs", "forces"),
+    [
+        (FREE, f"{BALANCED}\nmoments = {{ middle = [20000, 0] }}"),
+        (LUGS, BALANCED.replace("-2000", "-1000")),
+        (LUGS, f"{BALANCED}\nmoments = {{ middle = [0, 0, 900] }}"),
+        (LUGS, BALANCED.replace("-2000]", "-2000, 900]")),  # along the axis
+    ],
+)
+def test_a_run_says_the_same_of_pins_that_nothing_holds(
+    lugs: str, forces: str, joints: str
+) -> None:
+    """For whatever model of the lugs: it is the rule of statics, no failure of a solution."""
+    asked = study(lugs, forces, f'joints = "{joints}"\ntolerance = 0.3')
+    results = pinstress.run(asked)
+    (row,) = results.pins
+    assert (row.verdict, row.outcome, row.max_von_mises) == ("rigid", "not decided", None)
+    assert report_missed(results, decide=False) == 1  # as `check`
+    _, (said,), _ = describe(asked)
+    assert row.note in said
 
 
 def test_a_small_imbalance_is_a_warning() -> None:

@@ -1,0 +1,34 @@
+"""Cases in which the lugs of a pin cannot hold it, by the rule of fea.core.equilibrium, whatever
+model there is of the lugs; and how a case without a solution is called.
+"""
+
+from __future__ import annotations
+
+from fea.core.equilibrium import out_of_balance
+from fea.core.linear_solver import SolveError
+from fea.core.peak import Maximum
+from fea.support.lugs.fit import carried
+from fea.support.support import PinProblem
+
+# Codes of errors by which a model says that its lugs do not react the loads.
+NOT_HELD = "not-in-equilibrium", "couple-not-reacted"
+
+
+def unheld(problem: PinProblem, model: str) -> dict[str, Maximum]:
+    """The results by case of the cases that the lugs cannot hold: `rigid`, without numbers."""
+    pin, out = problem.pin, dict[str, Maximum]()
+    for case in problem.cases:
+        reacted = carried(pin, problem.lugs, case.tilting_links(pin.length))
+        of = out_of_balance(pin, case, problem.material.density, reacted)
+        if of.refusal:
+            out[case.case] = Maximum(
+                pin.name, case.case, model, "rigid", of.refusal, reasons=(of.code,)
+            )
+    return out
+
+
+def unsolved(pin: str, case: str, model: str, error: SolveError) -> Maximum:
+    """The result of a case without a solution: `rigid` where the lugs do not hold the pin."""
+    rigid = error.code in NOT_HELD
+    codes = (error.code,) if rigid else ()
+    return Maximum(pin, case, model, "rigid" if rigid else "failed", str(error), reasons=codes)
