@@ -152,7 +152,7 @@ def _refusal(pin: PinLike, shares: tuple[float, ...], carried: Carried) -> tuple
     clamp = f"name its clamped surfaces in {name}.clamp"
     if carried.lugs:
         loose, react = "the loads of the pin in its lugs are not in equilibrium: ", "links share"
-        clamp = "load all its links, or name a lug after a segment where none bears"
+        clamp = f"load all its links, or {_structure(pin)}"
     elif len(pin.connections) < 2:
         why = "the pin is not clamped and only one connection bears on it, so nothing reacts its "
         return f"{why}load; {clamp}", "one-band"
@@ -177,6 +177,16 @@ def _refusal(pin: PinLike, shares: tuple[float, ...], carried: Carried) -> tuple
             "couple-imbalance",
         )
     return None, ""
+
+
+def _structure(pin: PinLike) -> str:
+    """How to let a structure hold a pin: by the segments that have names and bear no link."""
+    segments = () if pin.profile is None else pin.profile.segments
+    idle = [s.name for s in segments if s.name and s.name not in pin.connections]
+    lugs = ", ".join(f"pin.{pin.name}.lug.{name}" for name in idle)
+    if lugs:
+        return f"add a lug for each segment that a structure holds: {lugs}"
+    return f"name a segment that a structure holds, and give it a lug (pin.{pin.name}.lug.NAME)"
 
 
 def balancing_forces(pin: PinLike, loads: PinLoads, instant: int) -> dict[str, Floats] | None:

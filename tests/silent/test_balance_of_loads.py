@@ -211,3 +211,19 @@ def test_check_ends_with_one(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     path.write_text(study(27.0, 23.0).text)
     assert run_command_line(["check", str(path)]) == 0
     assert capsys.readouterr().err.count("Warning") == 1
+
+
+def test_it_says_which_lugs_would_hold_a_pin() -> None:
+    """Segments of the link that carries the pin have names, or have yet to be named."""
+    profile: list[dict[str, Any]] = [
+        {"length": 10, "diameter": 20, "name": "left"},
+        {"length": 20, "diameter": 20, "connection": "M"},
+        {"length": 10, "diameter": 20, "name": "right"},
+    ]
+    loaded: dict[str, Any] = {"forces": {"M": [5e4, 0]}, "lug": {"M": {}}}
+    refused, _ = said(study(0.0, 0.0, profile=profile, **loaded))
+    assert refused.endswith("each segment that a structure holds: pin.P.lug.left, pin.P.lug.right")
+    for segment in profile:
+        segment.pop("name", None)
+    refused, _ = said(study(0.0, 0.0, profile=profile, **loaded))
+    assert refused.endswith("and give it a lug (pin.P.lug.NAME)")
