@@ -156,7 +156,10 @@ def _row(
             None if volume is None else _amount(study, lightest.pin, volume, heavy)
             for volume in (before, lightest.scaled, after if written else None)
         ),  # type: ignore[arg-type]
-        at=min((x for (pin, _), x in design.at.items() if pin == lightest.pin), default=None),
+        at=min(
+            (x for (pin, _), x in design.at.items() if pin == lightest.pin and math.isfinite(x)),
+            default=None,
+        ),
         residual=None if lightest.optimality is None else lightest.optimality.residual,
         dimensions=tuple(_dimensions(study, design.study, lightest)),
         binding=lightest.binding[:MAX_NAMED_BINDING],
@@ -173,14 +176,14 @@ def _unlikely(design: LightStudy, pin: str, aim: WeightGoal) -> str:
     requested.
     """
     factors = {case: x for (name, case), x in design.at.items() if name == pin}
-    unknown = [case for case, x in factors.items() if not math.isfinite(x)]
+    unknown = [case for case, x in factors.items() if math.isnan(x)]
     low = [
         case
         for case, x in factors.items()
         if x < aim.required * aim.more.get((pin, case), 1.0) * (1.0 - 1e-9)
     ]
     if unknown:
-        return f"in {', '.join(unknown)} its factor at the probability was not found"
+        return f"in {', '.join(unknown)} its factor at the probability is not known"
     return f"in {', '.join(low)} its factor at the probability is too small" if low else ""
 
 

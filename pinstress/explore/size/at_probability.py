@@ -14,6 +14,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
+from scipy.special import ndtri
 
 from pinbase.processes.pool import Progress
 from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE
@@ -22,6 +23,7 @@ from pinstress.explore.reliability.form import (
     NOISY_CLOSENESS,
     SMOOTH_CLOSENESS,
     Array,
+    Closeness,
     form_quantile,
 )
 from pinstress.explore.size.least_weight import LightStudy, lighten
@@ -33,6 +35,7 @@ from pinstress.study.reading.file import Study
 from reports.data.decision import low_factor
 
 MAX_ROUNDS = 5
+CONSTANT = 1e-12  # of a value: one that changes by less does not change
 MAX_FACTOR_EXCESS = 2.0 * FACTOR_TOLERANCE  # over the factor, with which a search ends
 
 Row = tuple[str, str]  # pin and case
@@ -65,7 +68,7 @@ def require_laws(study: Study, aim: WeightGoal, pins: Iterable[str] | None) -> N
 def factors_at(
     study: Study, pins: Iterable[str], probability: float, progress: Progress
 ) -> dict[Row, float]:
-    """Return for each row the factor that is missed with a probability; NaN where it is not found.
+    """Return for each row the factor that is missed with a probability (factor_at).
 
     Raises: InputError.
     """
@@ -77,13 +80,30 @@ def factors_at(
         designs = SolvedDesigns(evaluator, space, 1, progress)
         close = NOISY_CLOSENESS if any(map(shapes, evaluator.numbers)) else SMOOTH_CLOSENESS
         for k, row in enumerate(evaluator.table):
-
-            def unused(u: Array, k: int = k, designs: SolvedDesigns = designs) -> Array:
-                return -designs.at(u, "FORM").used[:, k]
-
-            estimate = form_quantile(unused, probability, space.size, close)
-            out[row] = -1.0 / estimate.value if estimate.value and not estimate.why else np.nan
+            out[row] = factor_at(designs, k, probability, close)
     return out
+
+
+def factor_at(designs: SolvedDesigns, row: int, probability: float, close: Closeness) -> float:
+    """Return the factor of a row that is missed with a probability, by the first order; NaN where
+    it is not found, or where the stress is unbounded at that design.
+    """
+
+    def unused(u: Array) -> Array:
+        return -designs.at(u, "FORM").used[:, row]
+
+    size = designs.space.size
+    estimate = form_quantile(unused, probability, size, close)
+    at = estimate.u
+    if estimate.why:
+        # Of a row that nothing random changes there is no direction to search in, but one value.
+        at = np.zeros(size)
+        around = float(ndtri(probability)) * np.eye(size)
+        values = unused(np.concatenate([at[None, :], around, -around]))
+        if not np.ptp(values) <= CONSTANT * abs(values[0]):
+            return np.nan
+    answers = designs.at(at[None, :], "FORM")
+    return np.nan if answers.unbounded[0, row] else float(answers.factors[0, row])
 
 
 def lighten_at(
@@ -123,7 +143,11 @@ def lighten_at(
 def _reached(design: LightStudy, at: dict[Row, float], aim: WeightGoal) -> bool:
     """Return whether every pin that was found reaches the factor, with little excess."""
     for pin in design.pins:
-        rows = [p for p in design.results.pins if p.pin == pin.pin and p.safety_factor]
+        rows = [
+            p
+            for p in design.results.pins
+            if p.pin == pin.pin and p.safety_factor and np.isfinite(p.safety_factor)
+        ]
         low = [
             (low_factor(p) or 0.0) * at.get((p.pin, p.case), np.nan) / (p.safety_factor or 1.0) / x
             for p in rows
