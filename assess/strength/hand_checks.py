@@ -48,6 +48,7 @@ BENDING_TEXTS: dict[ForcesKind, tuple[str, str]] = {  # method and clause
     "joint": ("bending, joint model", "Shigley, 3-10"),
     "concentrated": ("bending, concentrated forces", "Shigley, problem 3-40"),
 }
+BENDING_METHODS = frozenset(method for method, _ in BENDING_TEXTS.values())
 # Methods that compare the pressure on bands, and the shear of pin and lugs, with strengths.
 BEARING_METHODS = "bearing", "lug, bearing", "lug, bearing, bushing"
 SHEAR_METHODS = (

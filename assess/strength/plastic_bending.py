@@ -31,6 +31,7 @@ from assess.situation import Situation
 from fea.beam.plastic_interaction import cased_rings
 from fea.beam.round_section import Circle
 
+PLASTIC_METHOD = "plastic bending and shear"
 INTERACTION_RULE = "(M/M_pl)^2 + (V/V_pl)^2 <= 1, without axial force and torque"
 
 
@@ -51,7 +52,7 @@ def _moment(s: Situation, z: float, section: Circle) -> float:
 
 
 @check(
-    "plastic bending and shear",
+    PLASTIC_METHOD,
     "rule of pinstress",
     kind="clause",
     takes="section forces",

@@ -12,11 +12,15 @@ from reports.data.results import Results
 
 
 def governing(results: Results) -> list[PinMargin]:
-    """Return the governing check of every pin in every case that has one, the worst first."""
+    """Return the governing check of every pin in every case that has one, the worst first.
+
+    What leaves out the cuts of a pin tells only what is negative.
+    """
     worst: dict[tuple[str, str], PinMargin] = {}
     for margin in results.margins:
         key = margin.pin, margin.case
         may = margin.margin.governs and margin.used >= 0.0 and margin.margin.method != YIELD_METHOD
+        may = may and (margin.used > 1.0 or not margin.margin.omits_cuts)
         if may and (key not in worst or margin.used > worst[key].used):
             worst[key] = margin
     return sorted(worst.values(), key=lambda margin: -margin.used)

@@ -34,8 +34,9 @@ from assess.requirement import (
 )
 from assess.strength.collapse import COLLAPSE_METHOD
 from assess.strength.fatigue_life import FATIGUE_LIFE
-from assess.strength.hand_checks import METHODS_BY_FORMULA
+from assess.strength.hand_checks import BENDING_METHODS, METHODS_BY_FORMULA, SHEAR_METHODS
 from assess.strength.model_stress import RUPTURE_METHOD, YIELD_METHOD
+from assess.strength.plastic_bending import PLASTIC_METHOD
 from pinbase.grouped import grouped
 from reports.data.decision import factor_ends
 from reports.data.dependence import depends_on
@@ -280,22 +281,36 @@ def _judged(plain: RequirementRow, margins: list[Margin], row: PinResult | None)
 def _beside_cuts(
     by_formula: RequirementRow, margins: list[Margin], row: PinResult | None
 ) -> RequirementRow:
-    """Return a requirement on shear or bearing, whose formulas may leave out cuts of the pin.
+    """Return a requirement whose formulas may leave out cuts of the pin.
 
-    Then they show what is missed, but not what is met. The mean shear stress of any section is at
-    most the largest von Mises stress of the model over the root of 3, which shows that, too.
+    Then they show what is missed, but not what is met, unless the stress of the model shows that.
     """
     omitting = [m for m in margins if m.omits_cuts]
-    stated = by_formula.check in METHODS_BY_FORMULA
-    if not stated or not omitting or by_formula.outcome not in (MET, DEPENDS):
+    if not omitting or by_formula.outcome not in (MET, DEPENDS):
         return by_formula
-    strengths = [m.allowable for m in omitting if m.allowable is not None]
-    if by_formula.check == "shear" and row is not None and row.max_von_mises is not None:
-        by_stress = _of_stress(by_formula, row, sqrt(3.0) * min(strengths))
+    strength = None if row is None else _local_strength(omitting, row)
+    if strength is not None and row is not None and row.max_von_mises is not None:
+        by_stress = _of_stress(by_formula, row, strength)
         if by_stress.outcome == MET:
             known = [x for x in (by_formula.reached, by_stress.reached) if x is not None]
             return replace(by_formula, reached=min(known, default=None))
     return replace(by_formula, outcome="not checked", needs=CUTS_NEEDED, over="")
+
+
+def _local_strength(margins: list[Margin], row: PinResult) -> float | None:
+    """Return the strength that the largest von Mises stress of a pin must not reach, so that checks
+    by formula are met in every section; None where the stress does not tell.
+
+    Mean shear stress is at most that stress over the root of 3, bending stress at most that stress,
+    and no section is plastic before the pin yields anywhere (the static theorem).
+    """
+    methods = {m.method for m in margins}
+    allowed = [m.allowable for m in margins if m.allowable is not None]
+    if methods <= {*SHEAR_METHODS}:
+        return sqrt(3.0) * min(allowed)
+    if methods <= BENDING_METHODS:
+        return min(allowed)
+    return row.yield_strength if methods == {PLASTIC_METHOD} else None
 
 
 def _of_stress(plain: RequirementRow, row: PinResult, strength: float) -> RequirementRow:
