@@ -19,6 +19,7 @@ COMPARISON_SUFFIX = "for comparison"
 # Methods of margins that stand for several checks that could not be made.
 FORMULA_CHECKS, CLAMPED_LUG_PREFIX = "checks by formula", "lug of "
 OMITS_CUTS = "Not covered: the cuts of the pin."  # by a check by formula
+CUTS_NEEDED = "the stress of sections and bands with the cuts of the pin, by hand"  # instead of it
 BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")  # of TOML
 
 

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from math import inf, isclose
 
-from assess.margin import JOINT_MODEL_BASIS, Margin
+from assess.margin import CUTS_NEEDED, JOINT_MODEL_BASIS, Margin
 from assess.strength.lug_stress import METHOD as LUG_METHOD
 from assess.strength.model_stress import CLAUSE, YIELD_METHOD
 from assess.strength.press_fit import METHOD as PRESS_FIT_METHOD
@@ -206,6 +206,10 @@ def _of_margins(row: PinResult) -> Iterator[tuple[LettingGo, bool]]:
         )
         without_load = m.kind == "fatigue" or m.method.startswith(PRESS_FIT_METHOD)
         if factor is None or by_model or not m.governs or without_load:
+            continue
+        if m.omits_cuts:  # where it lets go earlier
+            step = LettingGo(m.method, m.at, _effect(m), required=m.factor, needs=CUTS_NEEDED)
+            yield replace(step, clause=m.clause), False
             continue
         high = None
         if m.kind == "collapse" and row.limit_load and m.dimension == "1":

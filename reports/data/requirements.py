@@ -23,7 +23,7 @@ from assess.judgement import (
     YIELDS,
     against_yield,
 )
-from assess.margin import CLAMPED_LUG_PREFIX, FORMULA_CHECKS, Level, Margin
+from assess.margin import CLAMPED_LUG_PREFIX, CUTS_NEEDED, FORMULA_CHECKS, Level, Margin
 from assess.requirement import (
     REQUIRED_CHECKS,
     REQUIRED_LEVELS,
@@ -54,7 +54,6 @@ OUTCOME_OF_ROW: Mapping[str, Outcome] = {
     DEPENDS: "depends",
     NOT_DECIDED: "not decided",
 }
-CUTS_NEEDED = "the stress of sections and bands with the cuts of the pin, by hand"
 OUTCOMES: tuple[Outcome, ...] = ("missed", "depends", "not decided", "not checked", "met")
 METHODS_OF_CHECK: Mapping[RequiredCheck, tuple[str, ...]] = {
     "yield": (YIELD_METHOD,),

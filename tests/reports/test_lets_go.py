@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import pinstress
-from assess.margin import Margin
+from assess.margin import OMITS_CUTS, Margin
 from assess.plastic.records import LimitLoad, LugCollapse
 from fea.core.places import ContactEdge, ContactPlace, Places, SectionPlace, SurfacePlace
 from fea.support.records import LugStress
@@ -238,6 +238,14 @@ def test_collapse_has_a_bracket() -> None:
     assert (yielding.what, yielding.effect) == ("case crushing", LOCAL)  # the core beneath it
     (collapse,) = [s for s in steps(row, None) if s.effect == COLLAPSES and s.load_factor]
     assert (collapse.load_factor, collapse.low, collapse.high) == (3.0, 3.0, 3.5)
+
+
+def test_formulas_that_leave_out_cuts_have_no_load_factor() -> None:
+    margin = Margin("bending", "Shigley", "hand", "limit", 1.0, 100.0, 500.0, omits=OMITS_CUTS)
+    row = replace(make_results().pins[0], margins=(margin,))
+    (bending,) = [step for step in steps(row, None) if step.what == "bending"]
+    assert bending.load_factor is None
+    assert "with the cuts of the pin" in bending.needs
 
 
 def test_sentence_and_table() -> None:
