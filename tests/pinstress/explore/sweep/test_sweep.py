@@ -291,5 +291,5 @@ def test_rows_that_are_not_converged_are_counted(capsys: pytest.CaptureFixture[s
     summary(table, Console(width=200))
     rough = found["unconverged"] + found["singular"]
     told = capsys.readouterr().out
-    assert f"maximum (verdict, error_estimate): B {rough}\n" in told
+    assert f"not converged (see verdict, error_estimate): B {rough}\n" in told
     assert f" of {40 - found['failed']} solved\n" in told
