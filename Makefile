@@ -29,15 +29,17 @@ unexport PYTHONDONTWRITEBYTECODE
 PYTEST = $(BIN)/python -m pytest -n auto --dist worksteal
 # The files with tests of a mark: to import all others takes as long as some of these tests.
 marked = $(shell grep -rl 'mark\.$(1)\b' tests --include='*.py')
+# Those with tests that take more than a second (tests/seconds.py).
+listed = $(shell sed 's/::.*//' tests/seconds.txt)
 # After a mark of the targets below: "or long" takes the long tests, too.
 WITH =
 
 test: setup ## run the quick tests; ARGS="..." goes to pytest
-	$(PYTEST) -m "not slow" $(ARGS)
+	$(PYTEST) -m "not slow and not seconds" $(ARGS)
 
 # In one run files are imported once, what they share is solved once, and workers wait once at the end.
-test-rest: calculix ## run the slow ones and those with CalculiX: packaging, the fuzzer, validation, peers
-	$(PYTEST) -m "slow or peers" $(sort $(call marked,slow) $(call marked,peers)) $(ARGS)
+test-rest: calculix ## run all others but browser and long ones: those of seconds, slow ones, with CalculiX
+	$(PYTEST) -m "seconds or slow or peers" $(sort $(call marked,slow) $(call marked,peers) $(listed)) $(ARGS)
 
 test-all: setup ## run all tests, also the long ones that CI leaves out
 	$(PYTEST) -m "long or not long" $(ARGS)

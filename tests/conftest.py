@@ -27,6 +27,7 @@ from pinbase.platform import portable
 from pinstress import load_study
 from pinstress.study.model.mechanism.linkage import linkage
 from pinstress.study.reading.file import Study
+from tests import seconds
 from tests.support.programs.command_line import pinstress
 from tests.support.programs.once import Shipped, once
 from tests.support.programs.process_group import children
@@ -48,12 +49,17 @@ settings.register_profile("no clock", deadline=None)
 settings.load_profile("no clock")
 
 
+@pytest.hookimpl(tryfirst=True)  # before tests are left out by marks
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Tests that need other programs and long ones are left out unless `-m` names them, and those
-    of what Linux alone has under PINSTRESS_PORTABLE=1.
+    of what Linux alone has under PINSTRESS_PORTABLE=1. Listed ones have the mark `seconds`.
 
     Here and not in addopts, where any other `-m` would bring them back.
     """
+    listed = seconds.functions()
+    for item in items:
+        if item.nodeid.partition("[")[0] in listed:
+            item.add_marker(pytest.mark.seconds)
     without = ["long", "peers", "browser", *(["linux"] if portable() else [])]
     for mark in without:
         if mark in config.getoption("markexpr"):
