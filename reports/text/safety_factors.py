@@ -134,5 +134,5 @@ def _margins(results: Results) -> list[str]:
     sign = "+" if (m.margin or 0.0) > 0.0 else ""
     negative = sum(1 for x in checks if x.used > 1.0)
     some = f"; {negative} negative" if negative > 1 else ""
-    check = f"{worst.pin} at {m.level} load: {m.method}"
-    return [f"least margin {sign}{engineering(m.margin, 3)} ({check}){some}."]
+    at = f"{worst.pin} at {m.level}"
+    return [f"least margin {sign}{engineering(m.margin, 3)} ({at}){some}."]
