@@ -180,7 +180,7 @@ def _refusal(pin: PinLike, shares: tuple[float, ...], carried: Carried) -> tuple
 
 
 def _structure(pin: PinLike) -> str:
-    """How to let a structure hold a pin: by the segments that have names and bear no link."""
+    """The advice to let a structure hold a pin, by its named segments on which no link bears."""
     segments = () if pin.profile is None else pin.profile.segments
     idle = [s.name for s in segments if s.name and s.name not in pin.connections]
     lugs = ", ".join(f"pin.{pin.name}.lug.{name}" for name in idle)
