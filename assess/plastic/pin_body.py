@@ -12,6 +12,7 @@ where both apply.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,10 +30,12 @@ from fea.solid.nodal_loads import components
 from geometry import Pin
 from geometry.mesh.hexahedra import HexMesh, HexSize, hexahedra
 from pinbase.arrays import Floats, Ints
+from pinbase.grouped import grouped
 
 OUT_OF_PLANE_TOLERANCE = 1e-6  # of the largest load of its kind: less out of the plane is zero
 
 Acting = tuple[tuple[UnitLoad, int, float], ...]  # unit loads with their phase and amount
+Acted = tuple[float, Traction, int, int]  # the amount of a traction, it, its harmonic and phase
 
 
 @dataclass(frozen=True)
@@ -223,28 +226,27 @@ def nodal_forces(
     pin: Pin, rule: FlowRule, mesh: HexMesh, elements: Elements, acting: Acting
 ) -> Floats:
     """Nodal forces (N, 3), N, of all loads."""
-    out = np.zeros_like(mesh.nodes)
-    on_bands: dict[str, list[tuple[float, Traction, int, int]]] = {}
+    out = _traction_forces(
+        pin,
+        mesh,
+        ((amount, t, load.n, p) for load, p, amount in acting for t in tractions_of(pin, load)),
+    )
     for load, phase, amount in acting:
         if load.kind == "body":
             out += amount * _body_force(rule, elements, phase if load.n else 2)
-        for t in tractions_of(pin, load):
-            on_bands.setdefault(t.surface, []).append((amount, t, load.n, phase))
-    for name, tractions in on_bands.items():  # in contact, thousands on a few bands
-        _push(out, pin, mesh, name, tractions)
     return out
 
 
-def _push(
-    out: Floats,
-    pin: Pin,
-    mesh: HexMesh,
-    name: str,
-    tractions: list[tuple[float, Traction, int, int]],
-) -> None:
-    """Add the forces of tractions on a band, each an amount, a traction, its harmonic and phase, to
-    those (N, 3), N, of all nodes.
-    """
+def _traction_forces(pin: Pin, mesh: HexMesh, tractions: Iterable[Acted]) -> Floats:
+    """Nodal forces (N, 3), N, of tractions; in contact there are thousands on a few bands."""
+    out = np.zeros_like(mesh.nodes)
+    for name, of_band in grouped((x[1].surface, x) for x in tractions).items():
+        _push(out, pin, mesh, name, of_band)
+    return out
+
+
+def _push(out: Floats, pin: Pin, mesh: HexMesh, name: str, tractions: list[Acted]) -> None:
+    """Add the forces of tractions on a band to those (N, 3), N, of all nodes."""
     nodes = mesh.elements[_on(pin, mesh, name)][:, _OUTER_FACE_NODES]
     g, weight = _gauss(3)
     # Quadrature on the outer faces of the cells: their shape functions, tangents and areas there.
@@ -297,12 +299,11 @@ def _balanced(pin: Pin, mesh: HexMesh, ties: Ties, force: Floats) -> tuple[Float
     possible = np.abs(whole @ free - modes).max(axis=0) < 1e-9
     free = free[:, possible]
     # Closing tractions whose amounts cancel the resultant in each of these motions.
-    closing = []
-    for n, phase in ((1, 0), (1, 1), (0, 0), (0, 1)):
-        for everywhere in closing_tractions(pin, n, phase):
-            closing.append(np.zeros_like(mesh.nodes))
-            for t in everywhere:
-                _push(closing[-1], pin, mesh, t.surface, [(1.0, t, n, phase)])
+    closing = [
+        _traction_forces(pin, mesh, ((1.0, t, n, phase) for t in everywhere))
+        for n, phase in ((1, 0), (1, 1), (0, 0), (0, 1))
+        for everywhere in closing_tractions(pin, n, phase)
+    ]
     columns = whole.T @ np.stack([np.ravel(c) for c in closing], axis=1)
     columns /= np.linalg.norm(columns, axis=0)[None]
     unbalanced = free.T @ (whole.T @ force.ravel())

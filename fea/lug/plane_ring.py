@@ -40,8 +40,8 @@ def ring_fields(inner: float, outer: float, material: Material, highest: int) ->
     r = (0.5 * (inner + outer) + half * x)[:, None]
     P, dP = _legendre(x)
     e_r = _both(dP / half, np.zeros_like(P))
-    e_t = _both(P / r + 0.0 * n, n * P / r)
-    g = _both(-n * P / r, dP / half - P / r + 0.0 * n)
+    e_t = _both(P / r, n * P / r)
+    g = _both(-n * P / r, dP / half - P / r)
     weight = E * half * w[:, None] * r
     K = _product(e_r, e_r, weight) + _product(e_t, e_t, weight)
     K = K + nu * (_product(e_r, e_t, weight) + _product(e_t, e_r, weight))
@@ -51,13 +51,13 @@ def ring_fields(inner: float, outer: float, material: Material, highest: int) ->
     radii = np.array([[inner], [outer]])
     # pinv: the rigid motion of n = 1, and the twist of n = 0, move nothing
     u = np.linalg.pinv(K, rcond=1e-13, hermitian=True) @ (away * radii).T
-    stretch = _both(ends + 0.0 * n, n * ends) @ u / radii
+    stretch = _both(ends, n * ends) @ u / radii
     return RingFields(np.asarray(away @ u), np.asarray(E * stretch - nu * np.eye(2)))
 
 
 def _both(U: Floats, V: Floats) -> Floats:
     """The parts of the coefficients of U and V beside each other."""
-    return np.concatenate([U, V], axis=-1)
+    return np.concatenate(np.broadcast_arrays(U, V), axis=-1)
 
 
 def _product(a: Floats, b: Floats, weight: Floats) -> Floats:

@@ -4,10 +4,9 @@ model there is of the lugs; and how a case without a solution is called.
 
 from __future__ import annotations
 
-from fea.core.equilibrium import out_of_balance
 from fea.core.linear_solver import SolveError
 from fea.core.peak import Maximum
-from fea.support.lugs.fit import carried
+from fea.support.lugs.fit import balance_in_lugs
 from fea.support.support import PinProblem
 
 # Codes of errors by which a model says that its lugs do not react the loads.
@@ -18,8 +17,7 @@ def unheld(problem: PinProblem, model: str) -> dict[str, Maximum]:
     """The results by case of the cases that the lugs cannot hold: `rigid`, without numbers."""
     pin, out = problem.pin, dict[str, Maximum]()
     for case in problem.cases:
-        reacted = carried(pin, problem.lugs, case.tilting_links(pin.length))
-        of = out_of_balance(pin, case, problem.material.density, reacted)
+        of = balance_in_lugs(pin, problem.lugs, case, problem.material.density)
         if of.refusal:
             out[case.case] = Maximum(
                 pin.name, case.case, model, "rigid", of.refusal, reasons=(of.code,)

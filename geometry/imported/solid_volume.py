@@ -54,21 +54,23 @@ def _curved_triangles(gmsh: Any, face: int) -> Floats:
     """The nodes (E, 6, 3) of a meshed face's triangles, those in the middles of edges on the face,
     or on its boundary.
     """
-    mesh, both = gmsh.model.mesh, (2, face)
-    _, _, (nodes,) = mesh.getElements(*both)
-    corners, (tags, x, _) = np.reshape(nodes, (-1, 3)), _nodes(mesh, both)
+    mesh = gmsh.model.mesh
+    tags, x, on_face = _nodes(mesh, (2, face))
+    _, _, (nodes,) = mesh.getElements(2, face)
+    corners = np.searchsorted(tags, np.reshape(nodes, (-1, 3)))
     sides = np.sort(corners[:, EDGES].reshape(-1, 2), axis=1)
     edges, of_side = np.unique(sides, axis=0, return_inverse=True)
-    middles = _middles(gmsh, both, edges)
-    index = {(a, b): k for k, (a, b) in enumerate(edges.tolist())}
-    for _, curve in gmsh.model.getBoundary([both], combined=False, oriented=False):
+    middles = _middles(gmsh, (2, face), x[edges], on_face[edges])
+    index = {(a, b): k for k, (a, b) in enumerate(tags[edges].tolist())}
+    for _, curve in gmsh.model.getBoundary([(2, face)], combined=False, oriented=False):
         _, _, ends = mesh.getElements(1, curve)
         for pairs in ends:  # none of a curve without length, as at a pole
-            on_curve = np.sort(np.reshape(pairs, (-1, 2)), axis=1)
-            at = [index[a, b] for a, b in on_curve.tolist()]
-            middles[at] = _middles(gmsh, (1, curve), on_curve)
-    in_corners = x[np.searchsorted(tags, corners)]
-    return np.concatenate([in_corners, middles[of_side].reshape(-1, 3, 3)], axis=1)
+            on_it, x_of_it, along = _nodes(mesh, (1, curve))
+            parts = np.sort(np.reshape(pairs, (-1, 2)), axis=1)
+            at = [index[a, b] for a, b in parts.tolist()]
+            parts = np.searchsorted(on_it, parts)
+            middles[at] = _middles(gmsh, (1, curve), x_of_it[parts], along[parts])
+    return np.concatenate([x[corners], middles[of_side].reshape(-1, 3, 3)], axis=1)
 
 
 def _nodes(mesh: Any, entity: tuple[int, int]) -> tuple[Ints, Floats, Floats]:
@@ -80,15 +82,13 @@ def _nodes(mesh: Any, entity: tuple[int, int]) -> tuple[Ints, Floats, Floats]:
     return tags, np.reshape(x, (-1, 3))[first], np.reshape(on_it, (-1, entity[0]))[first]
 
 
-def _middles(gmsh: Any, entity: tuple[int, int], edges: Ints) -> Floats:
-    """The points (E, 3) of a curve or a face that are nearest to the middles of edges, by the tags
-    (E, 2) of their nodes.
+def _middles(gmsh: Any, entity: tuple[int, int], ends: Floats, on_it: Floats) -> Floats:
+    """The points (E, 3) of a curve or a face that are nearest to the middles of edges, by their
+    ends (E, 2, 3) and the coordinates of these on it.
     """
     model = gmsh.model
-    tags, x, on_it = _nodes(model.mesh, entity)
-    ends = np.searchsorted(tags, edges)
-    chord, at = x[ends].mean(axis=1), on_it[ends].mean(axis=1)
-    length = np.linalg.norm(np.subtract(*x[ends.T]), axis=1)
+    chord, at = ends.mean(axis=1), on_it.mean(axis=1)
+    length = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
     # The mean of the ends' coordinates is not in the middle of the arc: one step of Newton's method
     # from there, by equations that are not singular at poles either.
     tangents = np.reshape(model.getDerivative(*entity, at.ravel()), (len(at), -1, 3))

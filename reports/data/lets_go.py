@@ -208,8 +208,7 @@ def _of_margins(row: PinResult) -> Iterator[tuple[LettingGo, bool]]:
         if factor is None or by_model or not m.governs or without_load:
             continue
         if m.omits_cuts:  # where it lets go earlier
-            step = LettingGo(m.method, m.at, _effect(m), required=m.factor, needs=CUTS_NEEDED)
-            yield replace(step, clause=m.clause), False
+            yield _unknown(m, CUTS_NEEDED), False
             continue
         high = None
         if m.kind == "collapse" and row.limit_load and m.dimension == "1":
@@ -220,6 +219,11 @@ def _of_margins(row: PinResult) -> Iterator[tuple[LettingGo, bool]]:
         ends = factor, factor if high else None, high
         step = LettingGo(m.method, m.at, _effect(m), *ends, m.factor, clause=m.clause)
         yield step, m.kind == "model" or m.basis.startswith(JOINT_MODEL_BASIS)
+
+
+def _unknown(m: Margin, needs: str) -> LettingGo:
+    """Return a check without a load factor, with what that needs."""
+    return LettingGo(m.method, m.at, _effect(m), required=m.factor, clause=m.clause, needs=needs)
 
 
 def _effect(m: Margin) -> str:
@@ -234,9 +238,7 @@ def _not_computed(row: PinResult, joint: _Joint) -> Iterator[LettingGo]:
     """Yield what has no load factor, with what it needs."""
     for m in row.worst:
         if m.needs and m.governs:
-            yield LettingGo(
-                m.method, m.at, _effect(m), required=m.factor, clause=m.clause, needs=m.needs
-            )
+            yield _unknown(m, m.needs)
     if row.limit_load is None and row.yield_strength:
         yield LettingGo("limit load of the pin", "", COLLAPSES, needs=LIMIT_LOAD_NEED)
     if joint.solved and not row.lug_collapses:

@@ -13,9 +13,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from fea.core.equilibrium import Carried
+from fea.core.equilibrium import Balance, Carried, out_of_balance
 from fea.core.material import Material
-from fea.core.pin_loads import Floats
+from fea.core.pin_loads import Floats, PinLoads
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, Band, Pin, PinLike
 
@@ -40,14 +40,17 @@ def on_structure(pin: Pin, lugs: Sequence[Lug]) -> Pin:
     return replace(pin, segments=segments)
 
 
-def carried(pin: PinLike, lugs: Sequence[Lug], tilting: Sequence[str] = ()) -> Carried:
-    """The part of the links' imbalance that the lugs of a pin carry.
-
-    tilting: links that state their moments across the axis, so that their lugs react none.
-    """
+def balance_in_lugs(
+    pin: PinLike, lugs: Sequence[Lug], case: PinLoads, density: float | None
+) -> Balance:
+    """The balance of a case's loads on an unclamped pin, less what its lugs carry."""
+    tilting = case.tilting_links(pin.length)  # whose lugs react no moment across the axis
     structure = sum(lug.connection not in pin.connections for lug in lugs)
     tilts = any(lug.tilt > 0.0 and lug.connection not in tilting for lug in lugs)
-    return Carried(structure > 0, tilts or structure > 1, structure > 0, bool(lugs), bool(tilting))
+    carried = Carried(
+        structure > 0, tilts or structure > 1, structure > 0, bool(lugs), bool(tilting)
+    )
+    return out_of_balance(pin, case, density, carried)
 
 
 def fitted(

@@ -24,8 +24,9 @@ from assess.margin import (
 from assess.plastic.records import LimitLoad, LugCollapse
 from assess.situation import LoadFactors, Situation, SolvedRow, with_solved, with_supports
 from assess.strength.bending_arms import BendingArms, bending_arms
-from assess.strength.hand_checks import BEARING_METHODS, BENDING_TEXTS
+from assess.strength.hand_checks import BEARING_METHODS, BENDING_METHODS
 from assess.strength.model_stress import YIELD_METHOD
+from assess.strength.plastic_bending import PLASTIC_METHOD
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.support.lugs.fit import on_structure
@@ -43,7 +44,7 @@ FORMULA_KINDS = "hand", "clause"
 # What checks by formula take as the yield strength of a pin with a hardened surface.
 WEAKEST_BASIS = "with the lower end of the range of the yield strength"
 CORE_BASIS, CASED_BASIS = "with the core's yield strength", "with the strengths of case and core"
-CASED_METHODS = {"plastic bending and shear", *(method for method, _ in BENDING_TEXTS.values())}
+CASED_METHODS = BENDING_METHODS | {PLASTIC_METHOD}
 FORCE_OF_CLAMP = (
     "the force that a clamp takes, which contact with the lug instead of the clamp gives"
 )

@@ -35,7 +35,7 @@ from pinstress.study.reading.file import Study
 from reports.data.decision import low_factor
 
 MAX_ROUNDS = 5
-CONSTANT = 1e-12  # of a value: one that changes by less does not change
+UNCHANGED_SHARE = 1e-12  # of a value: one that changes by less does not change
 MAX_FACTOR_EXCESS = 2.0 * FACTOR_TOLERANCE  # over the factor, with which a search ends
 
 Row = tuple[str, str]  # pin and case
@@ -100,7 +100,7 @@ def factor_at(designs: SolvedDesigns, row: int, probability: float, close: Close
         at = np.zeros(size)
         around = float(ndtri(probability)) * np.eye(size)
         values = unused(np.concatenate([at[None, :], around, -around]))
-        if not np.ptp(values) <= CONSTANT * abs(values[0]):
+        if not np.ptp(values) <= UNCHANGED_SHARE * abs(values[0]):
             return np.nan
     answers = designs.at(at[None, :], "FORM")
     return np.nan if answers.unbounded[0, row] else float(answers.factors[0, row])

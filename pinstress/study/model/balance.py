@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from fea.core.equilibrium import Balance, balancing_forces, out_of_balance
+from fea.core.equilibrium import Balance, balancing_forces
 from fea.core.pin_loads import PinLoads
-from fea.support.lugs.fit import carried
+from fea.support.lugs.fit import balance_in_lugs
 from geometry import ArgumentError, GeometryError, PinLike
 from loads import TableError
 from pinstress.study.model.cases import CaseLoads
@@ -95,11 +95,8 @@ def _quietly(warnings: Callable[[], list[str]]) -> list[str]:
 def _balances(study: Study, task: Task) -> list[tuple[PinLoads, Balance]]:
     if task.clamps:
         return []
-    density, out = task.material.density, []
-    for case in task.loads:
-        held = carried(task.pin, task.lugs, case.tilting_links(task.pin.length))
-        out.append((case, out_of_balance(task.pin, case, density, held)))
-    return out
+    density = task.material.density
+    return [(case, balance_in_lugs(task.pin, task.lugs, case, density)) for case in task.loads]
 
 
 def _shared(study: Study, task: Task, case: PinLoads, balance: Balance) -> str:
