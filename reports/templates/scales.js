@@ -17,6 +17,14 @@ const written = (value, digits = 4) => {
 };
 const short = (value, digits = 6) => written(value, digits).replace(/(\.\d*?)0+(?=×|$)/, "$1").replace(/\.(?=×|$)/, "");
 
+// Ticks as text, with the digits by which they differ.
+const tickLabels = (ticks) => {
+  for (let digits = 4; ; digits++) {
+    const labels = ticks.map((t) => short(t, digits));
+    if (digits >= 12 || new Set(labels).size === ticks.length) return labels;
+  }
+};
+
 // Round numbers between two; on a scale of decades 1, 2 and 5 times powers of ten.
 const roundTicks = (low, high, count = 5) => {
   const rough = (high - low) / count, power = 10 ** Math.floor(Math.log10(rough));

@@ -371,3 +371,11 @@ def test_odd_tables_are_shown(browser: Any, name: str, tmp_path: Path) -> None:
     )
     assert errors(page) == []
     assert page.title == f"{EVIL if name == 'hostile' else 'made up'}: designs"
+
+
+def test_ticks_close_together_have_different_labels(page: Any) -> None:
+    """A mass within a thousandth had 0.3011 three times."""
+    at = "const s = scaleOf({ key: 'mass' }, [0.30095, 0.30118], null);"
+    labels = page.execute_script(f"{at} return s.ticks.map(([, text]) => text);")
+    assert len(set(labels)) == len(labels) > 2
+    assert all(len(label) <= len("0.30105") for label in labels)

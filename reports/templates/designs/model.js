@@ -85,7 +85,8 @@ const scaleOf = (column, values, required) => {
   const at = (v) => 0.02 + (0.96 * (f(v) - a)) / (b - a);
   const decades = log ? decadeTicks(low, high) : [];
   const ticks = constant ? [0.5 * (low + high)] : decades.length > 1 ? decades : roundTicks(low, high);
-  return { log, positive, low, high, at, back: (p) => g(a + ((p - 0.02) / 0.96) * (b - a)), ticks: ticks.map((t) => [at(t), short(t, 4)]) };
+  const labels = tickLabels(ticks);
+  return { log, positive, low, high, at, back: (p) => g(a + ((p - 0.02) / 0.96) * (b - a)), ticks: ticks.map((t, k) => [at(t), labels[k]]) };
 };
 
 // Which designs are in all ranges (columns to [low, high]) and have a wanted verdict.
