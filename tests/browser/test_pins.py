@@ -156,13 +156,25 @@ def test_axe_finds_nothing_on_a_phone(page: Any) -> None:
         assert faults(page) == []
 
 
-def test_axe_finds_nothing_in_the_documentation(browser: Any, tmp_path: Path) -> None:
+@pytest.mark.parametrize("shade", ["light", "dark"])
+def test_axe_finds_nothing_in_the_documentation(browser: Any, tmp_path: Path, shade: str) -> None:
     """On a page like ours: with contents, code that is too wide, and captions."""
     build_docs(tmp_path, f"One\n===\n\n::\n\n   {'word ' * 60}\n\nPart\n----\n\ntext\n")
     for name in ("index.html", "one.html"):
         browser.get((tmp_path / "out" / name).as_uri())
-        with screen(browser, 1400):
+        with screen(browser, 1400, shade=shade):
             assert faults(browser) == []
+
+
+@pytest.mark.parametrize("shade", ["light", "dark"])
+def test_axe_finds_nothing_on_a_page_of_loads(
+    browser: Any, shipped_loads: Path, shade: str
+) -> None:
+    """With all parts unfolded, and its animation."""
+    opened(browser, shipped_loads)
+    with screen(browser, 1400, shade=shade):
+        unfold(browser)
+        assert faults(browser) == []
 
 
 def test_a_page_of_loads_shows_its_motion_first(browser: Any, shipped_loads: Path) -> None:
