@@ -49,6 +49,10 @@ def init(directory: Path, opens: bool) -> int:
     from reports.data.changes import as_argument
 
     target, *_ = targets = [directory / name for name in NEW_STUDIES]
+    if directory.suffix == ".toml":  # somebody takes it for the study's name
+        raise InputError(
+            f"{directory}: name a folder; the studies are called {' and '.join(NEW_STUDIES)}"
+        )
     try:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -109,6 +109,14 @@ def test_init_writes_studies_and_does_not_overwrite_them(tmp_path: Path) -> None
     assert "exists already" in again.stderr
 
 
+def test_init_takes_no_name_of_a_study_for_a_folder(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run_command_line(["init", str(tmp_path / "mine.toml")]) == 2
+    assert "name a folder; the studies are called pin_in_lugs.toml" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.parametrize("folder", ["my trial", "ä's", "-new"])
 def test_a_shell_takes_the_command_that_init_prints(folder: str, tmp_path: Path) -> None:
     (line,) = run_here("init", "--", folder, cwd=tmp_path).stderr.splitlines()
