@@ -31,10 +31,10 @@ from reports.tables.strength.overview import (
 from reports.text.certainty import (
     accuracy,
     certainty,
+    excess_stress,
     flips_words,
     given_words,
     measure_first,
-    needed_error,
     range_words,
     skipped_checks,
 )
@@ -163,7 +163,7 @@ def _about(results: Results, pins: Sequence[str]) -> str:
 
 def _accurate(lines: Sequence[PinLine], results: Results) -> list[str]:
     told = [f"Error of the maxima {text}" for text in accuracy(lines, results)]
-    told += needed_error(lines, "one") if told else needed_error(lines)
+    told += excess_stress(lines)
     return [" ".join(told)] if told else []
 
 

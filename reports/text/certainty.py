@@ -24,6 +24,7 @@ MEASURED = {
     "links": "stiffness of the links",
     "strength": "yield strength",
 }
+MIN_TIMES = 1.5  # below it a percentage says more
 Content = list[str]
 
 
@@ -53,19 +54,19 @@ def _largest_error(rows: Sequence[PinResult]) -> float | None:
     )
 
 
-def needed_error(lines: Sequence[PinLine], noun: str = "an error") -> Content:
-    """Return a sentence on the error with which the failing pin nearest to its factor would pass;
-    nothing where none fails.
-
-    noun: for the error, "one" after a sentence on errors.
+def excess_stress(lines: Sequence[PinLine]) -> Content:
+    """Return a sentence on the stress of the failing pin nearest to its factor, to be compared with
+    the errors; nothing where none fails.
     """
     rows = _failing(lines)
     if not rows:
         return []
     nearest = max(rows, key=lambda r: r.safety_factor or 0.0)
-    needed = (nearest.required or 1.0) / (nearest.safety_factor or 1.0) - 1.0
-    which = f"{'even ' * (len(rows) > 1)}{nearest.pin}"
-    return [f"To pass, {which} would need {noun} of {engineering(100.0 * needed, 2)} %."]
+    ratio = (nearest.required or 1.0) / (nearest.safety_factor or 1.0)
+    stress = f"{'Even ' * (len(rows) > 1)}{nearest.pin} has"
+    if ratio >= MIN_TIMES:
+        return [f"{stress} {engineering(ratio, 2)} times the permitted stress."]
+    return [f"{stress} {engineering(100.0 * (ratio - 1.0), 2)} % more than the permitted stress."]
 
 
 def certainty(lines: Sequence[PinLine]) -> Content:

@@ -25,7 +25,7 @@ MAX_NAMED_CASES = 4
 ROUND_OFF = 1e-9
 STRONGER = 3.0  # times the strength, which no other steel has
 ESTIMATES_TEXT = (
-    "Diameters are estimates: for five pins 0.9 to 1.1 times those that the command found."
+    "Diameters are estimates: of five pins tried, 0.9 to 1.1 times what pinstress size found."
 )
 
 
@@ -204,7 +204,7 @@ def _peaks(results: Results, lines: Sequence[PinLine], shapes: dict[str, PinShap
     if single:
         return f"{told[0]}."
     end = f"; {limits[0].replace(' ', ' is ', 1)}" if common and limits[0] else ""
-    return f"Largest stress [{unit}]: {', '.join(told)}{end}."
+    return f"Largest von Mises stress [{unit}]: {', '.join(told)}{end}."
 
 
 def _permitted(row: PinResult) -> str:
@@ -274,7 +274,7 @@ def _other_ways(results: Results, article: str) -> Content:
     # The strength counts errors, and the stress beneath contact, which the factor leaves out.
     contact = row.maximum.places.contact if row.maximum.places else None
     if contact and worst.yield_strength <= (1.0 + ROUND_OFF) * worst.required * contact.upper_end:
-        strength += " beneath its lugs, with the error"
+        strength += " beneath its lugs, error included"
     parts = []
     if worst.yield_strength > STRONGER * given:
         parts.append(f"No stronger material: {worst.pin} needs a yield strength of {strength}.")
@@ -284,7 +284,7 @@ def _other_ways(results: Results, article: str) -> Content:
         needed, unit = engineering(worst.impulse_time, 3), results.units.time
         longest = float(row.landing.impulse_time.max()) if row.landing else worst.impulse_time
         parts.append(
-            f"Nor a longer impulse: {worst.pin} needs {needed} of at most {short(longest)} {unit}."
+            f"Nor an impulse of at most {short(longest)} {unit}: {worst.pin} needs {needed} {unit}."
             if longest < worst.impulse_time
             else f"Or an impulse time of {needed} instead of {short(worst.given_time)} {unit} for "
             f"{worst.pin}."

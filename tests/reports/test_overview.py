@@ -104,11 +104,11 @@ def test_the_largest_stress_of_each_material_is_beside_what_that_permits(few: Re
     hard = with_values(few.pins[1], safety_factor=1.2, max_von_mises=750.0)
     alike = replace(few, pins=(soft, with_values(soft, pin="B")))
     assert why(alike, pin_lines(alike), 5, places=False)[-1] == (
-        "Largest stress [psi]: A 250, B 250; 200 is permitted."
+        "Largest von Mises stress [psi]: A 250, B 250; 200 is permitted."
     )
     different = replace(few, pins=(soft, hard))
     assert why(different, pin_lines(different), 5, places=False)[-1] == (
-        "Largest stress [psi]: A 250 of 200 permitted, B 750 of 600 permitted."
+        "Largest von Mises stress [psi]: A 250 of 200 permitted, B 750 of 600 permitted."
     )
 
 

@@ -22,10 +22,10 @@ from reports.data.unknowns import factor_spread, open_values, unknowns
 from reports.format.words import over_words
 from reports.text.certainty import (
     certainty,
+    excess_stress,
     flips,
     flips_words,
     measure_first,
-    needed_error,
     range_words,
 )
 from tests.silent.test_outcomes import landing
@@ -84,8 +84,11 @@ def test_pins_whose_ranges_straddle_the_requirement_are_told_apart(results: Resu
         "A fails at all open values; B fails as described and is safe at some; C is safe as "
         "described and fails at some."
     ]
-    assert needed_error(lines) == ["To pass, even B would need an error of 25 %."]
-    assert needed_error([x for x in lines if x.outcome == SAFE]) == []
+    assert excess_stress(lines) == ["Even B has 25 % more than the permitted stress."]
+    assert excess_stress([x for x in lines if x.pin == "A"]) == [
+        "A has 1.5 times the permitted stress."
+    ]
+    assert excess_stress([x for x in lines if x.outcome == SAFE]) == []
 
 
 def test_a_pin_that_fails_may_be_safe_only_with_both() -> None:
