@@ -39,13 +39,17 @@ def shape_gradient(space: Section, D: Floats, n: int, u: Floats, adjoint: Floats
     out = np.zeros((len(space.nodes), 2))
     for here, gradients, weights, (G, L) in _parts(space, (u, adjoint)):
         P, Q = (_conjugate(D, here, n, x) for x in (G, L))
-        both = np.einsum("mqca,mqcb->mqab", L, P) + np.einsum("mqca,mqcb->mqab", G, Q)
-        work = np.einsum("mqca,mqca->mq", L, P)
-        of = work[..., None] - np.stack([both[..., a, a] for a in range(3)], axis=-1)
-        W = -both[..., :2, :2]
-        W[..., 0, 0], W[..., 1, 1] = of[..., 0], of[..., 1]
-        rate = np.einsum("mq,mqab,mqbi->mia", weights, W, gradients[:, :, :2])
-        rate[..., 0] += np.einsum("mq,mq,mqi->mi", weights, of[..., 2], gradients[:, :, 2])
+        both = L.swapaxes(-1, -2) @ P + G.swapaxes(-1, -2) @ Q  # over a and b, at every point
+        density = (L * P).sum(axis=(-2, -1))
+        # W_ab in row b and column a, w in the last row: V_r / r belongs to V_r alone.
+        W = np.zeros_like(both[..., :2])
+        W[..., :2, :2] = -both[..., :2, :2].swapaxes(-1, -2)
+        for a in range(2):
+            W[..., a, a] += density
+        W[..., 2, 0] = density - both[..., 2, 2]
+        W *= weights[..., None, None]
+        count, points = weights.shape
+        rate = gradients.reshape(count, 3 * points, -1).swapaxes(1, 2) @ W.reshape(count, -1, 2)
         nodes = space.elements[here]
         for a in range(2):
             out[:, a] += np.bincount(nodes.ravel(), rate[..., a].ravel(), len(out))
@@ -68,8 +72,12 @@ def _parts(
     at_nodes = [x.reshape(-1, 3)[space.elements] for x in unknowns]
     for k in range(0, len(weights), ELEMENT_BATCH):
         here = slice(k, k + ELEMENT_BATCH)
-        G = [np.einsum("mqai,mic->mqca", gradients[here], x[here]) for x in at_nodes]
-        yield here, gradients[here], weights[here], G
+        one = gradients[here]
+        flat = one.reshape(
+            len(one), -1, one.shape[-1]
+        )  # points and a in one: a product per element
+        G = [(flat @ x[here]).reshape(*one.shape[:3], 3).swapaxes(-1, -2) for x in at_nodes]
+        yield here, one, weights[here], G
 
 
 def _conjugate(D: Floats, here: slice, n: int, G: Floats) -> Floats:

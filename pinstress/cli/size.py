@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,7 +12,7 @@ import click
 from pinbase.grouped import grouped
 from pinbase.processes.pool import preload, processes
 from pinstress.analysis.gather.gather import units_of
-from pinstress.analysis.plan import prepare
+from pinstress.analysis.plan import Plan, prepare
 from pinstress.cli.new_file import require_new
 from pinstress.cli.run import RUN_LIBRARIES, RUN_MODELS, console, progress_bar
 from pinstress.cli.shared import connected, resumable
@@ -64,22 +65,10 @@ def size_and_write(study: Study, goal: SizingGoal, options: SizeOptions) -> int:
     """
     target = target_of(study, options.out, new=False)
     plan = prepare(study, pins=options.pins)
-    state = SizeState(target, identity(study, goal, {task.pin.name for task in plan.tasks}))
-    if not options.resume and not state.exists:
-        require_new(target, OTHER_FILE_REMEDY)
-    sizing = _Sizing(study, goal, target, state)
-    sizing.start(options.resume)
-    jobs = 1 if options.connection else processes(options.jobs)
-    with resumable(sizing.stop):
-        with (
-            progress_bar(alone=jobs == 1, quiet=options.quiet) as progress,
-            connected(options.connection) as cluster,
-        ):
-            if jobs > 1:
-                preload(*RUN_LIBRARIES, *RUN_MODELS)
-            sized = size_pins(plan, goal, sizing.pins, sizing.finish, jobs, progress, cluster)
-        new = sizing.write(sized)
-    state.end()
+    task_pins = {task.pin.name for task in plan.tasks}
+    with closing(SizeState(target, identity(study, goal, task_pins))) as state:
+        sizing = _Sizing(study, goal, target, state)
+        sized, new = _size(plan, sizing, options)
     rows = [_row(study, new, result) for result in sized]
     with unneeded(target):
         print_sizes(rows, goal.written, units_of(study), console(), sizing.written)
@@ -92,11 +81,34 @@ def size_and_write(study: Study, goal: SizingGoal, options: SizeOptions) -> int:
     return int(bool(missed))
 
 
+def _size(plan: Plan, sizing: _Sizing, options: SizeOptions) -> tuple[list[SizingResult], Study]:
+    """Return the sizes of the pins, and the new study that is written.
+
+    Raises: InputError.
+    """
+    sizing.start(options.resume)
+    jobs = 1 if options.connection else processes(options.jobs)
+    with resumable(sizing.stop):
+        with (
+            progress_bar(alone=jobs == 1, quiet=options.quiet) as progress,
+            connected(options.connection) as cluster,
+        ):
+            if jobs > 1:
+                preload(*RUN_LIBRARIES, *RUN_MODELS)
+            sized = size_pins(
+                plan, sizing.goal, sizing.pins, sizing.finish, jobs, progress, cluster
+            )
+        new = sizing.write(sized)
+    sizing.end()
+    return sized, new
+
+
 class _Sizing:
-    """A size that is going on: finished pins in the new study and in the file of its state."""
+    """A size that is going on: finished pins in the new study and in its state."""
 
     def __init__(self, study: Study, goal: SizingGoal, target: Path, state: SizeState) -> None:
-        self._study, self._goal, self._target, self._state = study, goal, target, state
+        self.goal = goal
+        self._study, self._target, self._state = study, target, state
         self._pins: dict[str, SizingResult] = {}
         self.written = False
 
@@ -110,6 +122,8 @@ class _Sizing:
         Raises: InputError, also where the new study is not the one that was written.
         """
         if not resume:
+            if not self._state.exists:
+                require_new(self._target, OTHER_FILE_REMEDY)
             self._state.begin()
             return
         self._pins = {result.pin: result for result in self._state.read()}
@@ -132,7 +146,7 @@ class _Sizing:
 
     def write(self, sized: list[SizingResult]) -> Study:
         """Write the new study, unless nothing in it is new, and return it."""
-        new = new_study(self._study, self._goal, sized)
+        new = new_study(self._study, self.goal, sized)
         if self.written or (
             any(result.scale is not None for result in sized) and new.text != self._study.text
         ):
@@ -141,6 +155,10 @@ class _Sizing:
             replace_file(self._target, self._text(sized))
             self.written = True
         return new
+
+    def end(self) -> None:
+        """Remove what the new study has, too."""
+        self._state.end()
 
     def stop(self) -> str:
         """Return what is finished, as of `resumable`; where no pin is, nothing is left."""
@@ -151,7 +169,7 @@ class _Sizing:
         return "1 pin is" if count == 1 else f"{count} pins are"
 
     def _text(self, sized: list[SizingResult]) -> bytes:
-        text = new_study(self._study, self._goal, sized).text
+        text = new_study(self._study, self.goal, sized).text
         return moved(text, self._study.path.parent, self._target.parent).encode()
 
 

@@ -40,7 +40,7 @@ def test_it_is_that_of_one_process_also_where_forces_come_from_a_table(tmp_path:
         there = ["size", study, "--out", "there.toml", *cluster.options]
         sized = pinstress(*there, cwd=here)
     assert sized.returncode == 0, sized.stderr
-    alone = run_here("size", study, "--jobs", "1", "--out", "alone.toml", cwd=here)
+    alone = pinstress("size", study, "--jobs", "1", "--out", "alone.toml", cwd=here)
     assert alone.returncode == 0, alone.stderr
     assert (here / "there.toml").read_bytes() == (here / "alone.toml").read_bytes()
     assert sized.stdout == alone.stdout

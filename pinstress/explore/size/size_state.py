@@ -1,4 +1,7 @@
-"""The pins that a size has finished, in a file beside the new study, so that it can be resumed."""
+"""The pins that a size has finished, in a folder beside the new study, so that it can be resumed.
+
+The folder is locked by its writer; the lock is released however the writer ends.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from pinbase.processes.folder_lock import Release, lock
 from pinbase.records import pack, unpack
 from pinstress.analysis.cache import program
 from pinstress.explore.size.size_pin import SizingGoal, SizingResult
@@ -18,6 +22,7 @@ from pinstress.study.reading.file import Study
 from pinstress.study.reading.inputs import inputs
 
 STATE_SUFFIX = ".unfinished"
+PINS_FILE = "pins"  # in the folder
 DAMAGED = (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile)
 
 
@@ -39,7 +44,7 @@ def identity(study: Study, goal: SizingGoal, pins: Iterable[str]) -> str:
 
 
 class SizeState:
-    """The file of a size that has not ended.
+    """The folder of a size that has not ended.
 
     target: the new study.
     identity: of the size.
@@ -47,23 +52,27 @@ class SizeState:
 
     def __init__(self, target: Path, identity: str) -> None:
         self.path = target.with_name(target.name + STATE_SUFFIX)
+        self._pins = self.path / PINS_FILE
         self._target, self._identity = target, identity
+        self._release: Release | None = None
 
     @property
     def exists(self) -> bool:
-        """Whether there is such a file; a name that is too long has none."""
+        """Whether there is such a folder; a name that is too long has none."""
         with suppress(OSError):
             return self.path.exists()
         return False
 
     def begin(self) -> None:
-        """Create the file, without a pin.
+        """Create and lock the folder, without a pin.
 
         Raises: InputError where there is one already, or it cannot be written.
         """
         try:
-            self.path.open("xb").close()
+            self.path.mkdir()
         except FileExistsError:
+            if self.path.is_dir():
+                self._lock()
             raise InputError(
                 f"{self._target} has a size that did not end: resume it with --resume, or delete "
                 f"{self.path.name} and {self._target.name} to start again",
@@ -71,6 +80,7 @@ class SizeState:
             ) from None
         except OSError as error:
             raise cannot_write(self._both, error) from None
+        self._lock()
         try:
             self.write(())
         except InputError:
@@ -78,17 +88,18 @@ class SizeState:
             raise
 
     def read(self) -> tuple[SizingResult, ...]:
-        """Return the finished pins.
+        """Lock the folder and return the finished pins.
 
-        Raises: InputError where there is nothing to resume, or another size.
+        Raises: InputError where there is nothing to resume, another size, or one that is going on.
         """
-        if not self.path.is_file():
+        if not self.exists:
             raise InputError(
                 f"--resume: there is no size of {self._target} to resume; leave out --resume",
                 code="nothing-to-resume",
             )
         try:
-            finished = unpack(FinishedPins, self.path.read_bytes())
+            self._lock()
+            finished = unpack(FinishedPins, self._pins.read_bytes())
         except DAMAGED:
             raise InputError(
                 f"--resume: {self.path} is damaged; delete it and {self._target.name} to start "
@@ -103,21 +114,45 @@ class SizeState:
             )
         return finished.pins
 
+    def _lock(self) -> None:
+        """Lock the folder until `close`.
+
+        Raises: InputError while another size is writing, OSError.
+        """
+        if self._release is not None:
+            return
+        try:
+            self._release = lock(self.path)
+        except BlockingIOError:
+            raise InputError(
+                f"another size is writing {self._target}; wait for it or choose another file with "
+                "--out",
+                code="locked",
+            ) from None
+
     def write(self, pins: tuple[SizingResult, ...]) -> None:
         """Replace the finished pins; the file is complete at any time.
 
         Raises: InputError where it cannot be written.
         """
-        replace_file(self.path, pack(FinishedPins(self._identity, pins)), self._both)
+        replace_file(self._pins, pack(FinishedPins(self._identity, pins)), self._both)
 
     @property
     def _both(self) -> str:
-        """The user's file and this one, for messages: nobody has named this one."""
+        """The user's file and the folder, for messages: nobody has named the folder."""
         return f"{self._target}, and {self.path.name} while its pins are sized"
 
     def end(self) -> None:
-        """Remove the file."""
-        self.path.unlink(missing_ok=True)
+        """Remove the folder."""
+        self._pins.unlink(missing_ok=True)
+        with suppress(FileNotFoundError):
+            self.path.rmdir()
+
+    def close(self) -> None:
+        """Release the folder."""
+        if self._release is not None:
+            self._release()
+            self._release = None
 
 
 def replace_file(path: Path, content: bytes, name: str = "") -> None:

@@ -17,7 +17,7 @@ from pinstress.explore.size import size_pins as module
 from pinstress.explore.size.scaled_study import resized_study
 from pinstress.explore.size.size_pin import MAX_FULL, SizingGoal, SizingResult, size_pin
 from pinstress.explore.size.size_pins import changes_of_load, loaded_more
-from pinstress.explore.size.size_state import FinishedPins, SizeState
+from pinstress.explore.size.size_state import PINS_FILE, FinishedPins, SizeState
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import load_study
 from reports.data.decision import factor_ends
@@ -107,25 +107,25 @@ def test_what_cannot_be_resumed_is_told(tmp_path: Path) -> None:
     assert "--resume is not for --least-weight" in lightest.stderr
     state = SizeState(tmp_path / "study_sized.toml", "another")
     state.begin()
+    for option in ([], ["--resume"]):
+        busy = run_here("size", "study.toml", *option, cwd=tmp_path)
+        assert busy.returncode == 2
+        assert "another size is writing study_sized.toml; wait for it" in busy.stderr
+    state.close()
     other = run_here("size", "study.toml", "--resume", cwd=tmp_path)
     assert other.returncode == 2
     assert "is of another study, factor, step or pins" in other.stderr
-    state.path.write_bytes(b"damaged")
+    (state.path / PINS_FILE).write_bytes(b"damaged")
     damaged = run_here("size", "study.toml", "--resume", cwd=tmp_path)
     assert damaged.returncode == 2
     assert "is damaged" in damaged.stderr
     assert not (tmp_path / "study_sized.toml").exists()
 
 
-@pytest.mark.parametrize("length", [250, 238])
-def test_a_file_that_cannot_be_written_is_named_as_it_was_given(
-    tmp_path: Path, length: int
-) -> None:
-    """Names have 255 bytes: the first leaves too few for the file of finished pins, the second for
-    that in which it is written. Both ended with a traceback.
-    """
+def test_a_file_that_cannot_be_written_is_named_as_it_was_given(tmp_path: Path) -> None:
+    """Names have 255 bytes, which leaves too few for the folder of finished pins."""
     (tmp_path / "study.toml").write_text(QUICK)
-    name = "n" * (length - 5) + ".toml"
+    name = "n" * 245 + ".toml"
     made = run_here("size", "study.toml", "--fos", "1.5", "--out", name, cwd=tmp_path)
     assert made.returncode == 2
     assert made.stderr.startswith(f"Error: {name}, and {name}.unfinished while its pins are sized")
