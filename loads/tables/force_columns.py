@@ -230,13 +230,22 @@ def _factor(
 
 
 def _require_components(grid: TableGrid, columns: list[ForceColumn], layout: Layout) -> None:
-    """Raises: TableError unless every force has x and y components, each once."""
+    """Raises: TableError unless every force has x and y components, each of a column of its own."""
     path = grid.source.file
     seen = [(c.connection, c.meaning) for c in columns]
     for key in seen:
         if seen.count(key) > 1:
             raise TableError(
                 f"{path}: column {'.'.join(filter(None, key))!r} occurs twice; keep one",
+                "duplicate-column",
+            )
+    first = dict[tuple[str | None, int], ForceColumn]()
+    for c in columns:
+        other = first.setdefault((c.connection, c.index), c)
+        if other is not c:
+            raise TableError(
+                f"{path}: column {c.index + 1} is stated for {other.meaning} and {c.meaning}"
+                f"{f' of {c.connection}' if c.connection else ''}; each has its own",
                 "duplicate-column",
             )
     wide = {c.connection for c in columns if c.connection is not None}
