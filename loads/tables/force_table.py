@@ -193,8 +193,8 @@ class _Forces:
             before, after = times[k : k + 2] / self.time
             raise TableError(
                 f"{self.grid.where(rows[k + 1])}: the time of connection {name} goes back from "
-                f"{before:.12g} to {after:.12g}; sort the rows by time, and tell several runs in one "
-                "file apart by a column 'case'",
+                f"{before:.12g} to {after:.12g}; sort the rows by time, and tell several runs in "
+                "one file apart by a column 'case'",
                 "time-goes-back",
             )
         thrice = (step[:-1] == 0.0) & (step[1:] == 0.0)
