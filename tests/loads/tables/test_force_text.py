@@ -238,6 +238,17 @@ def test_a_column_is_not_two_components(tmp_path: Path) -> None:
     assert read(tmp_path, "t Fx Fy\n0 1 2\n", both).force("C").tolist() == [[1.0, 2.0, 0.0]]
 
 
+def test_row_numbers_without_a_header_are_named(tmp_path: Path) -> None:
+    """As pandas writes them by default: the remedy is to state the columns."""
+    table = ",time,B.fx,B.fy\n0,0,1,2\n1,1,3,4\n"
+    with raises(
+        TableError, "unknown-column", "column 1 has no header", "state those to read: columns = {"
+    ):
+        read(tmp_path, table, {})
+    stated = {"time": "time", "B.fx": "B.fx", "B.fy": "B.fy"}
+    assert read(tmp_path, table, stated).force("B")[:, 0].tolist() == [1.0, 3.0]
+
+
 def test_a_table_may_begin_after_empty_columns(tmp_path: Path) -> None:
     found = read(tmp_path, ",,time,B.fx,B.fy\n,,0,1,2\n,,1,3,4\n", {})
     assert found.force("B").tolist() == [[1.0, 2.0, 0.0], [3.0, 4.0, 0.0]]
