@@ -145,10 +145,15 @@ def force_columns(grid: TableGrid, layout: Layout, unit: Unit) -> list[ForceColu
         wide = WIDE_COLUMN_PATTERN.fullmatch(parts["name"])
         component = wide["component"] if wide else parts["name"]
         if component not in (*FORCE_COMPONENTS, "time", *TEXT_COLUMNS):
+            what = (
+                f"unknown column {component[:40]!r}"
+                if component
+                else (f"column {index + 1} has no header (the row numbers of pandas?)")
+            )
             raise TableError(
-                f"{grid.source.file}: unknown column {component[:40]!r}; allowed: connection, "
-                f"{', '.join(FORCE_COMPONENTS)}, time, case, body; or B.fx for the force on "
-                "connection B",
+                f"{grid.source.file}: {what}; allowed: connection, {', '.join(FORCE_COMPONENTS)}, "
+                "time, case, body; or B.fx for the force on connection B. To leave columns out, "
+                'state those to read: columns = { time = "time", "B.fx" = "B.fx", ... }',
                 "unknown-column",
             )
         factor = 1.0
@@ -230,13 +235,22 @@ def _factor(
 
 
 def _require_components(grid: TableGrid, columns: list[ForceColumn], layout: Layout) -> None:
-    """Raises: TableError unless every force has x and y components, each once."""
+    """Raises: TableError unless every force has x and y components, each of a column of its own."""
     path = grid.source.file
     seen = [(c.connection, c.meaning) for c in columns]
     for key in seen:
         if seen.count(key) > 1:
             raise TableError(
                 f"{path}: column {'.'.join(filter(None, key))!r} occurs twice; keep one",
+                "duplicate-column",
+            )
+    first = dict[tuple[str | None, int], ForceColumn]()
+    for c in columns:
+        other = first.setdefault((c.connection, c.index), c)
+        if other is not c:
+            raise TableError(
+                f"{path}: column {c.index + 1} is stated for {other.meaning} and {c.meaning}"
+                f"{f' of {c.connection}' if c.connection else ''}; each has its own",
                 "duplicate-column",
             )
     wide = {c.connection for c in columns if c.connection is not None}

@@ -79,7 +79,7 @@ def read_forces(path: Path, layout: Layout, unit: Unit, known: set[str]) -> Tabl
     times, values = list[Floats | None](), list[Floats]()
     for name, (some, components) in by_connection.items():
         own = forces.times(name, some)
-        order = slice(None) if own is None else np.argsort(own, kind="stable")
+        order = slice(None, None, -1 if own is not None and own[0] > own[-1] else 1)
         times.append(None if own is None else own[order])
         force = layout.axes_of(name).in_pin_axes(forces.values(some, components))
         values.append(force[order])
@@ -156,8 +156,8 @@ class _Forces:
     def times(self, name: str, rows: Indices) -> Floats | None:
         """Times of the rows of a connection, (R,) s; None for one row without a time.
 
-        Raises: TableError for several rows without a time, or for times that do not ascend where
-        one is given twice.
+        Raises: TableError for several rows without a time, or for times that neither ascend
+        nor descend.
         """
         some = range(len(self.grid.places)) if rows is None else rows
         column = next((c for c in self.columns if c.meaning == "time"), None)
@@ -182,23 +182,28 @@ class _Forces:
         return None
 
     def _require_events(self, name: str, times: Floats, rows: Sequence[int]) -> None:
-        """Raises: TableError where a time occurs twice, but not as the values before and after a
-        jump: in neighbouring rows of ascending times.
+        """Raises: TableError where a time occurs more than twice, before and after a jump, or where
+        times go back, as in a file of several runs: sorted, they would be one between the other.
         """
-        order = np.argsort(times, kind="stable")
-        step = np.diff(times[order])
-        if step.all():
-            return
-        before = np.diff(times, prepend=-np.inf)
-        after = np.diff(times, append=np.inf)
-        for k in np.flatnonzero(step == 0.0):
-            first, second = order[k], order[k + 1]
-            if second != first + 1 or not (before[first] > 0.0 and after[second] > 0.0):
-                what = (
-                    f"twice at the same time {times[first] / self.time:g}, but not in two "
-                    "neighbouring rows of ascending times, as before and after a jump; keep one row"
-                )
-                raise self._given_twice(name, rows[second], what)
+        step = np.diff(times)
+        if (step < 0.0).all():
+            return  # the last first
+        if (step < 0.0).any():
+            k = int(np.argmax(step < 0.0))
+            before, after = times[k : k + 2] / self.time
+            raise TableError(
+                f"{self.grid.where(rows[k + 1])}: the time of connection {name} goes back from "
+                f"{before:.12g} to {after:.12g}; sort the rows by time, and tell several runs in "
+                "one file apart by a column 'case'",
+                "time-goes-back",
+            )
+        thrice = (step[:-1] == 0.0) & (step[1:] == 0.0)
+        if thrice.any():
+            k = int(np.argmax(thrice))
+            what = f"thrice at the same time {times[k] / self.time:.12g}"
+            raise self._given_twice(
+                name, rows[k + 2], f"{what}; keep the rows before and after the jump"
+            )
 
     def _given_twice(self, name: str, row: int, what: str) -> TableError:
         where = self.grid.where(row)

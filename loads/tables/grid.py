@@ -204,8 +204,10 @@ def bare_unit(cell: Cell) -> str:
 
 def unique_names(grid: TableGrid) -> None:
     """Raises: TableError for a table in which two columns have the same name."""
-    for k, name in enumerate(grid.names):
-        if name in grid.names[:k]:
+    unused = empty_columns(grid)  # such as those left of a table that does not begin in column A
+    names = [name for k, name in enumerate(grid.names) if k not in unused]
+    for k, name in enumerate(names):
+        if name in names[:k]:
             raise TableError(
                 f"{grid.source.file}: column {name[:MAX_SHOWN_CHARACTERS]!r} occurs twice; keep "
                 "one",

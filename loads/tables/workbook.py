@@ -1,8 +1,9 @@
 """The rows of a sheet of a workbook (.xlsx), as they are stored.
 
 Only values count: a formula's stored value may be old, or 0 where a program never computed it, so
-formulas are refused; likewise dates, which are numbers of days with a format, and merged cells,
-of which all but one are empty. The format is that of ECMA-376, part 1, clause 18.
+formulas are refused; likewise dates, which are numbers of days with a format, numbers that a format
+shows with a unit or in per cent, and merged cells, of which all but one are empty. The format is
+that of ECMA-376, part 1, clause 18.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from io import BytesIO
 from posixpath import join, normpath
 from xml.parsers import expat
 
-from loads.tables.csv_table import MAX_COLUMNS, TableError
+from loads.tables.csv_table import MAX_COLUMNS, MAX_SHOWN_CHARACTERS, TableError
 from loads.tables.grid import Cell, FileReading, Rows, Source, Unreadable, letters
 from loads.tables.plain_rows import PlainRows, split
 from loads.tables.regular_file import MB
@@ -29,10 +30,13 @@ MAX_SHOWN_SHEETS = 20
 REFERENCE_PATTERN = re.compile(r"([A-Z]{1,3})(\d{1,7})")
 # Numbers of formats for dates and times, clause 18.8.30; others are recognised by their codes.
 DATE_FORMATS = {*range(14, 23), *range(27, 37), *range(45, 48), *range(50, 59)}
+PER_CENT_FORMATS = 9, 10
+SHOWN_TEXT_PATTERN = re.compile(r'"([^"]*)"|\\(.)')
 NO_DATE_PATTERN = re.compile(r'"[^"]*"|\\.|_.|\*.|\[(?!h+\]|m+\]|s+\])[^\]]*\]', re.IGNORECASE)
 FORMULA = Unreadable("is a formula; replace it by its value (copy, paste values only)")
 DATE = Unreadable("is a date or a time of day; format the cell as a number")
 TRUTH = Unreadable("is TRUE or FALSE, not a number")
+PER_CENT = Unreadable("is shown in per cent, 100 times its number; format the cell as a number")
 
 Attributes = Mapping[str, str]
 
@@ -48,7 +52,7 @@ def workbook_rows(file: str, content: bytes, reading: FileReading) -> Rows:
             book = _Book(archive)
             name = _sheet_name(file, book.sheets, reading.sheet)
             part = book.sheets[name]
-            sheet = _Sheet(book.texts(), book.date_styles(), reading.header_line or 1)
+            sheet = _Sheet(book.texts(), book.refused_styles(), reading.header_line or 1)
             sheet.read(_part(archive, part))
     except TableError:
         raise
@@ -149,22 +153,43 @@ class _Book:
             _parse(_part(self.archive, path), part.start, lambda n: part.end(n, out), part.text)
         return out
 
-    def date_styles(self) -> frozenset[int]:
-        """The numbers of the cell styles whose numbers are dates or times."""
+    def refused_styles(self) -> dict[int, Unreadable]:
+        """The numbers of the cell styles whose numbers do not mean what the cell shows."""
         path = self.kinds.get("styles")
         if path is None:
-            return frozenset()
-        dates, styles, inside = set(DATE_FORMATS), list[int](), False
+            return {}
+        formats = {**dict.fromkeys(DATE_FORMATS, DATE), **dict.fromkeys(PER_CENT_FORMATS, PER_CENT)}
+        styles, inside = list[int](), False
         for name, values in _elements(_part(self.archive, path)):
             if name == "numFmt":
-                code = NO_DATE_PATTERN.sub("", values.get("formatCode", ""))
                 number = int(values.get("numFmtId", "-1"))
-                (dates.add if set(code.lower()) & set("dmyhs") else dates.discard)(number)
+                formats.pop(number, None)
+                refused = _refused_format(values.get("formatCode", ""))
+                formats |= {} if refused is None else {number: refused}
             elif name in ("cellXfs", "cellStyles"):
                 inside = name == "cellXfs"
             elif name == "xf" and inside:
                 styles.append(int(values.get("numFmtId", "0")))
-        return frozenset(k for k, number in enumerate(styles) if number in dates)
+        return {k: formats[number] for k, number in enumerate(styles) if number in formats}
+
+
+def _refused_format(code: str) -> Unreadable | None:
+    """The reason why a number with this format is not what its cell shows; None if it is.
+
+    A unit that only the format shows would be lost: 2 shown as 2 kN would be 2 N.
+    """
+    bare = NO_DATE_PATTERN.sub("", code)
+    if set(bare.lower()) & set("dmyhs"):
+        return DATE
+    if "%" in bare:
+        return PER_CENT
+    text = "".join(quoted or single for quoted, single in SHOWN_TEXT_PATTERN.findall(code)).strip()
+    if not any(map(str.isalpha, text)):
+        return None
+    return Unreadable(
+        f"is shown with the text {text[:MAX_SHOWN_CHARACTERS]!r} by its format; state units in the "
+        "header, and format the cell as a number"
+    )
 
 
 def _path(target: str) -> str:
@@ -205,12 +230,12 @@ class _Sheet:
     """A reader of a sheet.
 
     texts: shared texts.
-    dates: numbers of styles of dates.
+    refused: styles whose numbers are not what their cells show, by number.
     first: the first row that counts, from 1.
     """
 
-    def __init__(self, texts: list[str], dates: frozenset[int], first: int) -> None:
-        self.texts, self.dates, self.first = texts, dates, first
+    def __init__(self, texts: list[str], refused: Mapping[int, Unreadable], first: int) -> None:
+        self.texts, self.refused, self.first = texts, refused, first
         self.cells: dict[int, dict[int, Cell]] = {}
         self.plain: PlainRows | None = None
         self.merged = ""
@@ -229,10 +254,10 @@ class _Sheet:
 
     def _takes(self, plain: PlainRows) -> bool:
         """Whether rows of numbers need none of the rules for other cells."""
-        dates = any(styles & self.dates for styles in plain.styles)
+        refused = any(not styles.isdisjoint(self.refused) for styles in plain.styles)
         columns = list(map(_index, plain.columns))
         inside = max(columns) < MAX_COLUMNS and plain.places[-1] <= MAX_SHEET_ROWS
-        return inside and not dates and int(plain.places[0]) >= self.first
+        return inside and not refused and int(plain.places[0]) >= self.first
 
     def rows(self, source: Source, comma: bool) -> Rows:
         """The rows with cells that are no comments."""
@@ -306,9 +331,8 @@ class _Sheet:
         if self.formula:
             return FORMULA
         if self.kind == "n":
-            if self.style and int(self.style) in self.dates:
-                return DATE
-            return float(text)
+            refused = self.refused.get(int(self.style)) if self.style else None
+            return float(text) if refused is None else refused
         if self.kind == "s":
             return self.texts[int(text)].strip() if text.isdigit() else ""
         if self.kind in ("str", "inlineStr"):

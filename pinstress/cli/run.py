@@ -38,6 +38,7 @@ from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
 from pinstress.study.model.balance import other_warnings
 from pinstress.study.model.lost_fits import lost_fit_warnings
+from pinstress.study.model.mechanism.linkage import fit_note
 from pinstress.study.reading.choices import Selection
 from pinstress.study.reading.extras import require_fatigue, require_package
 from pinstress.study.reading.file import Study
@@ -131,6 +132,7 @@ def run_and_write(
         for warning in (
             *other_warnings(study, plan.tasks),
             *lost_fit_warnings(study, plan.tasks),
+            *fit_note(study),
         ):
             click.echo(f"Warning: {warning}", err=True)
         ask = _second_opinion(plan, wanted.quiet) if wanted.second else {}
@@ -263,6 +265,8 @@ def loads_and_write(
     require_replaceable(directory)
     with replacing(directory) as staging:
         results = loads_only(study, cases)
+        for warning in fit_note(study):  # the forces are not those of the linkage as drawn
+            click.echo(f"Warning: {warning}", err=True)
         write_loads(results, staging)
     with unneeded(directory):
         print_loads(results, console())

@@ -211,18 +211,47 @@ def test_a_jump_has_both_its_limits(tmp_path: Path) -> None:
     assert between == pytest.approx([2.0, -3.0], rel=1e-7)
 
 
+def test_a_time_given_thrice_is_refused(tmp_path: Path) -> None:
+    with raises(TableError, "duplicate-row", "line 4: connection B is given thrice"):
+        read(tmp_path, "t Fx Fy\n0.5 1 0\n0.5 2 0\n0.5 3 0\n")
+
+
 @each(
     "rows",
     [
-        "0 1 0\n0.5 2 0\n0.5 3 0\n0.5 4 0\n",  # thrice
-        "0.5 1 0\n0 2 0\n0.5 3 0\n",  # apart
-        "2 1 0\n1 2 0\n1 3 0\n0 4 0\n",  # descending: which one is before?
-        "0.5 1 0\n0.5 2 0\n0 1 0\n",
+        "0 1 0\n1 2 0\n0.5 3 0\n1.5 4 0\n",  # two runs: whose values are between whose?
+        "1 1 0\n1.5 2 0\n1 3 0\n",
+        "2 1 0\n1 2 0\n1 3 0\n0 4 0\n",  # which one is before the jump?
     ],
 )
-def test_a_time_given_twice_without_an_order_is_refused(tmp_path: Path, rows: str) -> None:
-    with raises(TableError, "duplicate-row", "before and after a jump"):
+def test_times_that_go_back_are_refused(rows: str, tmp_path: Path) -> None:
+    """Sorted, the values of several runs would be one between the other without a word."""
+    with raises(TableError, "time-goes-back", "of connection B goes back from "):
         read(tmp_path, f"t Fx Fy\n{rows}")
+
+
+def test_a_column_is_not_two_components(tmp_path: Path) -> None:
+    """A slip of the pen, fx = 2, fy = 2, would turn the force by 45 degrees."""
+    with raises(TableError, "duplicate-column", "column 2 is stated for fx and fy of B"):
+        read(tmp_path, "t Fx Fy\n0 1 2\n", {"time": 1, "B.fx": 2, "B.fy": 2})
+    both = {"time": 1, "B.fx": 2, "B.fy": 3, "C.fx": 2, "C.fy": 3}  # of two connections it may be
+    assert read(tmp_path, "t Fx Fy\n0 1 2\n", both).force("C").tolist() == [[1.0, 2.0, 0.0]]
+
+
+def test_row_numbers_without_a_header_are_named(tmp_path: Path) -> None:
+    """As pandas writes them by default: the remedy is to state the columns."""
+    table = ",time,B.fx,B.fy\n0,0,1,2\n1,1,3,4\n"
+    with raises(
+        TableError, "unknown-column", "column 1 has no header", "state those to read: columns = {"
+    ):
+        read(tmp_path, table, {})
+    stated = {"time": "time", "B.fx": "B.fx", "B.fy": "B.fy"}
+    assert read(tmp_path, table, stated).force("B")[:, 0].tolist() == [1.0, 3.0]
+
+
+def test_a_table_may_begin_after_empty_columns(tmp_path: Path) -> None:
+    found = read(tmp_path, ",,time,B.fx,B.fy\n,,0,1,2\n,,1,3,4\n", {})
+    assert found.force("B").tolist() == [[1.0, 2.0, 0.0], [3.0, 4.0, 0.0]]
 
 
 def test_a_jump_of_each_connection_in_a_long_table(tmp_path: Path) -> None:

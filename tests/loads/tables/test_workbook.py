@@ -64,7 +64,7 @@ def number_format(code: str, cell: str = "B3") -> Callable[[Any, Any], object]:
     return lambda book, sheet: sheet.write_number(cell, 1.5, book.add_format({"num_format": code}))
 
 
-@each("code", ['0.00" m/s"', "[Red]0.0", "#,##0.00", "0.0E+00", '"day "0', "\\d0", "General"])
+@each("code", ["[Red]0.0", "#,##0.00", "0.0E+00", '"+ "0', "\\-0", "_-* #,##0.0_m", "General"])
 def test_a_format_of_numbers_changes_nothing(tmp_path: Path, code: str) -> None:
     found = read(written(tmp_path / "t.xlsx", number_format(code)))
     assert found.force("B")[0, 0] == 1500.0
@@ -82,6 +82,12 @@ def a_date(book: Any, sheet: Any) -> None:
         (a_date, "not-a-number", "cell A4: t is a date"),
         (number_format("hh:mm:ss"), "not-a-number", "cell B3: Fx is a date or a time of day"),
         (number_format("[h]:mm"), "not-a-number", "cell B3"),
+        (number_format('0.00" MN"'), "not-a-number",
+         "cell B3: Fx is shown with the text 'MN' by its format; state units in the header"),
+        (number_format('"day "0'), "not-a-number", "cell B3: Fx is shown with the text 'day'"),
+        (number_format("0.0\\ \\N"), "not-a-number", "cell B3: Fx is shown with the text 'N'"),
+        (number_format("0.0%"), "not-a-number", "cell B3: Fx is shown in per cent"),
+        (number_format("0%"), "not-a-number", "cell B3: Fx is shown in per cent"),
         (lambda b, s: s.write_boolean("C3", True), "not-a-number", "cell C3: Fy is TRUE or FALSE"),
         (lambda b, s: s.write_string("C3", "broken"), "not-a-number", "cell C3: Fy = 'broken'"),
         (lambda b, s: s.write_blank("C4", None, b.add_format()), "not-a-number",

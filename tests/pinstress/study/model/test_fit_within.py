@@ -15,6 +15,7 @@ from pinstress.study.model.mechanism.linkage import linkage
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from tests.support.each import each
+from tests.support.programs.command_line import run_here
 
 WEIGHT, CENTRE = 1000.0, 230.0  # N; mm along the coupler
 STUDY = """
@@ -94,6 +95,27 @@ def test_what_it_offers_is_enough_and_little_less_is_not(tmp_path: Path) -> None
     with pytest.raises(InputError, match=r"0\.5 mm, more than fit_within = 0\.49 mm") as refused:
         examine(written(tmp_path, "fit_within = 0.49"))
     assert "study.toml:5: mechanism" in refused.value.lines[0]
+
+
+def test_commands_say_that_joints_are_moved(tmp_path: Path) -> None:
+    """The forces are not those of the linkage as drawn, also where no pin is solved."""
+    written(tmp_path, "fit_within = 0.51")
+    answer = run_here("loads", "study.toml", cwd=tmp_path)
+    assert answer.returncode == 0
+    assert "Warning: Joints are moved so that " in answer.stderr
+    pin = """
+[material.steel]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+[pin.F]
+material = "steel"
+profile = [{ length = 100, diameter = 10, connection = "F1" }]
+clamp = ["start"]
+"""
+    written(tmp_path, "fit_within = 0.51", STUDY + pin)
+    options = "--model", "beam", "--cases", "rest", "--tolerance", "0.9", "--vtk", "none"
+    answer = run_here("run", "study.toml", *options, cwd=tmp_path)
+    assert "Warning: Joints are moved so that " in answer.stderr, answer.stderr
 
 
 def test_links_that_fit_stay_as_drawn(tmp_path: Path) -> None:
