@@ -219,7 +219,8 @@ class Engine:
         if name not in self._as_is:
             self._as_is[name] = self._both(name)
         tasks, before = self._as_is[name].tasks, self._as_is[name].rows
-        if not any(same_ranges(x, task) for x in tasks):
+        cases = {loads.case for loads in task.loads}
+        if not all(same_ranges(x, task) for x in tasks if cases & {y.case for y in x.loads}):
             return None
         now = self._coarse(plan, task, any(same_shape(x, task) for x in tasks))
         if not now or not {row.case for row in now} <= before.keys():

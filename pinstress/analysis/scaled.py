@@ -19,7 +19,7 @@ from fea.core.peak import ErrorParts, Maximum
 from fea.core.places import BandPressure, ContactPlace, Place, Places
 from fea.core.requirement import MAX_ROUGH_ERROR, Requirement
 from fea.support.contact.contact_place import reached
-from fea.support.lugs.lug import Lug, LugRange
+from fea.support.lugs.lug import LugRange
 from fea.support.records import JointRange, JointResult
 from geometry import Pin
 from pinbase.arrays import Floats
@@ -77,13 +77,22 @@ def same_ranges(one: Task, other: Task) -> bool:
 
 
 def _open_of_joint(task: Task) -> object:
-    """Return the ranges and the friction of lugs at the temperature of the study's dimensions."""
+    """Return the ranges and the friction of lugs, and the clearances as given and at the
+    temperature of the case, with which a range that is not stated moves.
+    """
 
-    def cold(lug: Lug) -> LugRange:
-        ends = [round(x - lug.growth, CLEARANCE_DIGITS) for x in lug.range.clearance or ()]
-        return replace(lug.range, clearance=(ends[0], ends[1]) if ends else None)
+    def rounded(lengths: tuple[float, ...] | None) -> tuple[float, ...] | None:
+        return lengths and tuple(round(x, CLEARANCE_DIGITS) for x in lengths)
 
-    return [(cold(lug), lug.friction) for lug in task.lugs]
+    return [
+        (
+            replace(lug.range, clearance=None),
+            rounded(lug.range.clearance),
+            rounded((lug.clearance, lug.growth)),
+            lug.friction,
+        )
+        for lug in task.lugs
+    ]
 
 
 def _shape(task: Task) -> object:
