@@ -29,6 +29,7 @@ from pinstress.analysis.scaled import (
     coarse,
     contact_changed,
     elastic_task,
+    range_may_widen,
     same_ranges,
     same_shape,
     scalable,
@@ -232,9 +233,9 @@ class Engine:
             scaled_row(*before[x.case], x, task, of.of_case(x.case), plan.loads[x.case].range)
             for x in now
         ]
-        if any(row is None for row in rows):
-            return None
-        return PinOutcome(tuple(assessed(plan.study, task, row) for row in rows if row))
+        judged = tuple(assessed(plan.study, task, row) for row in rows if row)
+        open_ = any(range_may_widen(before[row.case][0], row) for row in judged)
+        return None if open_ or len(judged) < len(rows) else PinOutcome(judged)
 
     def _both(self, pin: str) -> AsIs:
         """A pin of the study as it is; without rows where it cannot be built."""

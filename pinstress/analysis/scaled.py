@@ -14,6 +14,7 @@ from typing import Literal
 
 import numpy as np
 
+from assess.judgement import BELOW_YIELD, SAFE
 from fea.core.material import Material
 from fea.core.peak import ErrorParts, Maximum
 from fea.core.places import BandPressure, ContactPlace, Place, Places
@@ -42,6 +43,8 @@ SPREAD_SHARE, MAX_SPREAD = 0.15, 0.4
 # (fea.support.contact.resolution.ROUGH). On narrower arcs stress is off by up to 50 %, and on
 # larger cells, by which the error is found, as much.
 MIN_HALF_ARC = 25.0
+# Relative: a fall of stress that leaves arcs as wide as they are. Chosen by judgement.
+MIN_FALL = 0.01
 NOMINAL_STRENGTH = 1e9  # Pa: of what is solved for any strength
 CLEARANCE_DIGITS = 12  # of clearances in metres that are compared
 SCALED_CODE = "scaled"
@@ -74,6 +77,15 @@ def same_ranges(one: Task, other: Task) -> bool:
     so that a changed one is not known.
     """
     return _open_of_joint(one) == _open_of_joint(other)
+
+
+def range_may_widen(before: PinResult, row: PinResult) -> bool:
+    """Return whether a scaled row is safe over a range that says too little: under smaller loads
+    lugs press on narrower arcs, over which stress changes more with a clearance.
+    """
+    if row.joint is None or row.joint.range is None or row.outcome not in (SAFE, BELOW_YIELD):
+        return False
+    return (row.max_von_mises or 0.0) < (1.0 - MIN_FALL) * (before.max_von_mises or 0.0)
 
 
 def _open_of_joint(task: Task) -> object:
