@@ -308,6 +308,7 @@ def _notes(study: Study, nominal: Results, table: Iterable[tuple[str, str]]) -> 
                 f"Pin {p.pin} comes loose in {p.case}: its press fit is lost in "
                 f"{', '.join(p.lost_fits)}. What else retains it is not judged here."
             )
+    yield from _ranges_left_out(nominal)
     if any(p.verdict == "singular" for p in nominal.pins):
         yield (
             "Rows marked singular have unbounded stress at a corner or an edge (singular_zones.csv "
@@ -318,3 +319,17 @@ def _notes(study: Study, nominal: Results, table: Iterable[tuple[str, str]]) -> 
             "The range over the joint is that of the study as it is, relative to its maximum; the "
             "links' own flexibility enters only there."
         )
+
+
+def _ranges_left_out(nominal: Results) -> Iterable[str]:
+    """Yield a sentence on each range of the study, other than of a joint, that is no law: over it a
+    run says that a pin depends on it, where probabilities are those of one value.
+    """
+    for what, pins in (
+        ("a yield strength", [p.pin for p in nominal.pins if p.strength_range is not None]),
+        ("a landing's impulse", [p.pin for p in nominal.pins if p.landing is not None]),
+        ("the stiffness of links", [p.pin for p in nominal.pins if p.sharing is not None]),
+    ):
+        if pins:
+            names = ", ".join(dict.fromkeys(pins))
+            yield f"The range of {what} does not enter: a run judges pins over it ({names})."
