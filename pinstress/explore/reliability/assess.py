@@ -93,6 +93,7 @@ def assess(
     designs = SolvedDesigns(evaluator, space, jobs, progress, elsewhere)
     plain = plain_draws(settings.samples, space.size, settings.seed)
     sampled = Sample(plain, designs.at(plain.u, "plain sampling"))
+    loose = {row: count / settings.samples for row, count in designs.loose.items()}
     forms = _first_orders(study, parameters, designs, sampled, cases)
     centres = [c for form in forms for c in form.centres]
     weighted = weighted_sample(designs, centres, settings)
@@ -116,7 +117,12 @@ def assess(
         samples=settings.samples,
         seed=settings.seed,
         parameters=tuple((p.key, p.law_text) for p in parameters),
-        risks=tuple(risk_of(row, sampled, weighted, settings) for row in assessed),
+        risks=tuple(
+            replace(
+                risk_of(row, sampled, weighted, settings), loose=loose.get((row.pin, row.case), 0.0)
+            )
+            for row in assessed
+        ),
         correlations=_correlations(study),
         solved=dict(designs.solved),
         reasons=dict(designs.reasons),
