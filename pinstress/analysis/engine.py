@@ -29,6 +29,7 @@ from pinstress.analysis.scaled import (
     coarse,
     contact_changed,
     elastic_task,
+    range_may_widen,
     same_ranges,
     same_shape,
     scalable,
@@ -219,7 +220,8 @@ class Engine:
         if name not in self._as_is:
             self._as_is[name] = self._both(name)
         tasks, before = self._as_is[name].tasks, self._as_is[name].rows
-        if not any(same_ranges(x, task) for x in tasks):
+        cases = {loads.case for loads in task.loads}
+        if not all(same_ranges(x, task) for x in tasks if cases & {y.case for y in x.loads}):
             return None
         now = self._coarse(plan, task, any(same_shape(x, task) for x in tasks))
         if not now or not {row.case for row in now} <= before.keys():
@@ -231,9 +233,9 @@ class Engine:
             scaled_row(*before[x.case], x, task, of.of_case(x.case), plan.loads[x.case].range)
             for x in now
         ]
-        if any(row is None for row in rows):
-            return None
-        return PinOutcome(tuple(assessed(plan.study, task, row) for row in rows if row))
+        judged = tuple(assessed(plan.study, task, row) for row in rows if row)
+        open_ = any(range_may_widen(before[row.case][0], row) for row in judged)
+        return None if open_ or len(judged) < len(rows) else PinOutcome(judged)
 
     def _both(self, pin: str) -> AsIs:
         """A pin of the study as it is; without rows where it cannot be built."""

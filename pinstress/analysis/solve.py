@@ -24,7 +24,7 @@ from pinstress.analysis.cache import OutcomeStore
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import Entry, PinOutcome, cache_key, independent_of_memory
 from pinstress.study.model.pins import shape_notes
-from pinstress.study.model.requirements import required_factor, required_factors, sizing_factor
+from pinstress.study.model.requirements import asks_more_than_yield, required_factors
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from reports.data.fields import Field
@@ -215,7 +215,7 @@ def _needs_every_case(study: Study, task: Task) -> bool:
     if task.material.hardened or any(lug.shank for lug in task.lugs):
         return True
     pin, cases = task.pin.name, [loads.case for loads in task.loads]
-    return any(sizing_factor(study, pin, x) != required_factor(study, pin, x) for x in cases)
+    return any(asks_more_than_yield(study, pin, case) for case in cases)
 
 
 def _joints(study: Study, task: Task) -> Joints:

@@ -87,5 +87,7 @@ def _status(assessment: Reliability) -> int:
         click.echo(f"Not decided: pin {risk.pin}, case {risk.case}.", err=True)
     deep = [r for r in assessment.risks if r.result(assessment.probability) == DEPENDS]
     for risk in deep:
-        click.echo(f"Depends on what lies beneath contact: {name(risk)}.", err=True)
+        loose = risk.loose > assessment.probability
+        what = "what retains a pin that comes loose" if loose else "what lies beneath contact"
+        click.echo(f"Depends on {what}: {name(risk)}.", err=True)
     return int(bool(open_ones or deep))

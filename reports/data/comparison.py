@@ -67,8 +67,8 @@ class RowPair:
             return DECISION_CHANGED
         if a.maximum is None or b.maximum is None:
             return UNCHANGED if a.maximum == b.maximum else NOT_SOLVED
-        if _same(a.maximum, b.maximum):
-            return UNCHANGED
+        if _same(a.maximum, b.maximum):  # the factor also has the strength, which has no error
+            return UNCHANGED if _equal(a.factor, b.factor) else BEYOND_ERRORS
         apart = _above(a.low, b.high) or _above(b.low, a.high)
         return BEYOND_ERRORS if apart else WITHIN_ERRORS
 

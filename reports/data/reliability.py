@@ -89,6 +89,8 @@ class Risk:
     error; None where that is never more than the row's own.
     unbounded: the probability that the row fails or is singular, so that its factor is not known;
     None where no design is singular.
+    loose: the part of the plain samples in which the pin is no longer pressed into a lug at the
+    temperature of the case.
     curve: of the distribution (factor, probability to be lower, by plain (0) or importance sampling
     (1)).
     """
@@ -108,6 +110,7 @@ class Risk:
     joint: ByErrors | None = None
     beneath: Spread | None = None
     unbounded: Spread | None = None
+    loose: float = 0.0
     drivers: tuple[Driver, ...] = ()
     curve: tuple[tuple[float, float, int], ...] = ()
 
@@ -142,7 +145,7 @@ class Risk:
         The interval with the error of the stress decides. A singular row cannot be safe, nor one
         that may fail or be singular with more than the allowed probability. A row that is safe by
         surface and section depends on the stress beneath contact where the probability with it may
-        exceed the allowed one.
+        exceed the allowed one, and on what else retains the pin where it comes loose more often.
         """
         ends = self.probability
         low, high = ends.low, ends.high
@@ -152,7 +155,8 @@ class Risk:
         singular = self.verdict == "singular" or may_be_singular
         if self.disagrees or (high <= allowed and singular):
             return NOT_DECIDED
-        if high <= allowed and self.beneath is not None and self.beneath.high > allowed:
+        deep = self.beneath is not None and self.beneath.high > allowed
+        if high <= allowed and (deep or self.loose > allowed):
             return DEPENDS
         return SAFE if high <= allowed else FAILS if low > allowed else NOT_DECIDED
 

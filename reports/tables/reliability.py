@@ -115,6 +115,11 @@ def remark(risk: Risk) -> str:
             "outside the excluded zones: the probability of that or of failure is "
             f"{chance_range(risk.unbounded)}"
         )
+    if risk.loose:
+        said.append(
+            f"its press fit is lost in {chance(risk.loose)} of the plain samples, and what else "
+            "retains the pin is not judged"
+        )
     if risk.unknown:
         said.append(f"{risk.unknown} designs have no result and count both ways")
     return "; ".join(said)

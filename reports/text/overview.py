@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, OUTCOME_ORDER, SAFE, YIELDS
+from assess.strength.fatigue_life import FATIGUE_LIFE
 from pinbase.grouped import grouped
 from reports.data.changes import Remedy, command
 from reports.data.decision import largest_factor, limit
@@ -229,11 +230,17 @@ def _exceeded(lines: Sequence[PinLine]) -> Content:
     checks = [x for x in lines if x.check.row is None and not x.check.lug]
     failing = [x for x in checks if x.outcome == FAILS and x.check.factor]
     used = grouped(((x.pin, x.check.check), x.check.used) for x in failing)
-    return [
-        f"{pin} needs {engineering(100.0 * (max(shares) - 1.0), 2)} % more strength, or less "
-        f"load ({check})."
-        for (pin, check), shares in used.items()
-    ]
+    return [f"{pin} needs {_lacking(check, max(shares))}." for (pin, check), shares in used.items()]
+
+
+def _lacking(check: str, used: float) -> str:
+    """Return what a check lacks of which so many times what is allowed is used.
+
+    Damage grows with a power of stress, so that a life says little of the strength that it needs.
+    """
+    if check == FATIGUE_LIFE:
+        return f"{engineering(used, 3)} times the life that it has ({check})"
+    return f"{engineering(100.0 * (used - 1.0), 2)} % more strength, or less load ({check})"
 
 
 def _singular(lines: Sequence[PinLine]) -> Content:

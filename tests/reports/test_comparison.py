@@ -63,6 +63,12 @@ def test_a_margin_for_comparison_hides_no_other(run: dict[str, Any]) -> None:
     assert (pair.first[0], pair.second[0]) == (2.0, 1.0)
 
 
+def test_another_strength_changes_a_row_whose_stress_stays(run: dict[str, Any]) -> None:
+    """It was unchanged, and not in the table, though its factor had fallen from 3.64 to 3.14."""
+    before, after = (changed(run, safety_factor=x, outcome="safe") for x in (3.64, 3.14))
+    assert compare(before, after).rows[0].kind == BEYOND_ERRORS
+
+
 def test_a_change_is_beyond_the_errors_or_within(run: dict[str, Any]) -> None:
     """Ranges of 100 to 120 and of the other maximum with its error."""
     base = changed(run, max_von_mises=110.0, error_estimate=10.0, max_von_mises_interval=None)

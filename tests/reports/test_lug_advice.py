@@ -10,6 +10,7 @@ import pytest
 
 import pinstress
 from assess.margin import Margin
+from assess.strength.fatigue_life import FATIGUE_LIFE
 from assess.work import WorkQuantity
 from reports.data.overview import PinLine, pin_lines
 from reports.data.results import LugSketch, Results
@@ -170,3 +171,11 @@ def test_a_check_that_fails_in_two_cases_is_advised_once() -> None:
     (told,) = (x for x in actions(results, [line, worse]).repairs if "more strength" in x)
     share = 100.0 * (2.0 * line.check.used - 1.0)
     assert told == f"A needs {share:.0f} % more strength, or less load (bending)."
+
+
+def test_a_life_that_is_too_short_is_no_lack_of_strength() -> None:
+    """Of a life of 0.0654 it said that 1,400 % more strength are needed, where 73 % are enough."""
+    results, (line, *_) = failing(replace(STRESS, method=FATIGUE_LIFE, at="point 1"))
+    line = replace(line, check=replace(line.check, used=1.0 / 0.0654))
+    (told,) = actions(results, [line]).repairs
+    assert told == "A needs 15.3 times the life that it has (fatigue life)."

@@ -4,10 +4,14 @@ foundations ended in a traceback, and sweeps called a pin safe that had come loo
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pinstress
 from pinstress import InputError, study_from
+from pinstress.explore.reliability.assess import assess
 from pinstress.explore.sweep.evaluate import Evaluator
 from pinstress.explore.sweep.number import number_at
+from reports.data.reliability import Spread
 from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.pins.studies import DOUBLE_SHEAR
@@ -94,3 +98,33 @@ def test_a_pin_that_comes_loose_depends_in_designs_as_in_a_run(joints: str) -> N
     assert row.outcome == design.outcome == "depends"
     assert "press fit lost in L above 65.5 degC" in design.depends_on
     assert design.safety_factor == row.safety_factor
+
+
+VARYING = """
+[vary.parameters]
+"case.pull.temperature" = { normal = ["62 degC", "8 degC"] }
+[reliability]
+probability = 0.1
+samples = 20
+importance_samples = 0
+sobol_samples = 0
+"""
+
+
+@each("required", ["1.5", "50"])
+def test_a_pin_that_comes_loose_in_many_random_designs_is_not_safe(required: str) -> None:
+    """It holds at the mean of the temperature and lets go at 65.5 degC, in a third of the
+    designs; the factor that the study requires does not matter.
+    """
+    text = STUDY.replace("JOINTS", "prescribed").replace("TEMPERATURE", "62 degC")
+    text = text.replace("FIT", "clearance = -0.01").replace("factor = 1.5", f"factor = {required}")
+    varying = study_from(text + VARYING)
+    nominal = pinstress.run(varying)
+    found = assess(varying, nominal, 1, lambda _, __: None)
+    (risk,) = found.risks
+    assert nominal.pins[0].lost_fits == ()
+    assert 0.1 < risk.loose < 0.5
+    assert risk.failures == 0
+    assert risk.loose > found.probability
+    sure = replace(risk, sampled=Spread(0.0, 0.0, 0.01), mesh=None)
+    assert sure.result(found.probability) == "depends"

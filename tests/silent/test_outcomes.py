@@ -20,10 +20,12 @@ from pinstress import changed_study, load_study, run
 from pinstress.cli.commands import run_command_line
 from reports.data.dependence import depends_on
 from reports.data.headline import headline_json, worst_checks
+from reports.data.overview import pin_lines
 from reports.data.results import Results
 from reports.data.row import LandingRange, PinResult
 from reports.format.words import headline, result_words
 from reports.tables.json_results import to_json
+from reports.tables.strength.overview import check_words
 from reports.tables.strength.safety_factors import safety_factors_table
 from reports.text.summary import summary
 from tests.conftest import ROOT
@@ -219,6 +221,15 @@ def test_a_converged_maximum_counts_with_its_error(
 
 def made_safe() -> PinResult:
     return row("x", "converged", 4.462, True)
+
+
+def test_a_check_over_all_cases_is_named_without_a_demand() -> None:
+    """The line had the factor of a failing case beside "safe", which is of the life alone."""
+    life = Margin("fatigue life", "critical plane", "fatigue", "limit", 1.0, 0.0, 1e-6, "1")
+    pins = (row("x", "converged", 1.4, False), row("y", "converged", 4.462, True))
+    results = replace(only(pins[0]), pins=pins, spectrum_margins=(PinMargin("A", "", life),))
+    found = {line.case: check_words(line) for line in pin_lines(results)}
+    assert found == {"x": "–", "y": "–", "all cases": "fatigue life"}
 
 
 def test_the_headline_is_the_worst_of_all_checks() -> None:

@@ -93,6 +93,7 @@ def assess(
     designs = SolvedDesigns(evaluator, space, jobs, progress, elsewhere)
     plain = plain_draws(settings.samples, space.size, settings.seed)
     sampled = Sample(plain, designs.at(plain.u, "plain sampling"))
+    loose = {row: count / settings.samples for row, count in designs.loose.items()}
     forms = _first_orders(study, parameters, designs, sampled, cases)
     centres = [c for form in forms for c in form.centres]
     weighted = weighted_sample(designs, centres, settings)
@@ -116,7 +117,12 @@ def assess(
         samples=settings.samples,
         seed=settings.seed,
         parameters=tuple((p.key, p.law_text) for p in parameters),
-        risks=tuple(risk_of(row, sampled, weighted, settings) for row in assessed),
+        risks=tuple(
+            replace(
+                risk_of(row, sampled, weighted, settings), loose=loose.get((row.pin, row.case), 0.0)
+            )
+            for row in assessed
+        ),
         correlations=_correlations(study),
         solved=dict(designs.solved),
         reasons=dict(designs.reasons),
@@ -308,6 +314,7 @@ def _notes(study: Study, nominal: Results, table: Iterable[tuple[str, str]]) -> 
                 f"Pin {p.pin} comes loose in {p.case}: its press fit is lost in "
                 f"{', '.join(p.lost_fits)}. What else retains it is not judged here."
             )
+    yield from _ranges_left_out(nominal)
     if any(p.verdict == "singular" for p in nominal.pins):
         yield (
             "Rows marked singular have unbounded stress at a corner or an edge (singular_zones.csv "
@@ -318,3 +325,17 @@ def _notes(study: Study, nominal: Results, table: Iterable[tuple[str, str]]) -> 
             "The range over the joint is that of the study as it is, relative to its maximum; the "
             "links' own flexibility enters only there."
         )
+
+
+def _ranges_left_out(nominal: Results) -> Iterable[str]:
+    """Yield a sentence on each range of the study, other than of a joint, that is no law: over it a
+    run says that a pin depends on it, where probabilities are those of one value.
+    """
+    for what, pins in (
+        ("a yield strength", [p.pin for p in nominal.pins if p.strength_range is not None]),
+        ("a landing's impulse", [p.pin for p in nominal.pins if p.landing is not None]),
+        ("the stiffness of links", [p.pin for p in nominal.pins if p.sharing is not None]),
+    ):
+        if pins:
+            names = ", ".join(dict.fromkeys(pins))
+            yield f"The range of {what} does not enter: a run judges pins over it ({names})."

@@ -16,6 +16,7 @@ from pinstress.explore.sweep.correlations import correlations_of, root_of
 from pinstress.explore.sweep.evaluate import DesignRow, Evaluator
 from pinstress.explore.sweep.parameters import Parameter, parameters_of, require_laws
 from pinstress.study.reading.file import Study
+from reports.data.reliability import SYSTEM_ROW
 
 Array = NDArray[np.float64]
 
@@ -138,6 +139,7 @@ class SolvedDesigns:
     (n, d) in SI; it is given a function to call with the number of designs that are solved.
     solved: number of designs by purpose.
     reasons: why rows have no result, with their number.
+    loose: in how many designs a pin comes loose in a case, and in any (SYSTEM_ROW).
     """
 
     def __init__(
@@ -150,6 +152,7 @@ class SolvedDesigns:
     ) -> None:
         self.evaluator, self.space = evaluator, space
         self.solved, self.reasons = Counter[str](), Counter[str]()
+        self.loose = Counter[tuple[str, str]]()
         self._jobs, self._progress, self._elsewhere = jobs, progress, elsewhere
 
     def of_pin(self, evaluator: Evaluator) -> SolvedDesigns:
@@ -203,6 +206,8 @@ class SolvedDesigns:
         for rows in designs:
             for reason in {row.reason for row in rows if np.isnan(_used(row))}:
                 self.reasons[reason or "no result"] += 1
+            loose = [(row.pin, row.case) for row in rows if row.loose]
+            self.loose.update([*loose, *[(SYSTEM_ROW, SYSTEM_ROW)] * bool(loose)])
         singular = np.array([[row.verdict == "singular" for row in rows] for rows in designs])
         return Answers(used, errors, used * np.maximum(1.0, below), singular)
 

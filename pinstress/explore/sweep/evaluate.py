@@ -59,6 +59,7 @@ class DesignRow:
     governs: "surface" or "section", empty where the model has no places.
     surface, section, beneath, beneath_error: largest stresses and the last one's error, Pa; None
     where there is none.
+    loose: whether the pin comes loose from a lug at the temperature of the case.
     """
 
     pin: str
@@ -78,6 +79,7 @@ class DesignRow:
     section: float | None = None
     beneath: float | None = None
     beneath_error: float | None = None
+    loose: bool = False
 
 
 def rows_without_maximum(
@@ -342,6 +344,7 @@ def _design_row(row: PinResult, task: Task, study: Study) -> DesignRow:
         *outcome_words(row, task, study.system),
         peak.places.governs if peak.places else "",
         *stress_at(peak),
+        loose=bool(row.lost_fits),
     )
 
 

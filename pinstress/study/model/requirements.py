@@ -7,6 +7,7 @@ from itertools import product
 
 from assess.margin import Level
 from assess.requirement import (
+    REQUIRED_LEVELS,
     TO_BE_RUN,
     RequiredCheck,
     RequiredLevel,
@@ -78,6 +79,17 @@ def sizing_factor(study: Study, pin: str, case: str) -> float | None:
     if rupture and material.yield_strength and material.ultimate_strength:
         factors.append(rupture * material.yield_strength / material.ultimate_strength)
     return max((factor for factor in factors if factor is not None), default=None)
+
+
+def asks_more_than_yield(study: Study, pin: str, case: str) -> bool:
+    """Return whether a pin must have less stress in a case than by its required factor against
+    yield: for rupture, or for a limit load that only little stress shows to be far away.
+    """
+    required = required_factor(study, pin, case)
+    collapse = (stated_factor(study, pin, case, "limit load", x) for x in REQUIRED_LEVELS)
+    return sizing_factor(study, pin, case) != required or any(
+        factor is not None and factor > (required or 1.0) for factor in collapse
+    )
 
 
 def stated_factor(

@@ -186,10 +186,11 @@ def error_words(line: PinLine) -> str:
 
 def check_words(line: PinLine) -> str:
     """Return the worst check where it is another than the maximum against yield and has a load,
-    with its factor and the required one: "lug L, bore: 1.85 of 1.5".
+    with its factor and the required one: "lug L, bore: 1.85 of 1.5". One over all cases is named
+    in any case, since the factor beside it is not its own.
     """
     check = line.check
-    if check.check == YIELD_METHOD or check.used == 0.0:
+    if check.check == YIELD_METHOD or (check.case and check.used == 0.0):
         return DASH
     name = check.check
     if check.lug:

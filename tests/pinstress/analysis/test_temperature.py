@@ -270,3 +270,15 @@ def test_a_temperature_varies_and_its_deviation_is_a_difference() -> None:
 def test_damage_over_different_fits_is_not_decided(both: pinstress.RunResults) -> None:
     assert both.fatigue is not None
     assert "fits at their temperatures differ" in both.fatigue.not_decided["P"]
+
+
+@pytest.mark.slow
+def test_a_quick_row_has_the_range_of_its_case_at_the_changed_temperature() -> None:
+    """That of the temperature before was scaled, with which a fit may be loose and no longer is."""
+    row = Engine(study_from(STUDY), pins=["P"]).row(
+        {"case.hot.temperature": "20 degC"}, "P", "hot", accuracy="quick"
+    )
+    assert row.joint is not None
+    assert row.joint.range is not None
+    lengths = [v.length for v in row.joint.range.variations if v.length is not None]
+    assert lengths == pytest.approx([0.0, 0.04])

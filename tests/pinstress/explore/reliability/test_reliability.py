@@ -79,6 +79,17 @@ def test_the_bar_through_the_whole_chain(
     assert "normal, mean 75000 N" in page
 
 
+def test_ranges_that_do_not_enter_are_told(tmp_path: Path) -> None:
+    """A pin that depends on its yield strength in a run was safe, and nothing said why."""
+    strength = "yield_strength = 300\n"
+    text = BAR.replace(strength, f"{strength}range = {{ yield_strength = [150, 300] }}\n")
+    text = text.replace('"material.steel.yield_strength" = { lognormal = [300, 30] }', "")
+    text = text.replace("samples = 200", "samples = 20").replace("= 300\nsobol", "= 0\nsobol")
+    assert _run(tmp_path, text.replace("sobol_samples = 16", "sobol_samples = 0")) in (0, 1)
+    notes = json.loads((tmp_path / "out" / "reliability.json").read_text())["notes"]
+    assert "The range of a yield strength does not enter: a run judges pins over it (A)." in notes
+
+
 @pytest.mark.slow
 def test_the_same_study_gives_the_same_numbers_with_more_processes(tmp_path: Path) -> None:
     small = BAR.replace("samples = 200", "samples = 250").replace("= 300", "= 20")
