@@ -51,7 +51,8 @@ def init(directory: Path, opens: bool) -> int:
     target, *_ = targets = [directory / name for name in NEW_STUDIES]
     if directory.suffix == ".toml":  # somebody takes it for the study's name
         raise InputError(
-            f"{directory}: name a folder; the studies are called {' and '.join(NEW_STUDIES)}"
+            f"{directory}: name a folder; the studies are called {' and '.join(NEW_STUDIES)}",
+            code="not-a-folder",
         )
     try:
         directory.mkdir(parents=True, exist_ok=True)
