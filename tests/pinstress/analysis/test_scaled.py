@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -266,12 +267,19 @@ def test_a_strength_solves_nothing(engine: Engine, coarse: list[str]) -> None:
     assert weak.places.section.plastic_utilisation == pytest.approx(used, rel=0.05)
 
 
+def _untimed(row: PinResult) -> PinResult:
+    """The row without the seconds of its meshes."""
+    history = tuple(replace(mesh, seconds=0.0) for mesh in row.history)
+    return replace(row, maximum=replace(row.maximum, history=history))
+
+
 @pytest.mark.slow
 def test_the_same_whatever_was_asked_before(engine: Engine) -> None:
-    changes = {"pin.P.lug.right.clearance": 0.02}
     quick(engine, {MIDDLE: 21.0})
     fresh = Engine(study_from(STUDY))
-    assert plain(quick(engine, changes)) == plain(quick(fresh, changes))
+    for changes in ({MIDDLE: 19.0}, {"pin.P.lug.right.clearance": 0.02}):
+        rows = (quick(engine, changes), quick(fresh, changes))
+        assert len({str(plain(_untimed(row))) for row in rows}) == 1
 
 
 @pytest.mark.slow
