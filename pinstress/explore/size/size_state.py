@@ -70,8 +70,9 @@ class SizeState:
         """
         try:
             self.path.mkdir()
+            self._lock()
         except FileExistsError:
-            if self.path.is_dir():
+            with suppress(NotADirectoryError):  # a link, or a file
                 self._lock()
             raise InputError(
                 f"{self._target} has a size that did not end: resume it with --resume, or delete "
@@ -80,7 +81,6 @@ class SizeState:
             ) from None
         except OSError as error:
             raise cannot_write(self._both, error) from None
-        self._lock()
         try:
             self.write(())
         except InputError:

@@ -122,6 +122,18 @@ def test_what_cannot_be_resumed_is_told(tmp_path: Path) -> None:
     assert not (tmp_path / "study_sized.toml").exists()
 
 
+def test_a_link_is_no_state(tmp_path: Path) -> None:
+    """Nor is it followed."""
+    (tmp_path / "study.toml").write_text(QUICK)
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "study_sized.toml.unfinished").symlink_to(tmp_path / "elsewhere")
+    for option, told in (([], "delete study_sized.toml.unfinished"), (["--resume"], "is damaged")):
+        refused = run_here("size", "study.toml", "--fos", "1.5", *option, cwd=tmp_path)
+        assert refused.returncode == 2
+        assert told in refused.stderr
+    assert not list((tmp_path / "elsewhere").iterdir())
+
+
 def test_a_file_that_cannot_be_written_is_named_as_it_was_given(tmp_path: Path) -> None:
     """Names have 255 bytes, which leaves too few for the folder of finished pins."""
     (tmp_path / "study.toml").write_text(QUICK)
