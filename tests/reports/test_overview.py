@@ -199,6 +199,9 @@ def test_the_diameter_by_the_law_of_the_section(few: Results) -> None:
     open_ = replace(line, diameter=replace(line.diameter, needed=None, whatever=24.0, eye=30.0))
     assert either_diameter_words(open_) == f"{diameter_words(open_)} → 24.0 † ‡"
     assert whatever_words(open_) == "24.0 †"
+    # A diameter that differs by less than its digits was told as the given one: "20 → 20.0".
+    near = replace(line, diameter=replace(line.diameter, given=20.0, needed=20.03, eye=None))
+    assert diameter_words(near) == "20 → 20.03"
 
 
 def test_labels_of_a_pin_that_nearly_suffices_stand_apart(few: Results) -> None:

@@ -24,6 +24,7 @@ MAX_DECADES = 4.0  # of the axis; what lies beyond is at its end
 AXIS_MARGIN = 1.3  # ratio, beyond the smallest and the largest factor
 MAX_RANK = 10  # of columns that a narrow terminal drops first
 SPREAD_DIGITS = 2
+MAX_DIGITS = 6  # of a diameter
 BAR_WIDTH = 20  # characters
 OVER_OPEN_MARK = "‡"  # of a diameter that suffices over all that is open
 SPREAD_MARK, FACTOR_MARK, REQUIRED_MARK = "-", "#", "|"
@@ -173,7 +174,10 @@ def whatever_words(line: PinLine) -> str:
 
 def _diameter(d: Diameter, diameter: float) -> str:
     mark = " †" if d.too_large(diameter) else ""
-    return f"{engineering(diameter, END_DIGITS)}{mark}"
+    # As many digits as it takes to be larger than the given one: not "20 → 20.0".
+    digits = range(END_DIGITS, MAX_DIGITS + 1)
+    enough = (n for n in digits if float(f"{diameter:.{n - 1}e}") > d.given)
+    return f"{engineering(diameter, next(enough, MAX_DIGITS))}{mark}"
 
 
 def error_words(line: PinLine) -> str:
