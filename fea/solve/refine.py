@@ -105,17 +105,9 @@ def refine(
     notes = dict(held.notes)
     before: MeshBefore | None = None
     for level in range(requirement.meshes or meshes.max_meshes):
-        # Stop before a mesh that is too large, by the unknowns that the model is likely to need
-        # next.
-        if before is not None:
-            next_mesh = meshes.unknowns_after(max(r.at_once or r.unknowns for r in before.results))
-            if next_mesh > meshes.max_unknowns:
-                break
-            if excess := too_much_memory(posed, model, next_mesh):
-                text = f"; on the next mesh {excess}: allow more, or increase --tolerance"
-                limit = Reason(text, ("memory-limit",))
-                notes = {case: notes.get(case, NO_REASON) + limit for case in seen}
-                break
+        if before is not None and (limit := _limit(model, posed, before)) is not None:
+            notes = {case: notes.get(case, NO_REASON) + limit for case in seen}
+            break
         progress(f"pin {held.pin.name}, {model.name} model, mesh {level + 1}")
         start = time.perf_counter()
         mesh, below = model.solve(posed, level, before), before
@@ -143,6 +135,20 @@ def refine(
             reading = replace(reading, coarser=coarser, mesh_ratio=meshes.ratio)
         out[case.case] = held.finished(reading, requirement)
     return out
+
+
+def _limit(model: Model, posed: MeshProblem, before: MeshBefore) -> Reason | None:
+    """Why the next mesh is too large, by the unknowns that the model is likely to need: the reason
+    is empty beyond the model's own limit, which is no news. None where it is not too large.
+    """
+    meshes = model.meshes
+    unknowns = meshes.unknowns_after(max(r.at_once or r.unknowns for r in before.results))
+    if unknowns > meshes.max_unknowns:
+        return NO_REASON
+    if excess := too_much_memory(posed, model, unknowns):
+        text = f"; on the next mesh {excess}: allow more, or increase --tolerance"
+        return Reason(text, ("memory-limit",))
+    return None
 
 
 def posed_for(

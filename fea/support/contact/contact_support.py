@@ -79,20 +79,7 @@ class ContactSupport:
         else:
             refused = _refused(problem)
             left = tuple(case for case in left if case.case not in refused)
-        progress(f"pin {problem.pin.name}, flexibility of {cells.rings} rings of each lug")
-        profile, cut = profile_of(problem.pin), isinstance(problem.pin, CutPin)
-        of, between, also = (profile, problem.material, problem.lugs), problem.between, problem.also
-        if self.alone:
-            unit, memo = self.alone == "unit", problem.memo or Memo()
-            model = unit_model(*of, cells, memo, together=not unit)
-            model = _seeing(model, problem.pin)
-            patterns = unit_patterns(model) if unit else None
-            contact = PressedCases(model, left, between, {}, cut, patterns)
-        else:
-            model = ContactModel(*of, cells, problem.memo)
-            model = _seeing(model, problem.pin)
-            progress(f"pin {problem.pin.name}, contact")
-            contact = PressedCases(model, left, between, also, cut)
+        model, contact = self._pressed(problem, cells, left, progress)
         if not contact.instants.keys() <= near.keys():
             near = contact.near(requirement)
         contact.follow(near)
@@ -111,18 +98,28 @@ class ContactSupport:
             problem, contact, starts, near, compared, finest, refused,
             alone=self.alone is not None, rough=self.cells is ROUGH,
         )  # fmt: skip
-        if finer is None or self.cells is not ROUGH:  # rough ones are a trial only
-            name = problem.pin.name
-            failed = {
-                case: unsolved(name, case, "harmonic", x) for case, x in contact.failed.items()
-            }
-            held = replace(held, failures=held.failures | failed)
-        pressed = tuple(starts.values())
-        rigid, _, notes = balanced(held.pin, problem.material, pressed, "harmonic")
-        for links in left:
-            if (said := seats_note(links, problem.lugs)) is not None:
-                notes[links.case] = said + notes.get(links.case, NO_REASON)
-        return replace(held, failures=held.failures | rigid, notes=notes)
+        trial = finer is not None and self.cells is ROUGH  # which fails no case
+        return _with_failures(held, problem, left, {} if trial else contact.failed)
+
+    def _pressed(
+        self,
+        problem: PinProblem,
+        cells: Resolution,
+        cases: tuple[PinLoads, ...],
+        progress: Progress,
+    ) -> tuple[ContactModel, PressedCases]:
+        """The flexibilities on these cells, and the cases that are pressed by them."""
+        name, cut = problem.pin.name, isinstance(problem.pin, CutPin)
+        progress(f"pin {name}, flexibility of {cells.rings} rings of each lug")
+        of = profile_of(problem.pin), problem.material, problem.lugs
+        if self.alone:
+            unit, memo = self.alone == "unit", problem.memo or Memo()
+            model = _seeing(unit_model(*of, cells, memo, together=not unit), problem.pin)
+            patterns = unit_patterns(model) if unit else None
+            return model, PressedCases(model, cases, problem.between, {}, cut, patterns)
+        model = _seeing(ContactModel(*of, cells, problem.memo), problem.pin)
+        progress(f"pin {name}, contact")
+        return model, PressedCases(model, cases, problem.between, problem.also, cut)
 
     def _of_arcs(self, coarser: HeldContact, cases: tuple[PinLoads, ...]) -> tuple[PinLoads, ...]:
         """The cases that are held.
@@ -144,6 +141,25 @@ class ContactSupport:
         if self.finer is not None and coarser.far_from(cases, requirement):
             return self.finer, None
         return self.cells, self.finer
+
+
+def _with_failures(
+    held: HeldContact,
+    problem: PinProblem,
+    cases: Sequence[PinLoads],
+    failed: Mapping[str, SolveError],
+) -> HeldContact:
+    """The held pin with the cases that have no solution, and notes on the others.
+
+    cases: those that were held. failed: the errors of those without contact.
+    """
+    rigid, _, notes = balanced(held.pin, problem.material, tuple(held.starts.values()), "harmonic")
+    for links in cases:
+        if (said := seats_note(links, problem.lugs)) is not None:
+            notes[links.case] = said + notes.get(links.case, NO_REASON)
+    name = problem.pin.name
+    without = {case: unsolved(name, case, "harmonic", error) for case, error in failed.items()}
+    return replace(held, failures=held.failures | without | rigid, notes=notes)
 
 
 def _seeing(model: ContactModel, pin: PinLike) -> ContactModel:
