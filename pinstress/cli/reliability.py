@@ -87,7 +87,6 @@ def _status(assessment: Reliability) -> int:
         click.echo(f"Not decided: pin {risk.pin}, case {risk.case}.", err=True)
     deep = [r for r in assessment.risks if r.result(assessment.probability) == DEPENDS]
     for risk in deep:
-        loose = risk.loose > assessment.probability
-        what = "what retains a pin that comes loose" if loose else "what lies beneath contact"
+        what = " and ".join(risk.depends_on(assessment.probability))
         click.echo(f"Depends on {what}: {name(risk)}.", err=True)
     return int(bool(open_ones or deep))

@@ -87,6 +87,8 @@ class Risk:
     mesh: by the estimated error of the stress. joint: by the range over the joint. None if unknown.
     beneath: the probability that the row fails or depends on the stress beneath contact, with its
     error; None where that is never more than the row's own.
+    over_open: the probability that it fails, or depends on all that the study leaves open, at the
+    worst of it; None where nothing that has no law is open.
     unbounded: the probability that the row fails or is singular, so that its factor is not known;
     None where no design is singular.
     loose: the part of the plain samples in which the pin is no longer pressed into a lug at the
@@ -109,6 +111,7 @@ class Risk:
     mesh: ByErrors | None = None
     joint: ByErrors | None = None
     beneath: Spread | None = None
+    over_open: Spread | None = None
     unbounded: Spread | None = None
     loose: float = 0.0
     drivers: tuple[Driver, ...] = ()
@@ -144,8 +147,9 @@ class Risk:
 
         The interval with the error of the stress decides. A singular row cannot be safe, nor one
         that may fail or be singular with more than the allowed probability. A row that is safe by
-        surface and section depends on the stress beneath contact where the probability with it may
-        exceed the allowed one, and on what else retains the pin where it comes loose more often.
+        surface and section depends on the stress beneath contact, or on what is open, where the
+        probability with it may exceed the allowed one, and on what else retains the pin where it
+        comes loose more often.
         """
         ends = self.probability
         low, high = ends.low, ends.high
@@ -155,10 +159,20 @@ class Risk:
         singular = self.verdict == "singular" or may_be_singular
         if self.disagrees or (high <= allowed and singular):
             return NOT_DECIDED
-        deep = self.beneath is not None and self.beneath.high > allowed
-        if high <= allowed and (deep or self.loose > allowed):
+        if high <= allowed and self.depends_on(allowed):
             return DEPENDS
         return SAFE if high <= allowed else FAILS if low > allowed else NOT_DECIDED
+
+    def depends_on(self, allowed: float) -> list[str]:
+        """Return, in words, what makes the probability of failure larger than the allowed one."""
+        deep = self.beneath is not None and self.beneath.high > allowed
+        over_open = self.over_open is not None and self.over_open.high > allowed
+        reasons = {
+            "what retains a pin that comes loose": self.loose > allowed,
+            "what lies beneath contact": deep,
+            "what the study leaves open": over_open and not deep,
+        }
+        return [words for words, holds in reasons.items() if holds]
 
     @property
     def most(self) -> float:
@@ -195,3 +209,8 @@ class Reliability:
     def deep(self) -> bool:
         """Whether the stress beneath contact ever raises the probability of a row."""
         return any(risk.beneath is not None for risk in self.risks)
+
+    @property
+    def open(self) -> bool:
+        """Whether the study leaves something open that has no law."""
+        return any(risk.over_open is not None for risk in self.risks)

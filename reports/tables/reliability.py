@@ -17,6 +17,7 @@ from reports.tables.column import Column, Table, fields, read_only, texts
 RELIABILITY_SCHEMA = "pinstress-reliability/1"
 PROBABILITY_DIGITS = 3
 OR_BENEATH_CONTACT = "or beneath contact"  # probability that a row fails, or depends on that
+OR_OVER_OPEN = "or over what is open"
 
 R = TypeVar("R")
 
@@ -59,6 +60,7 @@ COLUMNS: list[Column[RiskRow]] = [
     *_ends("probability", lambda row: row.risk.probability),
     *fields("probability_by=by"),
     *_ends("beneath", lambda row: row.risk.beneath),
+    *_ends("over_open", lambda row: row.risk.over_open),
     *_ends("sampled", lambda row: row.risk.sampled),
     *fields("risk.failures whole.samples risk.unknown"),
     *_ends("weighted", lambda row: row.risk.weighted),
@@ -153,12 +155,15 @@ def factor_interval(value: Spread | None) -> str:
 def risks_table(reliability: Reliability) -> Table[Risk]:
     """Return a row per pin and case, for people.
 
-    The stress beneath contact has columns only where it ever raises a probability.
+    The stress beneath contact and what is open have columns only where they raise a probability.
     """
     per_cent, p = f"{100.0 * reliability.confidence:g} %", chance(reliability.probability)
     limit = engineering(reliability.limit, PROBABILITY_DIGITS)
     beneath: list[Column[Risk]] = [
         read_only(OR_BENEATH_CONTACT, lambda risk: chance_range(risk.beneath or risk.probability))
+    ]
+    over_open: list[Column[Risk]] = [
+        read_only(OR_OVER_OPEN, lambda risk: chance_range(risk.over_open or risk.probability))
     ]
     columns: list[Column[Risk]] = [
         *texts("pin case"),
@@ -170,6 +175,7 @@ def risks_table(reliability: Reliability) -> Table[Risk]:
         ),
         read_only(f"P(factor < {limit}) ({per_cent})", lambda risk: chance_range(risk.probability)),
         *beneath * reliability.deep,
+        *over_open * reliability.open,
         read_only("by mesh error", lambda risk: _by_errors(risk.mesh), rank=3),
         read_only("over joint", lambda risk: _by_errors(risk.joint), rank=4),
     ]  # fmt: skip

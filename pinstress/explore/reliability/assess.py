@@ -29,6 +29,7 @@ from pinstress.explore.reliability.form import (
     distinct,
     form_quantile,
 )
+from pinstress.explore.reliability.open_ranges import growth, left_out
 from pinstress.explore.reliability.risk import AssessedRow, RiskColumn, Sample, risk_of
 from pinstress.explore.reliability.sampling import importance_draws, plain_draws
 from pinstress.explore.sweep.batches import DesignProblem, evaluator_of, shapes
@@ -99,6 +100,8 @@ def assess(
     weighted = weighted_sample(designs, centres, settings)
     shares = _indices(designs, settings) if space.lower is None else None
     rows = {(p.pin, p.case): p for p in nominal.pins}
+    laws = [p.key for p in parameters]
+    growths = np.array([growth(rows.get(row), laws) for row in evaluator.table])
     assessed = []
     for k, (pin, case) in enumerate(evaluator.table):
         drivers = _drivers(parameters, designs, forms[k], shares[k] if shares else None)
@@ -119,14 +122,15 @@ def assess(
         parameters=tuple((p.key, p.law_text) for p in parameters),
         risks=tuple(
             replace(
-                risk_of(row, sampled, weighted, settings), loose=loose.get((row.pin, row.case), 0.0)
+                risk_of(row, sampled, weighted, settings, growths),
+                loose=loose.get((row.pin, row.case), 0.0),
             )
             for row in assessed
         ),
         correlations=_correlations(study),
         solved=dict(designs.solved),
         reasons=dict(designs.reasons),
-        notes=tuple(_notes(study, nominal, evaluator.table)),
+        notes=tuple(_notes(study, nominal, evaluator.table, laws)),
     )
 
 
@@ -300,7 +304,9 @@ def _worst(nominal: Results) -> PinResult | None:
     return min(known, key=lambda p: p.safety_factor or 0.0, default=None)
 
 
-def _notes(study: Study, nominal: Results, table: Iterable[tuple[str, str]]) -> Iterable[str]:
+def _notes(
+    study: Study, nominal: Results, table: Iterable[tuple[str, str]], laws: Sequence[str]
+) -> Iterable[str]:
     yield (
         "Not included: the choice of the laws themselves, the model's idealisations (linear "
         "elasticity, the shape as drawn), and whatever does not vary."
@@ -314,7 +320,7 @@ def _notes(study: Study, nominal: Results, table: Iterable[tuple[str, str]]) -> 
                 f"Pin {p.pin} comes loose in {p.case}: its press fit is lost in "
                 f"{', '.join(p.lost_fits)}. What else retains it is not judged here."
             )
-    yield from _ranges_left_out(nominal)
+    yield from left_out(nominal.pins, laws)
     if any(p.verdict == "singular" for p in nominal.pins):
         yield (
             "Rows marked singular have unbounded stress at a corner or an edge (singular_zones.csv "
@@ -325,17 +331,3 @@ def _notes(study: Study, nominal: Results, table: Iterable[tuple[str, str]]) -> 
             "The range over the joint is that of the study as it is, relative to its maximum; the "
             "links' own flexibility enters only there."
         )
-
-
-def _ranges_left_out(nominal: Results) -> Iterable[str]:
-    """Yield a sentence on each range of the study, other than of a joint, that is no law: over it a
-    run says that a pin depends on it, where probabilities are those of one value.
-    """
-    for what, pins in (
-        ("a yield strength", [p.pin for p in nominal.pins if p.strength_range is not None]),
-        ("a landing's impulse", [p.pin for p in nominal.pins if p.landing is not None]),
-        ("the stiffness of links", [p.pin for p in nominal.pins if p.sharing is not None]),
-    ):
-        if pins:
-            names = ", ".join(dict.fromkeys(pins))
-            yield f"The range of {what} does not enter: a run judges pins over it ({names})."

@@ -31,10 +31,13 @@ class RiskColumn:
         selected = answers.system if self.row is None else answers
         return selected.used[:, self.row or 0], selected.errors[:, self.row or 0]
 
-    def deep(self, answers: Answers) -> Array:
-        """Return use, or that beneath contact if it is larger, (n,)."""
-        selected = answers.system if self.row is None else answers
-        return selected.deep[:, self.row or 0]
+    def deep(self, answers: Answers, growths: Array | float = 1.0) -> Array:
+        """Return use, or that beneath contact if it is larger, (n,).
+
+        growths: of the stress of each row, (rows,), by which use is multiplied.
+        """
+        deep = answers.deep * growths
+        return np.asarray(deep.max(axis=1) if self.row is None else deep[:, self.row])
 
     def increased(self, answers: Answers, part: float) -> Array:
         """Return use (n,) with each stress increased by a part of its error.
@@ -78,9 +81,14 @@ class Sample:
         margin = np.where(column.unbounded(self.answers), -1.0, margin)
         return probability(self.draws, margin, 0.0, settings.confidence)
 
-    def deep(self, settings: ReliabilityTable, column: RiskColumn) -> Estimate:
-        """Return the probability of failure or of dependence on the stress beneath contact."""
-        margin = 1.0 - settings.factor * column.deep(self.answers)
+    def deep(
+        self, settings: ReliabilityTable, column: RiskColumn, growths: Array | float = 1.0
+    ) -> Estimate:
+        """Return the probability of failure or of dependence on the stress beneath contact.
+
+        growths: of the stress of each row over what is open.
+        """
+        margin = 1.0 - settings.factor * column.deep(self.answers, growths)
         return probability(self.draws, margin, 0.0, settings.confidence)
 
     def quantile(self, settings: ReliabilityTable, column: RiskColumn) -> Estimate:
@@ -103,9 +111,16 @@ class AssessedRow:
 
 
 def risk_of(
-    row: AssessedRow, sampled: Sample, weighted: Sample | None, settings: ReliabilityTable
+    row: AssessedRow,
+    sampled: Sample,
+    weighted: Sample | None,
+    settings: ReliabilityTable,
+    growths: Array | float = 1.0,
 ) -> Risk:
-    """Return the risk of a row by plain and importance sampling."""
+    """Return the risk of a row by plain and importance sampling.
+
+    growths: of the stress of each row of the study, (rows,), over what is open (`growth`).
+    """
     plain = sampled.probability(settings, row.column)
     by_weights = weighted and weighted.probability(settings, row.column)
     low = weighted and weighted.quantile(settings, row.column)
@@ -130,6 +145,7 @@ def risk_of(
         mesh=_by_errors(best, row, settings),
         joint=_by_joint(best, row, settings),
         beneath=_beneath(sampled, weighted, row, settings),
+        over_open=_over_open(sampled, weighted, row, settings, growths),
         unbounded=_unbounded(sampled, weighted, row, settings),
         curve=(*_curve(sampled, row, 0), *(_curve(weighted, row, 1) if weighted else ())),
     )
@@ -143,6 +159,25 @@ def _beneath(
         return None
     plain = _bounded(sampled.deep(settings, row.column))
     return plain.or_narrower(_bounded(weighted.deep(settings, row.column)) if weighted else None)
+
+
+def _over_open(
+    sampled: Sample,
+    weighted: Sample | None,
+    row: AssessedRow,
+    settings: ReliabilityTable,
+    growths: Array | float,
+) -> Spread | None:
+    """Return the probability at the worst of what is open, with the stress beneath contact; None
+    where nothing raises the stress.
+    """
+    every = np.broadcast_to(growths, sampled.answers.used.shape[1])
+    its = every if row.column.row is None else every[row.column.row]
+    if np.all(its == 1.0):
+        return None
+    plain = _bounded(sampled.deep(settings, row.column, growths))
+    by_weights = weighted and weighted.deep(settings, row.column, growths)
+    return plain.or_narrower(_bounded(by_weights) if by_weights else None)
 
 
 def _unbounded(

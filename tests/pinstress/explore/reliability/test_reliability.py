@@ -79,15 +79,39 @@ def test_the_bar_through_the_whole_chain(
     assert "normal, mean 75000 N" in page
 
 
-def test_ranges_that_do_not_enter_are_told(tmp_path: Path) -> None:
-    """A pin that depends on its yield strength in a run was safe, and nothing said why."""
-    strength = "yield_strength = 300\n"
-    text = BAR.replace(strength, f"{strength}range = {{ yield_strength = [150, 300] }}\n")
-    text = text.replace('"material.steel.yield_strength" = { lognormal = [300, 30] }', "")
-    text = text.replace("samples = 200", "samples = 20").replace("= 300\nsobol", "= 0\nsobol")
-    assert _run(tmp_path, text.replace("sobol_samples = 16", "sobol_samples = 0")) in (0, 1)
-    notes = json.loads((tmp_path / "out" / "reliability.json").read_text())["notes"]
-    assert "The range of a yield strength does not enter: a run judges pins over it (A)." in notes
+STRENGTH = '"material.steel.yield_strength" = { lognormal = [300, 30] }'
+
+
+def _with_range(low: float) -> str:
+    """The bar with few samples and a range of its yield strength."""
+    given = "yield_strength = 300\n"
+    text = BAR.replace(given, f"{given}range = {{ yield_strength = [{low}, 300] }}\n")
+    text = text.replace("samples = 200", "probability = 0.2\nsamples = 40")
+    text = text.replace("importance_samples = 300", "importance_samples = 0")
+    return text.replace("sobol_samples = 16", "sobol_samples = 0")
+
+
+@pytest.mark.parametrize(("low", "result"), [(290, "safe"), (150, "depends")])
+def test_a_range_without_a_law_is_at_its_worst(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], low: float, result: str
+) -> None:
+    """A pin that depends on its yield strength in a run was safe. Half the strength is twice the
+    stress, so that every design fails.
+    """
+    status = _run(tmp_path, _with_range(low).replace(STRENGTH, ""))
+    (risk,) = json.loads((tmp_path / "out" / "reliability.json").read_text())["risks"]
+    assert risk["result"] == result
+    assert risk["over_open"]["value"] == (result == "depends")
+    said = "Depends on what the study leaves open: Pin A, pull." in capsys.readouterr().err
+    assert (status, said) == ((1, True) if result == "depends" else (0, False))
+
+
+def test_a_range_with_a_law_is_left_out(tmp_path: Path) -> None:
+    assert _run(tmp_path, _with_range(150)) in (0, 1)
+    found = json.loads((tmp_path / "out" / "reliability.json").read_text())
+    assert found["risks"][0]["over_open"] is None
+    (told,) = (note for note in found["notes"] if "range" in note)
+    assert told.startswith("The range of a yield strength is left out, since a law takes its place")
 
 
 @pytest.mark.slow
