@@ -54,7 +54,8 @@ class Formula(SolvedDesigns):
         """As that of SolvedDesigns."""
         self.count += len(u)
         used = self.case.used(self.space.physical(u))[:, None]
-        return Answers(used, np.zeros_like(used), used, np.zeros(used.shape, dtype=bool))
+        never = np.zeros(used.shape, dtype=bool)
+        return Answers(used, np.zeros_like(used), used, never, never)
 
 
 class _Smooth:

@@ -94,23 +94,14 @@ def assess(
     designs = SolvedDesigns(evaluator, space, jobs, progress, elsewhere)
     plain = plain_draws(settings.samples, space.size, settings.seed)
     sampled = Sample(plain, designs.at(plain.u, "plain sampling"))
-    loose = {row: count / settings.samples for row, count in designs.loose.items()}
     forms = _first_orders(study, parameters, designs, sampled, cases)
     centres = [c for form in forms for c in form.centres]
     weighted = weighted_sample(designs, centres, settings)
     shares = _indices(designs, settings) if space.lower is None else None
-    rows = {(p.pin, p.case): p for p in nominal.pins}
+    assessed = _assessed_rows(parameters, designs, forms, shares, nominal)
     laws = [p.key for p in parameters]
-    growths = np.array([growth(rows.get(row), laws) for row in evaluator.table])
-    assessed = []
-    for k, (pin, case) in enumerate(evaluator.table):
-        drivers = _drivers(parameters, designs, forms[k], shares[k] if shares else None)
-        row = AssessedRow(pin, case, RiskColumn(k), rows.get((pin, case)), forms[k].result, drivers)
-        assessed.append(row)
-    if len(assessed) > 1:
-        drivers = _drivers(parameters, designs, None, shares[-1] if shares else None)
-        system = SYSTEM_ROW, SYSTEM_ROW, RiskColumn(None), _worst(nominal), None, drivers
-        assessed.insert(0, AssessedRow(*system))
+    of_study = [row.nominal for row in assessed if row.column.row is not None]
+    growths = np.array([growth(row, laws) for row in of_study])
     return Reliability(
         title=study.table.title,
         study=str(study.path),
@@ -120,18 +111,36 @@ def assess(
         samples=settings.samples,
         seed=settings.seed,
         parameters=tuple((p.key, p.law_text) for p in parameters),
-        risks=tuple(
-            replace(
-                risk_of(row, sampled, weighted, settings, growths),
-                loose=loose.get((row.pin, row.case), 0.0),
-            )
-            for row in assessed
-        ),
+        risks=tuple(risk_of(row, sampled, weighted, settings, growths) for row in assessed),
         correlations=_correlations(study),
         solved=dict(designs.solved),
         reasons=dict(designs.reasons),
         notes=tuple(_notes(study, nominal, evaluator.table, laws)),
     )
+
+
+def _assessed_rows(
+    parameters: tuple[Parameter, ...],
+    designs: SolvedDesigns,
+    forms: list[_Form],
+    shares: list[list[tuple[Spread, Spread]]] | None,
+    nominal: Results,
+) -> list[AssessedRow]:
+    """Return the rows of the study, after that of all of them together where there are several.
+
+    shares: Sobol indices of each row and of all, None for correlated numbers.
+    """
+    rows = {(p.pin, p.case): p for p in nominal.pins}
+    assessed = []
+    for k, (pin, case) in enumerate(designs.evaluator.table):
+        drivers = _drivers(parameters, designs, forms[k], shares[k] if shares else None)
+        row = AssessedRow(pin, case, RiskColumn(k), rows.get((pin, case)), forms[k].result, drivers)
+        assessed.append(row)
+    if len(assessed) > 1:
+        drivers = _drivers(parameters, designs, None, shares[-1] if shares else None)
+        system = SYSTEM_ROW, SYSTEM_ROW, RiskColumn(None), _worst(nominal), None, drivers
+        assessed.insert(0, AssessedRow(*system))
+    return assessed
 
 
 def _correlations(study: Study) -> tuple[str, ...]:

@@ -16,7 +16,6 @@ from pinstress.explore.sweep.correlations import correlations_of, root_of
 from pinstress.explore.sweep.evaluate import DesignRow, Evaluator
 from pinstress.explore.sweep.parameters import Parameter, parameters_of, require_laws
 from pinstress.study.reading.file import Study
-from reports.data.reliability import SYSTEM_ROW
 
 Array = NDArray[np.float64]
 
@@ -75,12 +74,14 @@ class Answers:
     larger, on which a row then depends.
     unbounded: (n, r) whether the stress is unbounded where it governs; `used` is then that outside
     the singular zones.
+    loose: (n, r) whether the pin comes loose at the temperature of the case.
     """
 
     used: Array
     errors: Array
     deep: Array
     unbounded: NDArray[np.bool_]
+    loose: NDArray[np.bool_]
 
     @property
     def factors(self) -> Array:
@@ -90,16 +91,15 @@ class Answers:
 
     @property
     def system(self) -> Answers:
-        """Return the answers of the row with the largest use, as (n, 1); unknown, or unbounded,
-        where any row is.
+        """Return the answers of the row with the largest use, as (n, 1); unknown, unbounded, or
+        loose where any row is.
         """
-        worst, deepest = (
-            np.argmax(np.where(np.isnan(x), np.inf, x), axis=1)[:, None]
-            for x in (self.used, self.deep)
-        )
+        worst = np.argmax(np.where(np.isnan(self.used), np.inf, self.used), axis=1)[:, None]
         used, errors = (np.take_along_axis(x, worst, axis=1) for x in (self.used, self.errors))
-        deep = np.take_along_axis(self.deep, deepest, axis=1)
-        return Answers(used, errors, deep, np.asarray(self.unbounded.any(axis=1))[:, None])
+        unbounded, loose = (
+            np.asarray(x.any(axis=1))[:, None] for x in (self.unbounded, self.loose)
+        )
+        return Answers(used, errors, self.deep.max(axis=1)[:, None], unbounded, loose)
 
     @property
     def depends(self) -> NDArray[np.bool_]:
@@ -139,7 +139,6 @@ class SolvedDesigns:
     (n, d) in SI; it is given a function to call with the number of designs that are solved.
     solved: number of designs by purpose.
     reasons: why rows have no result, with their number.
-    loose: in how many designs a pin comes loose in a case, and in any (SYSTEM_ROW).
     """
 
     def __init__(
@@ -152,7 +151,6 @@ class SolvedDesigns:
     ) -> None:
         self.evaluator, self.space = evaluator, space
         self.solved, self.reasons = Counter[str](), Counter[str]()
-        self.loose = Counter[tuple[str, str]]()
         self._jobs, self._progress, self._elsewhere = jobs, progress, elsewhere
 
     def of_pin(self, evaluator: Evaluator) -> SolvedDesigns:
@@ -206,10 +204,9 @@ class SolvedDesigns:
         for rows in designs:
             for reason in {row.reason for row in rows if np.isnan(_used(row))}:
                 self.reasons[reason or "no result"] += 1
-            loose = [(row.pin, row.case) for row in rows if row.loose]
-            self.loose.update([*loose, *[(SYSTEM_ROW, SYSTEM_ROW)] * bool(loose)])
         singular = np.array([[row.verdict == "singular" for row in rows] for rows in designs])
-        return Answers(used, errors, used * np.maximum(1.0, below), singular)
+        loose = np.array([[row.loose for row in rows] for rows in designs])
+        return Answers(used, errors, used * np.maximum(1.0, below), singular, loose)
 
 
 def _name(purpose: str, count: int, total: int) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -52,6 +53,11 @@ class RiskColumn:
         """Return whether the stress is unbounded where it governs, (n,)."""
         selected = answers.system if self.row is None else answers
         return np.asarray(selected.unbounded[:, self.row or 0])
+
+    def loose(self, answers: Answers) -> float:
+        """Return the part of the designs in which the pin comes loose."""
+        selected = answers.system if self.row is None else answers
+        return float(selected.loose[:, self.row or 0].mean())
 
     def depends(self, answers: Answers) -> bool:
         """Return whether the stress beneath contact ever governs."""
@@ -147,6 +153,7 @@ def risk_of(
         beneath=_beneath(sampled, weighted, row, settings),
         over_open=_over_open(sampled, weighted, row, settings, growths),
         unbounded=_unbounded(sampled, weighted, row, settings),
+        loose=row.column.loose(sampled.answers),
         curve=(*_curve(sampled, row, 0), *(_curve(weighted, row, 1) if weighted else ())),
     )
 
@@ -157,8 +164,7 @@ def _beneath(
     """Return the probability with the stress beneath contact; None where that never governs."""
     if not any(row.column.depends(x.answers) for x in (sampled, weighted) if x):
         return None
-    plain = _bounded(sampled.deep(settings, row.column))
-    return plain.or_narrower(_bounded(weighted.deep(settings, row.column)) if weighted else None)
+    return _narrower(lambda sample: sample.deep(settings, row.column), sampled, weighted)
 
 
 def _over_open(
@@ -175,9 +181,7 @@ def _over_open(
     its = every if row.column.row is None else every[row.column.row]
     if np.all(its == 1.0):
         return None
-    plain = _bounded(sampled.deep(settings, row.column, growths))
-    by_weights = weighted and weighted.deep(settings, row.column, growths)
-    return plain.or_narrower(_bounded(by_weights) if by_weights else None)
+    return _narrower(lambda sample: sample.deep(settings, row.column, growths), sampled, weighted)
 
 
 def _unbounded(
@@ -188,9 +192,16 @@ def _unbounded(
     """
     if not any(row.column.unbounded(x.answers).any() for x in (sampled, weighted) if x):
         return None
-    plain = _bounded(sampled.unbounded(settings, row.column))
-    by_weights = weighted and weighted.unbounded(settings, row.column)
-    return plain.or_narrower(_bounded(by_weights) if by_weights else None)
+    return _narrower(lambda sample: sample.unbounded(settings, row.column), sampled, weighted)
+
+
+def _narrower(
+    estimate: Callable[[Sample], Estimate], sampled: Sample, weighted: Sample | None
+) -> Spread:
+    """Return the estimate by plain or by importance sampling, whichever has less uncertainty."""
+    return _bounded(estimate(sampled)).or_narrower(
+        _bounded(estimate(weighted)) if weighted else None
+    )
 
 
 def _by_errors(best: Sample, row: AssessedRow, settings: ReliabilityTable) -> ByErrors | None:

@@ -70,17 +70,18 @@ def test_the_worst_row_of_each_design() -> None:
     used = np.array([[0.5, 0.9], [0.8, 0.1], [np.nan, 0.3], [0.0, 0.0]])
     errors = np.array([[0.1, 0.2], [0.3, 0.4], [0.0, 0.0], [0.0, 0.0]])
     bounded = np.zeros(used.shape, dtype=bool)
-    worst = Answers(used, errors, used, bounded).system
+    worst = Answers(used, errors, used, bounded, bounded).system
     assert worst.used[:2, 0].tolist() == [0.9, 0.8]
     assert worst.errors[:2, 0].tolist() == [0.2, 0.3]
     assert np.isnan(worst.used[2, 0])
-    assert Answers(used, errors, used, bounded).factors[3].tolist() == [np.inf, np.inf]
+    assert Answers(used, errors, used, bounded, bounded).factors[3].tolist() == [np.inf, np.inf]
 
 
 def test_the_error_that_fails_any_row_counts_not_that_of_the_worst_row() -> None:
     """The first row is stressed most; with its error, the second fails in one of two designs."""
     used, errors = np.array([[0.95, 0.93], [0.5, 0.4]]), np.array([[0.01, 0.1], [0.01, 0.1]])
-    answers = Answers(used, errors, used, np.zeros(used.shape, dtype=bool))
+    never = np.zeros(used.shape, dtype=bool)
+    answers = Answers(used, errors, used, never, never)
     sample, every = Sample(plain_draws(2, 1, 1), answers), RiskColumn(None)
     at = [sample.probability(ReliabilityTable(), every, part).value for part in (-1.0, 0.0, 1.0)]
     assert at == [0.0, 0.0, 0.5]
@@ -90,7 +91,7 @@ def test_a_row_that_may_be_singular_is_not_safe() -> None:
     """Of three designs one fails and another is singular in one of its rows."""
     used = np.array([[0.5, 0.2], [1.2, 0.2], [0.5, 0.2]])
     singular = np.array([[False, True], [False, False], [False, False]])
-    answers = Answers(used, np.zeros_like(used), used, singular)
+    answers = Answers(used, np.zeros_like(used), used, singular, np.zeros_like(singular))
     sample, settings = Sample(plain_draws(3, 1, 1), answers), ReliabilityTable()
     found = [sample.unbounded(settings, RiskColumn(k)).value for k in (0, 1, None)]
     assert found == [1.0 / 3.0, 1.0 / 3.0, 2.0 / 3.0]

@@ -27,7 +27,7 @@ class Known:
         linear, none = 0.5 + 0.06 * x + 0.08 * y, np.zeros_like(x)
         used = np.stack([linear, none + 0.25, none, 0.5 + 0.01 * x**2, linear], axis=1)
         unbounded = np.stack([none > 1.0] * 4 + [x + y > 3.0], axis=1)
-        return Answers(used, 0.0 * used, used, unbounded)
+        return Answers(used, 0.0 * used, used, unbounded, np.zeros_like(unbounded))
 
 
 def factor(row: int) -> float:
