@@ -43,6 +43,7 @@ from pinstress.cli.shared import (
     open_page,
     output_folder,
     read_study,
+    warn,
 )
 from pinstress.study.reading.choices import ChoiceError, Selection
 from pinstress.study.reading.errors import InputError, cannot_write, clipped
@@ -128,7 +129,7 @@ def _settle_environment() -> None:
     stated = os.environ.get(EPOCH_VARIABLE)
     if stated is not None and not (stated.isdecimal() and int(stated[:20]) <= MAX_TIMESTAMP):
         del os.environ[EPOCH_VARIABLE]
-        click.echo(f"Warning: {EPOCH_VARIABLE} is not a time in seconds and is ignored.", err=True)
+        warn(f"{EPOCH_VARIABLE} is not a time in seconds and is ignored.")
 
 
 @commands.command(
@@ -335,8 +336,7 @@ def check(study: Path, opens: bool, out: Path | None, no_browser: bool) -> int:
     loaded = read_study(study)
     x = examine(loaded)
     click.echo("\n".join(x.lines))
-    for line in x.warnings:
-        click.echo(f"Warning: {line}", err=True)
+    warn(*x.warnings)
     for line in x.unheld:
         click.echo(f"Not decided: {line}.", err=True)
     if opens or out is not None:

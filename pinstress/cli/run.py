@@ -34,7 +34,7 @@ from pinstress.cli.closing import (
 from pinstress.cli.new_file import require_junit
 from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.plots import draw_and_print
-from pinstress.cli.shared import open_page
+from pinstress.cli.shared import open_page, warn
 from pinstress.cli.streams import unneeded
 from pinstress.study.model.balance import other_warnings
 from pinstress.study.model.lost_fits import lost_fit_warnings
@@ -129,12 +129,8 @@ def run_and_write(
     cache = user_cache() if wanted.cached else None
     with replacing(directory) as staging:  # from now on a second run into it is refused
         plan = replace(prepare(study, also=also, **chosen), sensitive=wanted.sensitive)
-        for warning in (
-            *other_warnings(study, plan.tasks),
-            *lost_fit_warnings(study, plan.tasks),
-            *fit_note(study),
-        ):
-            click.echo(f"Warning: {warning}", err=True)
+        tasks = plan.tasks
+        warn(*other_warnings(study, tasks), *lost_fit_warnings(study, tasks), *fit_note(study))
         ask = _second_opinion(plan, wanted.quiet) if wanted.second else {}
         if wanted.vtk != "none":
             (staging / "vtk").mkdir()
@@ -265,8 +261,7 @@ def loads_and_write(
     require_replaceable(directory)
     with replacing(directory) as staging:
         results = loads_only(study, cases)
-        for warning in fit_note(study):  # the forces are not those of the linkage as drawn
-            click.echo(f"Warning: {warning}", err=True)
+        warn(*fit_note(study))  # the forces are not those of the linkage as drawn
         write_loads(results, staging)
     with unneeded(directory):
         print_loads(results, console())

@@ -111,7 +111,7 @@ def connected(connection: ClusterConnection | None) -> Iterator[Cluster | None]:
         return
     from pinstress.explore.sweep.scheduler import cluster_at
 
-    with cluster_at(connection, lambda message: click.echo(f"Warning: {message}", err=True)) as it:
+    with cluster_at(connection, warn) as it:
         yield it
 
 
@@ -146,9 +146,14 @@ def read_study(path: Path) -> Study:
 
     study = load_study(path)
     warnings = (weight_warnings(study), unsprung_warnings(study), given_warnings(study))
-    for warning in (*study.warnings, *chain.from_iterable(warnings)):
-        click.echo(f"Warning: {warning}", err=True)
+    warn(*study.warnings, *chain.from_iterable(warnings))
     return study
+
+
+def warn(*warnings: str) -> None:
+    """Print warnings, a line each."""
+    for warning in warnings:
+        click.echo(f"Warning: {warning}", err=True)
 
 
 def open_page(page: Path) -> None:

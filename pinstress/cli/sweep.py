@@ -18,7 +18,7 @@ from pinbase.processes.pool import cores
 from pinstress.cli import manifest
 from pinstress.cli.output_folder import require_replaceable
 from pinstress.cli.run import bar_on_stderr, console
-from pinstress.cli.shared import open_page, resumable
+from pinstress.cli.shared import open_page, resumable, warn
 from pinstress.cli.streams import unneeded
 from pinstress.explore.sweep.connection import ClusterConnection
 from pinstress.explore.sweep.design_columns import designs_of
@@ -91,14 +91,10 @@ def sweep_and_write(
                 click.echo(f"Continued from {before:,} designs to {count:,}.", err=True)
         alone = way.connection is not None or (way.jobs or cores()) == 1
         with resumable(lambda: _finished(parts)), progress(way.quiet, alone) as report:
-            table = solved(sweep, parts, way.jobs, way.connection, report, _warn)
+            table = solved(sweep, parts, way.jobs, way.connection, report, warn)
         _write(directory, table)
         parts.finish()
     return _told(directory, table, way)
-
-
-def _warn(message: str) -> None:
-    click.echo(f"Warning: {message}", err=True)
 
 
 def _told(directory: Path, table: pa.Table, way: Way) -> int:
