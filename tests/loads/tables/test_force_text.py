@@ -214,6 +214,8 @@ def test_a_jump_has_both_its_limits(tmp_path: Path) -> None:
 def test_a_time_given_thrice_is_refused(tmp_path: Path) -> None:
     with raises(TableError, "duplicate-row", "line 4: connection B is given thrice"):
         read(tmp_path, "t Fx Fy\n0.5 1 0\n0.5 2 0\n0.5 3 0\n")
+    with raises(TableError, "duplicate-row", "line 5: connection B is given thrice"):
+        read(tmp_path, "t Fx Fy\n0 1 0\n0.5 2 0\n0.5 3 0\n0.5 4 0\n")
 
 
 @each(
@@ -222,6 +224,8 @@ def test_a_time_given_thrice_is_refused(tmp_path: Path) -> None:
         "0 1 0\n1 2 0\n0.5 3 0\n1.5 4 0\n",  # two runs: whose values are between whose?
         "1 1 0\n1.5 2 0\n1 3 0\n",
         "2 1 0\n1 2 0\n1 3 0\n0 4 0\n",  # which one is before the jump?
+        "0.5 1 0\n0.5 2 0\n0 1 0\n",
+        "0.5 1 0\n0 2 0\n0.5 3 0\n",
     ],
 )
 def test_times_that_go_back_are_refused(rows: str, tmp_path: Path) -> None:

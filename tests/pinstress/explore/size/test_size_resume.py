@@ -145,6 +145,15 @@ def test_a_file_that_cannot_be_written_is_named_as_it_was_given(tmp_path: Path) 
     assert [p.name for p in tmp_path.iterdir()] == ["study.toml"]
 
 
+def test_a_long_name_leaves_room_for_the_finished_pins(tmp_path: Path) -> None:
+    """Of 238 characters: the file beside it in which they were written had a longer one."""
+    (tmp_path / "study.toml").write_text(QUICK)
+    name = "n" * 233 + ".toml"
+    made = run_here("size", "study.toml", "--fos", "1.5", "--out", name, cwd=tmp_path)
+    assert made.returncode == 0, made.stderr
+    assert sorted(p.name for p in tmp_path.iterdir()) == [name, "study.toml"]
+
+
 def test_a_new_study_that_was_edited_is_not_overwritten(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
