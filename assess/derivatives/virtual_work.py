@@ -72,12 +72,11 @@ def _parts(
     at_nodes = [x.reshape(-1, 3)[space.elements] for x in unknowns]
     for k in range(0, len(weights), ELEMENT_BATCH):
         here = slice(k, k + ELEMENT_BATCH)
-        one = gradients[here]
-        flat = one.reshape(
-            len(one), -1, one.shape[-1]
-        )  # points and a in one: a product per element
-        G = [(flat @ x[here]).reshape(*one.shape[:3], 3).swapaxes(-1, -2) for x in at_nodes]
-        yield here, one, weights[here], G
+        some = gradients[here]
+        # Points and directions in one axis: a product of matrices for each element.
+        flat = some.reshape(len(some), -1, some.shape[-1])
+        G = [(flat @ x[here]).reshape(*some.shape[:3], 3).swapaxes(-1, -2) for x in at_nodes]
+        yield here, some, weights[here], G
 
 
 def _conjugate(D: Floats, here: slice, n: int, G: Floats) -> Floats:

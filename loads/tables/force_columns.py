@@ -145,11 +145,9 @@ def force_columns(grid: TableGrid, layout: Layout, unit: Unit) -> list[ForceColu
         wide = WIDE_COLUMN_PATTERN.fullmatch(parts["name"])
         component = wide["component"] if wide else parts["name"]
         if component not in (*FORCE_COMPONENTS, "time", *TEXT_COLUMNS):
-            what = (
-                f"unknown column {component[:40]!r}"
-                if component
-                else (f"column {index + 1} has no header (the row numbers of pandas?)")
-            )
+            what = f"unknown column {component[:40]!r}"
+            if not component:
+                what = f"column {index + 1} has no header (the row numbers of pandas?)"
             raise TableError(
                 f"{grid.source.file}: {what}; allowed: connection, {', '.join(FORCE_COMPONENTS)}, "
                 "time, case, body; or B.fx for the force on connection B. To leave columns out, "

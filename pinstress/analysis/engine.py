@@ -220,6 +220,7 @@ class Engine:
         if name not in self._as_is:
             self._as_is[name] = self._both(name)
         tasks, before = self._as_is[name].tasks, self._as_is[name].rows
+        # Cases at other temperatures are tasks of their own, with other clearances.
         cases = {loads.case for loads in task.loads}
         if not all(same_ranges(x, task) for x in tasks if cases & {y.case for y in x.loads}):
             return None
