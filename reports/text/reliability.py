@@ -38,6 +38,8 @@ def sentence(reliability: Reliability, risk: Risk) -> str:
     text += "; model form not included)"
     if risk.beneath is not None:
         text += f", and {chance_range(risk.beneath)} with what lies beneath contact"
+    if risk.over_open is not None:
+        text += f", and {chance_range(risk.over_open)} at the worst of what the study leaves open"
     return f"{name(risk)}: the probability of a factor below {limit} is {text}."
 
 

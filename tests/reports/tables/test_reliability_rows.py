@@ -57,6 +57,11 @@ def test_the_sentence_and_the_plot() -> None:
     found = Reliability("t", "s", 1.0, 1e-3, 0.95, 2000, 1, (), (row,))
     said = "Pin A, pull: the probability of a factor below 1.00 is 0.03 (95 %: 0.02 to 0.04; "
     assert sentence(found, row) == f"{said}model form not included)."
+    open_ = replace(row, over_open=Spread(0.2, 0.1, 0.3))
+    assert sentence(found, open_) == (
+        f"{said}model form not included), and 0.2 (0.1 to 0.3) at the worst of what the study "
+        "leaves open."
+    )
     assert "2 design points" in remark(row)
     plot = distribution_plot(found, row)
     assert plot is not None
