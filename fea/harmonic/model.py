@@ -7,7 +7,6 @@ directions, share it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
@@ -139,39 +138,12 @@ class HarmonicBody:
 Forces = Mapping[int, tuple[Ints, Floats, Floats]]
 
 
-@dataclass(frozen=True)
-class Moved:
-    """Displacements u (N, 3, K) m of a section's nodes under K unit loads."""
-
-    loads: tuple[UnitLoad, ...]
-    u: Floats
-
-    @property
-    def harmonics(self) -> Ints:
-        """The harmonic of each load, (K,)."""
-        return np.array([load.n for load in self.loads])
-
-
-def superposed(parts: Sequence[Moved], loads: tuple[UnitLoad, ...]) -> Moved:
-    """The displacements under loads that are sums of those in parts, each of one harmonic.
-
-    The sums are those of UnitLoad.single_surface_loads.
-    """
-    total = Moved(loads, np.zeros((*parts[0].u.shape[:-1], len(loads))))
-    for part in parts:
-        columns = np.flatnonzero(total.harmonics == part.loads[0].n)
-        share = shares(part.loads, [loads[k] for k in columns])
-        total.u[..., columns] += part.u @ share
-    return total
-
-
 def shares(alone: Sequence[UnitLoad], loads: Sequence[UnitLoad]) -> Floats:
-    """The amount (A, K) of some of the loads on single surfaces that other loads are made of."""
+    """The amount (A, K) of loads on single surfaces that other loads are made of."""
     number, out = {load: k for k, load in enumerate(alone)}, np.zeros((len(alone), len(loads)))
     for k, load in enumerate(loads):
         for one, amount in load.single_surface_loads.items():
-            if one in number:
-                out[number[one], k] = amount
+            out[number[one], k] = amount
     return out
 
 
@@ -209,44 +181,19 @@ class HarmonicModel(HarmonicBody):
 
         Raises: SolveError when the pin is not constrained or a check fails.
         """
-        forces = self._forces(loads)
-        return self.read(self.moved(loads, forces), extra, ends, forces)
-
-    def moved(self, loads: tuple[UnitLoad, ...], forces: Forces | None = None) -> Moved:
-        """The displacements under unit loads, harmonic by harmonic.
-
-        forces: of the loads, if they are known.
-        """
-        u = np.zeros((len(self.space.nodes), 3, len(loads)))
-        for n, (here, on_nodes, _) in (forces or self._forces(loads)).items():
+        forces, shape = self._forces(loads), (len(self.space.nodes), 3, len(loads))
+        u, applied, harmonics = np.zeros(shape), np.zeros(shape), np.zeros(len(loads), np.int64)
+        tractions = np.zeros((*self.outline.nodes.shape, 3, len(loads)))
+        for n, (here, on_nodes, on_edges) in forces.items():
+            harmonics[here] = n
             u[:, :, here] = polar(self.displace(n, on_nodes, self._shifted(n, loads, here)))
-        return Moved(loads, u)
-
-    def read(
-        self,
-        moved: Moved,
-        extra: Floats,
-        ends: Iterable[tuple[float, float]],
-        forces: Forces | None = None,
-    ) -> MeridianFields:
-        """The unit fields, read at the points of this mesh.
-
-        forces: of the loads, if they are known.
-        """
-        key = extra.tobytes(), tuple(ends)
-        if key not in self._readings:  # the first mesh is read again for other loads
-            self._readings[key] = reading(
-                self.space, self.outline, self.material, self.clamps, extra, key[1]
-            )
-        read, applied = self._readings[key], np.zeros_like(moved.u)
-        tractions = np.zeros((*self.outline.nodes.shape, 3, len(moved.loads)))
-        for here, on_nodes, on_edges in (forces or self._forces(moved.loads)).values():
             applied[:, :, here] = polar(on_nodes) * [[0.5], [0.5], [1.0]]
             tractions[..., here] = on_edges
-        displacement, stress = _read_in_blocks(read, moved, tractions)
+        read = self._reading(extra, tuple(ends))
+        displacement, stress = _read_in_blocks(read, harmonics, u, tractions)
         return MeridianFields(
             read.points,
-            moved.loads,
+            loads,
             stress,
             displacement,
             read.skin,
@@ -256,6 +203,17 @@ class HarmonicModel(HarmonicBody):
             read.at_points(applied),
             self.space.section,
         )
+
+    def _reading(self, extra: Floats, ends: tuple[tuple[float, float], ...]) -> Reading:
+        """What reads stress at the points of this mesh; the first mesh is read again for other
+        loads.
+        """
+        key = extra.tobytes(), ends
+        if key not in self._readings:
+            self._readings[key] = reading(
+                self.space, self.outline, self.material, self.clamps, extra, ends
+            )
+        return self._readings[key]
 
     def _shifted(self, n: int, loads: tuple[UnitLoad, ...], here: Ints) -> Floats | None:
         """Motions of clamps (unknowns, K) of harmonic n; None where there are none."""
@@ -276,13 +234,15 @@ class HarmonicModel(HarmonicBody):
         return applied(self, self.pin, self.outline, n, loads)
 
 
-def _read_in_blocks(read: Reading, moved: Moved, tractions: Floats) -> tuple[Floats, Floats]:
+def _read_in_blocks(
+    read: Reading, harmonics: Ints, u: Floats, tractions: Floats
+) -> tuple[Floats, Floats]:
     """Read as Reading.of, some loads at a time: its samples take several times its result."""
-    count = len(moved.loads)
+    count = len(harmonics)
     whole: list[Floats] = []
     for first in range(0, count, LOADS_READ_AT_ONCE):
         some = slice(first, first + LOADS_READ_AT_ONCE)
-        parts = read.of(moved.harmonics[some], moved.u[..., some], tractions[..., some])
+        parts = read.of(harmonics[some], u[..., some], tractions[..., some])
         whole = whole or [np.empty((*x.shape[:2], count)) for x in parts]
         for target, part in zip(whole, parts, strict=True):
             target[..., some] = part

@@ -28,7 +28,6 @@ from fea.support.contact.contact_state import ContactState
 from fea.support.contact.pressure_loads import (
     MODE_TOLERANCE,
     PressureLoads,
-    PressureModes,
     pressure_modes,
 )
 from fea.support.contact.solve_joint import ContactModel, JointContact
@@ -130,14 +129,15 @@ def rubbed_across(model: ContactModel, contact: JointContact, own: LoadedJoint) 
 
 
 def rubbed(
-    model: ContactModel, contact: JointContact, known: PressureModes | None
+    model: ContactModel, contact: JointContact
 ) -> tuple[PressureLoads, dict[str, list[PressureLoads]]]:
     """The loads of a contact at one instant, and those with friction by SHARES.
 
-    known: patterns of the pressures.
+    Their patterns are their own: tractions along the axis need a finer mesh, on which patterns of
+    other joints would be solved in vain.
     """
     waves = model.waves(contact.contact)
-    patterns = model.patterns([(waves, MODE_TOLERANCE)], known)
+    patterns = model.patterns([(waves, MODE_TOLERANCE)])
     plain = patterns.loads(waves, contact.loads.links, model.arcs(contact.contact))
     axial = waves * along_axis(model, contact)[:, None]
     modes = pressure_modes(model.pin, model.rings, [(axial, MODE_TOLERANCE)])

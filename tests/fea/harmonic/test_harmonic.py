@@ -16,7 +16,6 @@ from fea.harmonic.stress_recovery import NO_POINTS, reading
 from fea.harmonic.superposition import Circumference
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import MeridianMesh, SectionSize, meridian_mesh
-from pinbase.memo import Memo
 from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.exact.exact_fields import displacements_of
@@ -192,14 +191,10 @@ def test_inertia_sums_to_the_mass(section: MeridianMesh, steel: Material) -> Non
     assert across[1] / across[0] == pytest.approx(weighed, rel=1e-5)
 
 
-@pytest.mark.parametrize("most", [250_000_000, 0])
-def test_patterns_of_pressure_are_superposed_of_each_surface(
-    most: int, section: MeridianMesh, steel: Material, monkeypatch: pytest.MonkeyPatch
+def test_patterns_of_pressure_come_one_after_the_other(
+    section: MeridianMesh, steel: Material
 ) -> None:
-    """On the first mesh, whatever came before: stress and displacement as if solved themselves,
-    also where displacements under single surfaces are too many to be kept.
-    """
-    monkeypatch.setattr("fea.harmonic.first_mesh.MAX_KEPT_BYTES", most)
+    """On the first mesh, whatever came before: stress and displacement as if solved together."""
     bands = PIN.connections
 
     def pressure(n: int, *amounts: float) -> UnitLoad:
@@ -208,11 +203,9 @@ def test_patterns_of_pressure_are_superposed_of_each_surface(
     first = pressure(0, 1.0, -2.0), pressure(2, 0.5, 3.0)
     later = pressure(2, 1.0, 1.0), pressure(1, -1.0, 2.0), UnitLoad(bands[0], "force", 1)
     model = HarmonicModel(PIN, section, steel, ())
-    memo = Memo()
-    mesh = FirstMesh(memo)
+    mesh = FirstMesh()
     mesh.fields(lambda: model, ("mesh",), (first, NO_POINTS, ()))
     found = mesh.fields(lambda: model, ("mesh",), (later, NO_POINTS, ()))
-    assert (memo.made > 1) == (most > 0)  # not the mesh alone
     exact = model.solve((*first, *later))
     assert found.loads == exact.loads
     for name in ("stress", "displacement"):

@@ -77,7 +77,7 @@ def test_full_slip_changes_the_moment_of_a_clevis_by_mu_f_r(model: ContactModel)
     """In the section at mid-span: mu F R less, and as much more, whichever way the load points."""
     for angle in (0.0, 0.9):
         contact = model.solve(pull(FORCE * np.array([[math.cos(angle), math.sin(angle)]])))
-        without, changed = rubbed(model, contact, None)
+        without, changed = rubbed(model, contact)
         moments = []
         for loads in (without, *changed[SLIDING][:2]):
             field = SectionField(model.pin, STEEL, (), (loads.in_sections,))
