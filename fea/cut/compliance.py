@@ -24,7 +24,7 @@ from fea.core.pin_loads import UnitLoad
 from fea.cut.evaluate import fine_about
 from fea.cut.frames import cartesian, turn_of
 from fea.cut.local_model import LocalModel
-from fea.cut.local_solution import LocalFineness, mesh_of, section_points
+from fea.cut.local_solution import LocalFineness, LocalMesh, section_points
 from fea.cut.movement import of_units
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.model import HarmonicModel
@@ -84,7 +84,7 @@ def added_compliance(
     rings = tuple(dict.fromkeys(name for x in loads for load in x for name in load.surfaces))
     grades = [*(fine_about(piece, 0) for piece in pieces), *finer_at_rings(pin, rings)]
     section = HarmonicModel(pin, meridian_mesh(pin, FIRST_MESH_SIZE, (), grades), material, ())
-    models = [mesh_of(x, material, (), LocalFineness.of(0), (), bands) for x in pieces]
+    models = [LocalMesh(x, material, (), LocalFineness.of(0), (), bands).model() for x in pieces]
     points = np.concatenate([section_points(model) for model in models])
     fields = [section.solve(x, points) for x in loads]
     units = [tuple((load, p) for load in x for p in load.phases) for x in loads]

@@ -14,13 +14,8 @@ from fea.core.pin_loads import PinLoads
 from fea.core.zone import DISTANCE_VARIATIONS, Zone
 from fea.cut.field import CutField, CutSolution
 from fea.cut.local_fields import LocalFields
-from fea.cut.local_solution import (
-    LOCAL_MESH_RATIO,
-    LocalFineness,
-    local_fields,
-    mesh_of,
-    section_points,
-)
+from fea.cut.local_solution import LOCAL_MESH_RATIO, LocalFineness, LocalMesh
+from fea.cut.posed_piece import PosedPiece
 from fea.cut.region import PIECE_REACH, REACH_FACTOR, pieces, surface_ends, zone
 from fea.cut.supports import ClampReaction, motions, reactions
 from fea.harmonic.evaluate import harmonic_result, section_problem
@@ -45,7 +40,9 @@ LOCAL_MESHES = MeshSequence(
 PIECE_SPACING_FACTOR = 2.0
 TRUNCATION_SHARE = 0.2  # of the tolerance: more of it makes local solids longer
 CUT_SECTION_GROWTH = 0.5  # of that with the distance
-MIN_UNIT_WEIGHT = 1e-3  # of the stress: what brings less is solved as if it brought so much
+# Of the stress: what a unit load brings is rounded up to a power of this, so that other amounts of
+# the loads are answered by the same solution; the least is this squared.
+UNIT_WEIGHT_STEP = 1.0 / 32.0
 
 
 def cut_solution(
@@ -72,12 +69,13 @@ def cut_solution(
     high = [p for result in before for p in result.local_high]
     finer = finer or LocalFineness.of(level)
     known = [next((k for k in reused if k.piece == piece), None) for piece in pieces]
-    models = [
-        mesh_of(piece, material, clamps, finer, high, bands)
+    memo = problem.memo or Memo()
+    posed = [
+        PosedPiece(LocalMesh(piece, material, clamps, finer, high, bands), memo)
         for piece, reused_piece in zip(pieces, known, strict=True)
         if reused_piece is None
     ]
-    points = [section_points(model) for model in models]
+    points = [one.section_points for one in posed]
     supports = _supports(problem)
     moved = motions(supports)
     section = harmonic_solution(
@@ -90,8 +88,8 @@ def cut_solution(
     units += moved
     weight = _weight(cases, units, section.fields)
     new = iter(
-        local_fields(model, section.fields, stress, units, problem.singularities, distance, weight)
-        for model, stress in zip(models, at[:-1], strict=True)
+        one.fields(section.fields, stress, units, problem.singularities, distance, weight)
+        for one, stress in zip(posed, at[:-1], strict=True)
     )
     local = tuple(reused_piece or next(new) for reused_piece in known)
     uncut = section.fields
@@ -136,7 +134,7 @@ def _units(cases: tuple[PinLoads, ...]) -> tuple[Unit, ...]:
 
 
 def _weight(cases: tuple[PinLoads, ...], units: tuple[Unit, ...], fields: MeridianFields) -> Floats:
-    """The relative stress of each unit load, the largest over all cases, (L,).
+    """The relative stress of each unit load, rounded up, the largest over all cases, (L,).
 
     It is 1 for the load with the largest stress, and for a load whose amount is not known here.
     """
@@ -148,7 +146,9 @@ def _weight(cases: tuple[PinLoads, ...], units: tuple[Unit, ...], fields: Meridi
         shares = most * stress
         out = np.maximum(out, shares / (shares.max() or 1.0))
     known = {load for case in cases for load in case.coefficients()}
-    return np.where([u in known for u, _ in units], np.maximum(out, MIN_UNIT_WEIGHT), 1.0)
+    steps = np.floor(np.log(np.maximum(out, UNIT_WEIGHT_STEP**2)) / np.log(UNIT_WEIGHT_STEP))
+    rounded = UNIT_WEIGHT_STEP**steps
+    return np.where([u in known for u, _ in units], rounded, 1.0)
 
 
 def _without(fields: MeridianFields, zones: Sequence[tuple[float, float]]) -> MeridianFields:

@@ -46,28 +46,45 @@ class LocalFineness:
         )
 
 
-def mesh_of(
-    piece: Piece,
-    material: Material,
-    clamps: tuple[str, ...],
-    finer: LocalFineness,
-    high: Sequence[Point],
-    bands: Sequence[tuple[float, float]] = (),
-) -> LocalModel:
-    """The mesh of a piece, finest about points where stress was high on the meshes before.
+@dataclass(frozen=True)
+class LocalMesh:
+    """What the mesh of a piece is made from.
 
-    high: m, in the pin's frame.
+    finer: its fineness, finest about points where stress was high on the meshes before.
+    high: these, m, in the pin's frame.
     bands: loaded ones of the pin, with cuts in them.
-
-    Raises: MeshError.
     """
-    here = [p for p in high if piece.z0 <= p[2] <= piece.z1]
-    spots: Spots = ()
-    if here:
-        spots = [point_of(x) for x in unmirrored(piece, np.array(here))]
-    mesh = piece_mesh(piece, finer.edges, spots, finer.spots)
-    held, loaded = _largest_among(piece, clamps), bearings(piece, bands)
-    return LocalModel(piece, mesh, material, held, loaded, finer.spots)
+
+    piece: Piece
+    material: Material
+    clamps: tuple[str, ...]
+    finer: LocalFineness
+    high: Sequence[Point] = ()
+    bands: Sequence[tuple[float, float]] = ()
+
+    @property
+    def content(self) -> object:
+        """All that its stress depends on."""
+        material = self.material
+        elastic = material.youngs_modulus, material.poisson_ratio, material.density
+        return self.piece, elastic, self.clamps, self.finer, self._here, tuple(self.bands)
+
+    def model(self) -> LocalModel:
+        """The mesh, with its equations.
+
+        Raises: MeshError.
+        """
+        piece, finer = self.piece, self.finer
+        spots: Spots = ()
+        if self._here:
+            spots = [point_of(x) for x in unmirrored(piece, np.array(self._here))]
+        mesh = piece_mesh(piece, finer.edges, spots, finer.spots)
+        held, loaded = _largest_among(piece, self.clamps), bearings(piece, self.bands)
+        return LocalModel(piece, mesh, self.material, held, loaded, finer.spots)
+
+    @property
+    def _here(self) -> tuple[Point, ...]:
+        return tuple(p for p in self.high if self.piece.z0 <= p[2] <= self.piece.z1)
 
 
 def _largest_among(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
