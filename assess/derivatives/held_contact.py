@@ -21,7 +21,6 @@ import numpy as np
 
 from assess.derivatives.ring_work import Pair
 from fea.core.pin_loads import PinLoads
-from fea.support.contact.contact_state import rotation
 from fea.support.contact.pressure_loads import waves_of_sectors
 from fea.support.contact.sectors import sector_factors, tail_weights
 from fea.support.contact.solve_joint import ContactModel
@@ -45,7 +44,7 @@ class FixedContact:
     def __init__(self, model: ContactModel, links: PinLoads, gradient: Floats) -> None:
         self._model, self._links, self._contact = model, links, model.freed(links)
         (pressed,) = model.pressed(links)
-        self._turn = rotation(pressed.angle)
+        self._angle = pressed.angle
         waves = waves_of_sectors(model.cells.sectors, model.cells.highest, pressed.angle)
         self._wanted = np.einsum("nrc,njc->rj", gradient, waves).ravel()
         right_hand_side = self._right_hand_side(model, links)
@@ -68,11 +67,9 @@ class FixedContact:
 
     def _right_hand_side(self, model: ContactModel, links: PinLoads) -> Floats:
         """The right-hand side of the equilibrium, in the directions of the cells."""
-        forces, couples, moments = (
-            of(links)[0] @ self._turn for of in (model.forces, model.couples, model.moments)
-        )
-        x, y = couples.tolist()
-        return self._contact.required_resultants(forces, (x, y), moments)
+        acting = model.acting(links).turned([self._angle])
+        x, y = acting.couples[0].tolist()
+        return self._contact.required_resultants(acting.forces[0], (x, y), acting.moments[0])
 
     def with_fixed_cells(self, model: ContactModel) -> float:
         """The stress, Pa, on another shape (ContactModel.reshaped) with the same cells in contact.

@@ -20,9 +20,10 @@ from fea.section.place import FLEXIBILITY_ERROR
 from fea.section.section_stress import SectionField
 from fea.solve.solve import solve_pin
 from fea.support.contact.contact_support import profile_of
+from fea.support.contact.joint_contact import JointContact
 from fea.support.contact.pressure_loads import resultants
 from fea.support.contact.resolution import Resolution
-from fea.support.contact.solve_joint import ContactModel, JointContact
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.contact.variations import compare, nowhere
 
 COUNT, SEED = 24, 3

@@ -16,8 +16,9 @@ from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.support.contact.edge_peak import contact_edges
+from fea.support.contact.joint_contact import JointContact
 from fea.support.contact.resolution import Resolution
-from fea.support.contact.solve_joint import ContactModel, JointContact
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 

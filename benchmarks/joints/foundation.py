@@ -22,8 +22,9 @@ from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.section.section_stress import SectionField
 from fea.singular.singularities import singularities_of
 from fea.support.contact.cell_error import AtPlaces
+from fea.support.contact.joint_contact import JointContact
 from fea.support.contact.resolution import Resolution
-from fea.support.contact.solve_joint import ContactModel, JointContact
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.foundation.bounds import StressBounds, stress_bounds
 from fea.support.foundation.foundation_model import (
     FoundationModel,

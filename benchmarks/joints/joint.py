@@ -22,8 +22,9 @@ from fea.core.requirement import Requirement
 from fea.harmonic.field import HarmonicField
 from fea.harmonic.superposition import Circumference
 from fea.solve.solve import solve_pin
+from fea.support.contact.joint_contact import JointContact
 from fea.support.contact.resolution import Resolution
-from fea.support.contact.solve_joint import ContactModel, JointContact
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 

@@ -27,7 +27,7 @@ from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.section.section_stress import SectionField
 from fea.singular.singularities import singularities_of
 from fea.solve.solve import solve_in_lugs
-from fea.support.contact.contact_state import ContactState, rotation
+from fea.support.contact.contact_state import ContactState
 from fea.support.contact.flexibility import RingBody, lug_rings
 from fea.support.contact.held import HeldContact
 from fea.support.contact.resolution import Resolution
@@ -220,12 +220,9 @@ class WholeJoint:
     def _pressed(self, model: ContactModel) -> ContactState:
         """With the cells where they are."""
         (before,) = self.model.pressed(self.links)
-        turn = rotation(before.angle)
-        forces, couple, moments = (
-            of(self.links)[0] @ turn for of in (model.forces, model.couples, model.moments)
-        )
-        x, y = couple.tolist()
-        contact = model.freed(self.links)
+        acting = model.acting(self.links).turned([before.angle])
+        x, y = acting.couples[0].tolist()
+        contact, (forces,), (moments,) = model.freed(self.links), acting.forces, acting.moments
         return contact.solve(forces, (x, y), before.active, moments).turned(before.angle)
 
     def derivative(self, parameter: JointParameter) -> float:

@@ -16,9 +16,10 @@ from fea.harmonic.beneath import ARC_STRIDE, _distance, depths
 from fea.harmonic.free_surface import FreeSurface, SurfacePoints, surface_points
 from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.harmonic.superposition import Circumference
+from fea.support.contact.joint_contact import JointContact
 from fea.support.contact.pressure_loads import stacked
 from fea.support.contact.resolution import Resolution
-from fea.support.contact.solve_joint import ContactModel, JointContact
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 from pinbase.arrays import Mask

@@ -21,7 +21,7 @@ import numpy as np
 from fea.core.hardened import Hardened
 from fea.core.pin_loads import PinLoads
 from fea.core.places import CaseCrushing
-from fea.support.contact.solve_joint import JointContact
+from fea.support.contact.joint_contact import JointContact
 from pinbase.arrays import Floats, Ints
 
 STRIPS_PER_DEPTH = 4.0  # strips in a length as long as the case is deep

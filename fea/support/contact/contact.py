@@ -34,7 +34,8 @@ from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats
 from fea.support.bands import Bands
 from fea.support.contact.contact_answer import AdjointContact, Answer
-from fea.support.contact.contact_state import ContactState, wide_gap_half_angle
+from fea.support.contact.contact_state import ContactState
+from fea.support.contact.first_cells import cell_loads, facing_cells
 from fea.support.contact.least_energy import least_energy_cells, require_forces, unsettled
 from fea.support.contact.sectors import CellFlexibility, Sectors
 from pinbase.arrays import Mask
@@ -46,8 +47,6 @@ MAX_ACTIVE_SET_STEPS = 30
 # softening where they pass on too little. Of 400 random light loads in loose lugs none took more
 # than five rounds.
 SPRING_FORCE, SPRING_SOFTENING, MAX_SPRING_ROUNDS = 1e-3, 1e-3, 30
-# A cell belongs to the first guess if the cosine between its normal and the load is larger.
-FACING_COSINE = 0.3
 # Of required resultants and rigid motions, which come in pairs along x and y.
 ALONG_X, ALONG_Y = slice(0, None, 2), slice(1, None, 2)
 # Round-off of double precision, with a margin chosen by judgement.
@@ -204,9 +203,8 @@ class ContactProblem:
             return self.mirrored.solve(forces, couple, start, moments)
         if start is None and (known := self._states.get(required.tobytes())) is not None:
             return known
-        acting = self._acting(forces, moments)
-        first = self._facing(acting) if start is None else self._cells.first(start)
-        state = self._settled(required, first) or self._by_energy(required, first)
+        guess = self.first_cells(forces, moments) if start is None else self._cells.first(start)
+        state = self._settled(required, guess) or self._by_energy(required, guess)
         if state is None:
             raise unsettled()
         if len(self._states) == MAX_KEPT_STATES:
@@ -384,39 +382,10 @@ class ContactProblem:
             lost = G.T @ (dual[rows] - answer.yielding[rows] @ of_motion)
         return AdjointContact(force, motion, dual - answer.yielding @ of_motion, of_motion)
 
-    def _acting(self, forces: Floats, moments: Floats | None) -> Floats:
-        """The load of each cell's band (U, 2), N: the force of its link, and the part of a moment,
-        were it linear along the band, as an even load of the same size.
-        """
-        if moments is None or not moments.any():
-            return np.asarray(forces[self._link])
-        band, z = (np.repeat(x, len(self._cells)) for x in (self.bands.band, self.bands.z))
-        length = np.bincount(self.bands.band, self.bands.length)[band]
-        slope = 12.0 * (z - self.bands.middles[band]) / length**2
-        turning = np.stack([moments[:, 1], -moments[:, 0]], axis=1)[band]
-        return np.asarray(forces[self._link] + slope[:, None] * turning)
-
-    def _facing(self, acting: Floats) -> Mask:
-        """A mask of the cells that face the load of their band (U, 2), N, as far around as it
-        presses.
-        """
-        size = np.linalg.norm(acting, axis=1)
-        towards = -np.einsum("ua,ua->u", self._e_r, acting)
-        cosine = self._contact_cosine(size) * np.linalg.norm(self._e_r[0])
-        return np.asarray((towards > cosine * size) & (size > 0.0))
-
-    def _contact_cosine(self, size: Floats) -> Floats:
-        """The cosine (U,) of the half angle of contact by the size (U,), N, of the load of each
-        cell's band, if that were even along it: a guess.
-        """
-        gap, length = np.full(self._count, np.inf), np.zeros(self._count)
-        link = self.bands.links[self.bands.band]
-        np.minimum.at(gap, link, self.bands.gap)
-        np.add.at(length, link, self.bands.length)
-        stiffness = 4.0 * self.bands.radius.max() / self._tail
-        half = wide_gap_half_angle(size, stiffness * (gap * length)[self._link])
-        nearest = math.cos(1.01 * math.pi / self.sectors)  # one cell at least
-        return np.asarray(np.clip(np.cos(half), FACING_COSINE, nearest))
+    def first_cells(self, forces: Floats, moments: Floats | None = None) -> Mask:
+        """A mask (U,) of the cells that are likely to touch under loads as of `solve`."""
+        acting = cell_loads(self.bands, len(self._cells), forces, moments)
+        return facing_cells(self.bands, self._tail, self.sectors, self._e_r, acting)
 
     def _state(self, force: Floats, gap: Floats, motion: Floats, steps: int) -> ContactState:
         count, cells = self._count, self._cells

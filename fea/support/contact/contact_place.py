@@ -15,7 +15,7 @@ from fea.cut.field import CutField
 from fea.harmonic.beneath import Beneath, stairs
 from fea.harmonic.field import HarmonicField
 from fea.support.contact.edge_peak import contact_edges
-from fea.support.contact.solve_joint import JointContact
+from fea.support.contact.joint_contact import JointContact
 from pinbase.arrays import Ints
 
 

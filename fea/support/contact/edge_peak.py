@@ -43,7 +43,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats
 from fea.core.places import ContactEdge
 from fea.singular.lug_edge import lug_edge_exponent, next_power
-from fea.support.contact.solve_joint import JointContact
+from fea.support.contact.joint_contact import JointContact
 from fea.support.lugs.lug import Lug
 
 End = Literal["start", "end"]

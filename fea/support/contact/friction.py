@@ -25,12 +25,13 @@ from fea.core.pin_loads import UnitLoad
 from fea.support.bands import Bands
 from fea.support.contact.bending import LoadedJoint, stations
 from fea.support.contact.contact_state import ContactState
+from fea.support.contact.joint_contact import JointContact
 from fea.support.contact.pressure_loads import (
     MODE_TOLERANCE,
     PressureLoads,
     pressure_modes,
 )
-from fea.support.contact.solve_joint import ContactModel, JointContact
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from fea.support.records import FRICTION, Variation
 from pinbase.arrays import Floats

@@ -27,10 +27,11 @@ from fea.support.contact.case_crushing import case_crushing, pressed_most
 from fea.support.contact.contact_place import contact_place
 from fea.support.contact.cut_in_lugs import cuts_in_lugs, error_of, with_cuts_in_lugs
 from fea.support.contact.friction import band_torques, rubs
+from fea.support.contact.joint_contact import JointContact
 from fea.support.contact.joint_result import contact_result
 from fea.support.contact.pressed_cases import Candidates, Compared, PressedCases, with_minor
 from fea.support.contact.resolution import RESOLUTIONS, Resolution
-from fea.support.contact.solve_joint import ContactModel, JointContact
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.contact.variations import ResolutionComparison, compare, nowhere, uncompared
 from fea.support.hardened_row import PartSearch, hardened_row, in_core
 from fea.support.lugs.rings import USUAL_RING_COUNT, whole_names

@@ -8,7 +8,7 @@ import numpy as np
 
 from fea.core.pin_loads import Floats, PinLoads
 from fea.support.contact.bending import LoadedJoint, stations
-from fea.support.contact.solve_joint import JointContact
+from fea.support.contact.joint_contact import JointContact
 from fea.support.records import BandContact, JointRange, JointResult
 
 

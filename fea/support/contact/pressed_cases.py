@@ -23,6 +23,7 @@ from fea.section.section_stress import SectionField
 from fea.singular.singularities import singularities_of
 from fea.support.contact.cell_error import CELL_ERROR_SHARE
 from fea.support.contact.contact_state import ContactState
+from fea.support.contact.joint_contact import JointContact
 from fea.support.contact.pressure_loads import (
     MODE_TOLERANCE,
     ROUGH_MODE_TOLERANCE,
@@ -30,7 +31,7 @@ from fea.support.contact.pressure_loads import (
     PressureModes,
     resultants,
 )
-from fea.support.contact.solve_joint import ContactModel, JointContact
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.contact.variations import (
     ResolutionComparison,
     compare,

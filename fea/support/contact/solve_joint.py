@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -21,9 +21,9 @@ from fea.core.pressed import PressedArcs, Rings
 from fea.harmonic.first_mesh import FirstMesh
 from fea.singular.lug_edge import lug_edge_exponent
 from fea.support.bands import Bands
-from fea.support.contact.bending import LoadedJoint, mass_per_length
+from fea.support.contact.bending import mass_per_length
 from fea.support.contact.contact import ContactProblem
-from fea.support.contact.contact_state import ContactState, rotation, wide_gap_half_angle
+from fea.support.contact.contact_state import ContactState
 from fea.support.contact.flexibility import (
     RingBody,
     half_plane,
@@ -31,6 +31,8 @@ from fea.support.contact.flexibility import (
     pin_rings,
     wavy_flexibility,
 )
+from fea.support.contact.instants import JointLoads, contact_at_instants
+from fea.support.contact.joint_contact import JointContact
 from fea.support.contact.pressure_loads import (
     MODE_TOLERANCE,
     PressureLoads,
@@ -55,46 +57,10 @@ from geometry import CutPin, Pin
 from pinbase.arrays import Ints
 from pinbase.memo import Memo
 
-EQUAL_LOAD_TOLERANCE = 1e-13  # relative: loads that differ by no more are the same
 LUG_SIZE_DIGITS = 12  # digits to which lugs of the same size agree
-LARGEST_FORCE_SHARE = 1.0 - 1e-6  # of the largest: a force that is as good as it
 # Times the sectors: harmonics in which neighbouring rings feel each other
 COUPLED_HARMONICS_PER_SECTOR = 4
 Alike = tuple[float, Material, Bushing | None, bytes, Material]
-
-
-@dataclass(frozen=True)
-class JointContact(LoadedJoint):
-    """The contact of a pin in its lugs in one case.
-
-    angles: of the cells, rad.
-    contact: by instant.
-    """
-
-    loads: PressureLoads
-    angles: Floats
-    contact: tuple[ContactState, ...]
-
-    @property
-    def contact_angle(self) -> Floats:
-        """Half angle of contact, (T, B) rad, at the ring of each band where it is largest."""
-        sector = self.angles[1] - self.angles[0]
-        cells = np.stack([(state.pressure > 0.0).sum(axis=1) for state in self.contact])
-        half = 0.5 * sector * cells
-        return np.stack(
-            [half[:, self.bands.band == b].max(axis=1) for b in range(len(self.lugs))], axis=1
-        )
-
-    @property
-    def largest_pressure(self) -> Floats:
-        """The largest pressure on any cell of each band, (T, B) Pa.
-
-        At edges it depends on the size of the cells.
-        """
-        by_ring = np.stack([state.pressure.max(axis=1) for state in self.contact])
-        return np.stack(
-            [by_ring[:, self.bands.band == b].max(axis=1) for b in range(len(self.lugs))], axis=1
-        )
 
 
 class ContactModel:
@@ -333,20 +299,6 @@ class ContactModel:
             by_lug.append(np.full(len(ends) - 1, both))
         return np.concatenate(by_lug)
 
-    def half_angle(self, contact: JointContact) -> float:
-        """The half angle of contact, rad, at the ring that is pressed most at the first instant,
-        whatever the cells: the plane contact of a wide gap, at most a right angle.
-
-        contact: of this model, or of one with other gaps.
-        """
-        # Rings under rounded edges have the gap of the others, which hold them off.
-        bands, load = self.bands, np.linalg.norm(contact.line_load[0], axis=1)
-        gap = np.full(len(self.lugs), np.inf)
-        np.minimum.at(gap, bands.band, self.gap)
-        half = wide_gap_half_angle(load, 4.0 * bands.radius / self.tail * gap[bands.band])
-        half = np.where(load > 0.0, np.minimum(half, 0.5 * np.pi), 0.5 * np.pi)
-        return float(half[(load / half).argmax()])
-
     def solve(self, loads: PinLoads) -> JointContact:
         """Solve all instants of a case.
 
@@ -408,28 +360,10 @@ class ContactModel:
 
         Raises: SolveError as `solve`.
         """
-        contact = self.freed(loads, problem)
-        forces, couples = self.forces(loads), self.couples(loads, contact.bands)
-        moments, cuts = self.moments(loads), self.cuts
-        angles = _directions(forces) if cuts is None else [cuts.angle] * len(forces)
-        turns = np.stack([rotation(angle) for angle in angles])
-        forces, couples = forces @ turns, np.einsum("ta,tab->tb", couples, turns)
-        arms, moments = couples / self.pin.length, moments @ turns
-        acting = np.concatenate([forces, moments / self.pin.length], axis=1)
-        sizes = np.abs(acting).max(axis=(1, 2))
-        sizes[sizes == 0.0] = 1.0
-        scale = sizes if contact.closed else np.full(len(sizes), sizes.max())
-        like = np.concatenate([acting.reshape(len(forces), -1), arms], axis=1) / scale[:, None]
-        states: list[ContactState] = []
-        for t, (force, couple) in enumerate(zip(forces, couples.tolist(), strict=True)):
-            apart = np.abs(like[:t] - like[t]).max(axis=1, initial=0.0)
-            near = int(apart.argmin()) if t else None
-            if near is not None and apart[near] <= EQUAL_LOAD_TOLERANCE:
-                states.append(states[near].times(float(scale[t] / scale[near])))
-                continue
-            start = None if near is None else states[near].active
-            states.append(contact.solve(force, (couple[0], couple[1]), start, moments[t]))
-        return [x.turned(angle) for x, angle in zip(states, angles, strict=True)]
+        contact, cuts = self.freed(loads, problem), self.cuts
+        acting = self.acting(loads, contact.bands)
+        angles = acting.directions if cuts is None else [cuts.angle] * len(acting.forces)
+        return contact_at_instants(contact, acting, angles, self.pin.length)
 
     def freed(self, loads: PinLoads, problem: ContactProblem | None = None) -> ContactProblem:
         """The contact problem in which the lugs of links that state moments are free to tilt.
@@ -438,45 +372,27 @@ class ContactModel:
         """
         return (problem or self.contact).freed(tilting_bands(self.whole, loads))
 
-    def moments(self, loads: PinLoads) -> Floats:
-        """The moments about x and y that links bring to the pin at each lug, (T, B, 2) N m.
-
-        Raises: SolveError where they are not in balance, and no lug reacts that.
-        """
-        weight, pins = (self._mass, centre_of_volume(self.whole)), (self.given, self.whole)
-        return link_moments(pins, self.lugs, loads, self.forces(loads), weight)
-
-    def forces(self, loads: PinLoads) -> Floats:
-        """The forces of the links along x and y, last of the structure, (T, L, 2) N."""
-        return link_forces(self.given, self._mass, loads, self.on_structure)
-
     @property
     def on_structure(self) -> bool:
         """Whether some of the lugs are those of a structure."""
         return len(self.lugs) > len(self.given.connections)
 
-    def couples(self, loads: PinLoads, bands: Bands | None = None) -> Floats:
-        """The couples of the body force about the middle of bands along x and y, (T, 2) N m.
+    def acting(self, loads: PinLoads, bands: Bands | None = None) -> JointLoads:
+        """What acts on the pin: forces of the links, last of the structure, and their moments.
 
-        bands: of the contact problem, by default this model's; coarser rings have another middle.
+        bands: of the contact problem, about whose middle the body force has couples; by default
+        this model's.
+
+        Raises: SolveError where moments are not in balance, and no lug reacts that.
         """
-        arm = centre_of_volume(self.whole) - (bands or self.bands).middle
-        x, y = (loads.body[:, :2] * self._mass).T
-        return np.stack([-arm * y, arm * x], axis=1)
-
-    @property
-    def _mass(self) -> float:
-        return (self.material.density or 0.0) * self.whole.volume
+        mass = (self.material.density or 0.0) * self.whole.volume
+        centre, pins = centre_of_volume(self.whole), (self.given, self.whole)
+        forces = link_forces(self.given, mass, loads, self.on_structure)
+        moments = link_moments(pins, self.lugs, loads, forces, (mass, centre))
+        arm, (x, y) = centre - (bands or self.bands).middle, (loads.body[:, :2] * mass).T
+        return JointLoads(forces, np.stack([-arm * y, arm * x], axis=1), moments)
 
 
 def elastic(material: Material) -> tuple[float, float]:
     """The properties of a material on which flexibilities depend: no strength."""
     return material.youngs_modulus, material.poisson_ratio
-
-
-def _directions(forces: Floats) -> list[float]:
-    """The angles (T,), rad, of the largest of forces (T, L, 2), the first of equal ones."""
-    size = np.linalg.norm(forces, axis=2)
-    first = (size >= LARGEST_FORCE_SHARE * size.max(axis=1, keepdims=True)).argmax(axis=1)
-    x, y = forces[np.arange(len(forces)), first].T
-    return [float(angle) for angle in np.arctan2(y, x)]

@@ -33,6 +33,7 @@ from fea.support.contact.coarser_cells import on_coarser_cells
 from fea.support.contact.contact import ContactProblem
 from fea.support.contact.contact_state import ContactState
 from fea.support.contact.friction import friction_variations, rubbed, rubbed_across, rubs
+from fea.support.contact.joint_contact import JointContact
 from fea.support.contact.pressure_loads import (
     MODE_TOLERANCE,
     PressureLoads,
@@ -40,7 +41,7 @@ from fea.support.contact.pressure_loads import (
     resultants,
     stacked,
 )
-from fea.support.contact.solve_joint import ContactModel, JointContact
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.changes import joint_variations
 from fea.support.lugs.lug import Lug
 from fea.support.lugs.rings import USUAL_RING_COUNT
@@ -70,7 +71,7 @@ class ResolutionComparison:
     over: variations of the joint, with the larger of surface and section, and the stress beneath
     contact, relative to those of the joint as given.
     left_out: the variations that could not be solved, and why.
-    half_angle: of contact where a lug presses most, rad (ContactModel.half_angle).
+    half_angle: of contact where a lug presses most, rad (JointContact.half_angle).
     pressures: of the joint as given and of each variation but those by friction, on the same cells.
     """
 
@@ -166,7 +167,7 @@ def compare(
     stress, out, likes = _at_places(model, requirement, every), [], []
     for contact, both in zip(at, exact, strict=True):
         first, twice, roughest = (stress.pop(0) for _ in range(3))
-        arc = model.half_angle(contact)
+        arc = contact.half_angle(model.bands, model.tail)
         cells = by_cells(first, roughest, model.cells.rings, arc * model.cells.highest)
         out.append(ResolutionComparison(first, cells, contact.loads.links, (), half_angle=arc))
         # The joint as given on the cells of varied joints.
@@ -380,7 +381,7 @@ def _varied(
                 continue
             try:
                 joint = _coarse(other, contact.loads.links, *cells)
-                per_arc = highest * other.half_angle(contact)
+                per_arc = highest * contact.half_angle(other.bands, other.tail)
                 changed.append(replace(joint, per_arc=per_arc, lugs=other.lugs))
             except SolveError as error:
                 why.append(f"{change.what} {change.value} ({error})")

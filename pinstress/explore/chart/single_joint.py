@@ -65,7 +65,8 @@ class JointProblem:
         Raises: MeshError, SolveError.
         """
         model = ContactModel(self.pin, self.material, self.lugs, ROUGH)
-        return model.half_angle(model.solve(self.loads.at(np.array([self.governing]))))
+        contact = model.solve(self.loads.at(np.array([self.governing])))
+        return contact.half_angle(model.bands, model.tail)
 
     @cached_property
     def singularities(self) -> tuple[Zone, ...]:

@@ -22,8 +22,9 @@ from fea.support.contact.edge_peak import (
     contact_edges,
     edge_peak,
 )
+from fea.support.contact.joint_contact import JointContact
 from fea.support.contact.resolution import Resolution
-from fea.support.contact.solve_joint import ContactModel, JointContact
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 from tests.support.each import sampled

@@ -11,8 +11,9 @@ import pytest
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
+from fea.support.contact.joint_contact import JointContact
 from fea.support.contact.resolution import Resolution
-from fea.support.contact.solve_joint import ContactModel, JointContact
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Bushing, Lug
 from geometry import Pin, Segment
 from tests.support.each import each

@@ -18,8 +18,9 @@ from fea.core.pin_loads import Floats, PinLoads
 from fea.core.requirement import Requirement
 from fea.solve.solve import solve
 from fea.support.contact.coarser_cells import on_coarser_cells
+from fea.support.contact.joint_contact import JointContact
 from fea.support.contact.resolution import Resolution
-from fea.support.contact.solve_joint import ContactModel, JointContact
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.foundation.foundation_model import FoundationModel, JointFoundation
 from fea.support.lugs.lug import Lug
 from fea.support.support import PinProblem

@@ -1,0 +1,60 @@
+"""The contact of a pin in its lugs in one case."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.support.bands import Bands
+from fea.support.contact.bending import LoadedJoint
+from fea.support.contact.contact_state import ContactState, wide_gap_half_angle
+from fea.support.contact.pressure_loads import PressureLoads
+from pinbase.arrays import Floats
+
+
+@dataclass(frozen=True)
+class JointContact(LoadedJoint):
+    """The contact of a pin in its lugs in one case.
+
+    angles: of the cells, rad.
+    contact: by instant.
+    """
+
+    loads: PressureLoads
+    angles: Floats
+    contact: tuple[ContactState, ...]
+
+    @property
+    def contact_angle(self) -> Floats:
+        """Half angle of contact, (T, B) rad, at the ring of each band where it is largest."""
+        sector = self.angles[1] - self.angles[0]
+        cells = np.stack([(state.pressure > 0.0).sum(axis=1) for state in self.contact])
+        half = 0.5 * sector * cells
+        return np.stack(
+            [half[:, self.bands.band == b].max(axis=1) for b in range(len(self.lugs))], axis=1
+        )
+
+    @property
+    def largest_pressure(self) -> Floats:
+        """The largest pressure on any cell of each band, (T, B) Pa.
+
+        At edges it depends on the size of the cells.
+        """
+        by_ring = np.stack([state.pressure.max(axis=1) for state in self.contact])
+        return np.stack(
+            [by_ring[:, self.bands.band == b].max(axis=1) for b in range(len(self.lugs))], axis=1
+        )
+
+    def half_angle(self, bands: Bands, tail: Floats) -> float:
+        """The half angle of contact, rad, at the ring that is pressed most at the first instant,
+        whatever the cells: the plane contact of a wide gap, at most a right angle.
+
+        bands, tail: of the model of this contact (ContactModel), or of one with other gaps.
+        """
+        # Rings under rounded edges have the gap of the others, which hold them off.
+        load, gap = np.linalg.norm(self.line_load[0], axis=1), np.full(len(self.lugs), np.inf)
+        np.minimum.at(gap, bands.band, bands.gap)
+        half = wide_gap_half_angle(load, 4.0 * bands.radius / tail * gap[bands.band])
+        half = np.where(load > 0.0, np.minimum(half, 0.5 * np.pi), 0.5 * np.pi)
+        return float(half[(load / half).argmax()])
