@@ -20,7 +20,8 @@ from reports.data.row import Dependence, LandingRange, PinResult, SharingRange
 BENEATH_CONTACT: Literal["beneath"] = "beneath"
 WITH_ERROR = "with its error"  # of what lies beneath, which exceeds what is permitted only with it
 IMPULSE_RANGES_TOGETHER = "impulse time, velocity change and pulse together"
-LOST_FIT = "press fit lost in"  # a pin that is loose at the temperature of the case
+# A pin that is loose at the temperature of the case: strong enough, and retained by nothing known.
+PRESS_FIT, LOST_FIT = "press fit", "press fit lost in"
 YIELD_STRENGTH = "yield strength"
 TOGETHER = "together"  # what only several ranges together change
 
@@ -114,7 +115,7 @@ def _over_loads_and_joint(
     ranges = [*_beneath(judged, contact), *_over_joint(judged, contact, joint)]
     if judged.safe:  # loose it is strong enough, but what retains it is open
         lost = ", ".join(pin.lost_fits)
-        ranges += [Dependence(LOST_FIT, lost, "joint", strength / judged.maximum)] if lost else []
+        ranges += [Dependence(LOST_FIT, lost, PRESS_FIT, strength / judged.maximum)] if lost else []
     if pin.landing is not None:
         ranges += _with_beneath(judged, contact, pin.landing)
     if pin.sharing is not None:

@@ -320,6 +320,8 @@ def _of_stress(plain: RequirementRow, row: PinResult, strength: float) -> Requir
     if plain.check != "yield" or plain.required != (row.required or 1.0):
         judgement = against_yield(row.maximum, strength, plain.required)
         row = replace(row, judgement=judgement, depends_on=())
+        if plain.check != "yield":  # the row itself says that its pin comes loose
+            row = replace(row, lost_fits=())
         if plain.check == "rupture":  # by a strength without a range
             row = replace(row, strength_range=None)
         row = replace(row, depends_on=depends_on(row))

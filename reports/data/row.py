@@ -64,7 +64,8 @@ class Dependence:
     ("guided").
     over: the owner of the range, "joint", "landing", "links" (their stiffness), "strength" (of
     yield), or those of ranges that only together change the outcome ("joint and links"), or
-    "beneath" for the stress beneath contact as the study has it;
+    "beneath" for the stress beneath contact as the study has it, or "press fit" for a pin that
+    comes loose;
     for that stress over a range, `value` is what changes ("clearance").
     factor: of safety at that value.
     given, at, flips_at: the study's value, one at which the outcome differs, and the interpolated

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
 from reports.data.decision import worst_first
-from reports.data.dependence import BENEATH_CONTACT
+from reports.data.dependence import BENEATH_CONTACT, PRESS_FIT
 from reports.data.headline import JudgedCheck, worst_checks
 from reports.data.results import Results
 from reports.data.row import Dependence, PinResult, Units
@@ -123,7 +123,8 @@ def depends_words(depends_on: Sequence[Dependence], units: Units) -> str:
     """
     below = [_beneath(d, units) for d in depends_on if d.over == BENEATH_CONTACT]
     ranges = _ranges(depends_on, units)
-    return " and ".join([*(f"stress beneath contact ({x})" for x in below), *ranges])
+    lost = _lost_fits(depends_on)
+    return " and ".join([*(f"stress beneath contact ({x})" for x in below), *ranges, *lost])
 
 
 def but_words(depends_on: Sequence[Dependence], units: Units, fails: str = "fails") -> str:
@@ -138,13 +139,21 @@ def but_words(depends_on: Sequence[Dependence], units: Units, fails: str = "fail
         if d.over == BENEATH_CONTACT
     ]
     ranges = [f"{fails} within {x}" for x in _ranges(depends_on, units)]
-    return f"but {', and '.join([*below, *ranges])}"
+    loose = [f"comes loose ({x})" for x in _lost_fits(depends_on)]
+    return f"but {', and '.join([*below, *ranges, *loose])}"
+
+
+def _lost_fits(depends_on: Sequence[Dependence]) -> list[str]:
+    """Return "press fit lost in A above 75.3 degC" as a list of one text, or none."""
+    return [f"{d.what} {d.value}" for d in depends_on if d.over == PRESS_FIT]
 
 
 def _ranges(depends_on: Sequence[Dependence], units: Units) -> list[str]:
     """Return all ranges in words as a list of one text; empty without ranges."""
     parts = []
-    for over in dict.fromkeys(d.over for d in depends_on if d.over != BENEATH_CONTACT):
+    for over in dict.fromkeys(d.over for d in depends_on):
+        if over in (BENEATH_CONTACT, PRESS_FIT):
+            continue
         properties = list(
             dict.fromkeys(_dependence(d, units) for d in depends_on if d.over == over)
         )

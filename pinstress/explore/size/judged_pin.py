@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, SAFE
 from reports.data.decision import beneath_factor, low_factor
-from reports.data.dependence import BENEATH_CONTACT
+from reports.data.dependence import BENEATH_CONTACT, PRESS_FIT
 from reports.data.headline import JudgedCheck, worst_checks
 from reports.data.results import Results
 from reports.data.row import PinResult
@@ -111,11 +111,11 @@ def why_missed(results: Results, pin: str) -> str:
         return f"{worst.check} is not decided{reason}"
     if depends:
         every = [d for p in rows if p.outcome == DEPENDS for d in p.depends_on]
-        ranges = over_words([d for d in every if d.over != BENEATH_CONTACT])
-        places = ["beneath contact"] * any(d.over == BENEATH_CONTACT for d in every)
-        places += [f"within the range of the {ranges}"] * bool(ranges)
-        cases = ", ".join(depends)
-        return f"the factor is reached as described, but not {' and not '.join(places)} ({cases})"
+        ranges = over_words([d for d in every if d.over not in (BENEATH_CONTACT, PRESS_FIT)])
+        but = ["not beneath contact"] * any(d.over == BENEATH_CONTACT for d in every)
+        but += [f"not within the range of the {ranges}"] * bool(ranges)
+        but += ["the pin comes loose"] * any(d.over == PRESS_FIT for d in every)
+        return f"the factor is reached as described, but {' and '.join(but)} ({', '.join(depends)})"
     if worst.outcome == DEPENDS:
         case = f" ({worst.case})" if worst.case else ""
         return f"{worst.check} is met as described, but not over the {worst.reason}{case}"

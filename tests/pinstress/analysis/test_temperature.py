@@ -14,7 +14,10 @@ from pinstress.explore.sweep.parameters import parameters_of
 from pinstress.study.model.lost_fits import lost_fit_warnings
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.in_python import study_from
+from reports.data.requirements import requirement_rows
 from reports.data.row import PinResult
+from reports.data.unknowns import decided_by, unknowns
+from reports.format.words import headline
 from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.pins.remembered import remembered
@@ -174,7 +177,11 @@ def test_a_pressed_bushing_that_holds_has_less_interference() -> None:
 
 @pytest.fixture(scope="module")
 def loosened() -> pinstress.RunResults:
-    return remembered(study_from(changed((FIT, "clearance = -0.01\n"))))
+    strong = (
+        'yield_strength = "900 MPa"\n',
+        'yield_strength = "900 MPa"\nultimate_strength = 1000\n',
+    )
+    return remembered(study_from(changed((FIT, "clearance = -0.01\n"), strong)))
 
 
 def test_a_pin_that_comes_loose_is_strong_enough_but_depends(
@@ -185,6 +192,17 @@ def test_a_pin_that_comes_loose_is_strong_enough_but_depends(
     (lost,) = (d for d in hot.depends_on if d.what == "press fit lost in")
     assert lost.value == ", ".join(f"{x} above 63.9 degC" for x in "LMR")
     assert lost.factor == hot.safety_factor
+
+
+def test_that_a_pin_comes_loose_is_said_once_as_what_it_is(
+    loosened: pinstress.RunResults,
+) -> None:
+    """It neither yields nor breaks; nothing that is open would have to be measured."""
+    lost = "press fit lost in L above 63.9 degC, M above 63.9 degC, R above 63.9 degC"
+    assert f"; hot), but comes loose ({lost})." in headline(loosened)
+    rows = requirement_rows(loosened)
+    assert [x.outcome for x in rows if (x.case, x.check) == ("hot", "rupture")] == ["met"]
+    assert not decided_by(unknowns(loosened.pins))
 
 
 def test_a_pin_that_comes_loose_is_warned_of() -> None:
