@@ -48,7 +48,7 @@ class LocalFineness:
 
 @dataclass(frozen=True)
 class LocalMesh:
-    """What the mesh of a piece is made from.
+    """A piece with all that its mesh is made from.
 
     finer: its fineness, finest about points where stress was high on the meshes before.
     high: these, m, in the pin's frame.

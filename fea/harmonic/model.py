@@ -205,8 +205,8 @@ class HarmonicModel(HarmonicBody):
         )
 
     def _reading(self, extra: Floats, ends: tuple[tuple[float, float], ...]) -> Reading:
-        """What reads stress at the points of this mesh; the first mesh is read again for other
-        loads.
+        """The reading of stress at the points of this mesh, made once: the first mesh is read
+        again for other loads.
         """
         key = extra.tobytes(), ends
         if key not in self._readings:

@@ -17,7 +17,7 @@ LARGEST_FORCE_SHARE = 1.0 - 1e-6  # of the largest: a force that is as good as i
 
 @dataclass(frozen=True)
 class JointLoads:
-    """What acts on a pin along x and y at each instant.
+    """The loads on a pin along x and y at each instant.
 
     forces: of the links, (T, L, 2) N.
     couples: by anything but the lugs, (T, 2) N m.

@@ -378,7 +378,7 @@ class ContactModel:
         return len(self.lugs) > len(self.given.connections)
 
     def acting(self, loads: PinLoads, bands: Bands | None = None) -> JointLoads:
-        """What acts on the pin: forces of the links, last of the structure, and their moments.
+        """The loads on the pin: forces of the links, last of the structure, and their moments.
 
         bands: of the contact problem, about whose middle the body force has couples; by default
         this model's.
