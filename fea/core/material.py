@@ -55,6 +55,11 @@ class Material:
             return self
         return replace(self, yield_strength=self.strength_range[0], strength_range=None)
 
+    @property
+    def elastic_part(self) -> Material:
+        """The material by what linear stress depends on alone, without a name."""
+        return Material("", self.youngs_modulus, self.poisson_ratio, self.density)
+
     def __post_init__(self) -> None:
         if not 0.0 < self.youngs_modulus < np.inf:
             raise ArgumentError(

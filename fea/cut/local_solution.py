@@ -65,9 +65,8 @@ class LocalMesh:
     @property
     def content(self) -> object:
         """All that its stress depends on."""
-        material = self.material
-        elastic = material.youngs_modulus, material.poisson_ratio, material.density
-        return self.piece, elastic, self.clamps, self.finer, self._here, tuple(self.bands)
+        elastic, bands = self.material.elastic_part, tuple(self.bands)
+        return self.piece, elastic, self.clamps, self.finer, self._here, bands
 
     def model(self) -> LocalModel:
         """The mesh, with its equations.

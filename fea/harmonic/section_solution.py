@@ -151,9 +151,8 @@ def _unit_fields(
         section = meridian_mesh(pin, size, places, grades, quiet)
         return HarmonicModel(pin, section, material, problem.clamps)
 
-    elastic = material.youngs_modulus, material.poisson_ratio, material.density
     mesh = size, places, tuple(grades), quiet, read.tobytes(), ends
-    key = pin, elastic, problem.clamps, *mesh
+    key = pin, material.elastic_part, problem.clamps, *mesh
     if first is not None:
         return first.fields(model, key, asked)
     memo = problem.memo or Memo()

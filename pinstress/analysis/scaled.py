@@ -126,8 +126,7 @@ def elastic_task(task: Task) -> Task:
 
 
 def _elastic(material: Material) -> Material:
-    elastic = material.youngs_modulus, material.poisson_ratio, material.density
-    return Material("", *elastic, yield_strength=NOMINAL_STRENGTH)
+    return replace(material.elastic_part, yield_strength=NOMINAL_STRENGTH)
 
 
 def scaled_row(

@@ -64,9 +64,9 @@ class Dependence:
     ("guided").
     over: the owner of the range, "joint", "landing", "links" (their stiffness), "strength" (of
     yield), or those of ranges that only together change the outcome ("joint and links"), or
-    "beneath" for the stress beneath contact as the study has it, or "press fit" for a pin that
-    comes loose;
+    "beneath" for the stress beneath contact as the study has it;
     for that stress over a range, `value` is what changes ("clearance").
+    "press fit" for a pin that comes loose, `value` being where.
     factor: of safety at that value.
     given, at, flips_at: the study's value, one at which the outcome differs, and the interpolated
     one at which it changes, of `dimension`; None where it is not a number.

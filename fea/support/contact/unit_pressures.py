@@ -30,15 +30,11 @@ from pinbase.memo import Memo
 class UnitMesh(FirstMesh):
     """The first mesh under unit pressures of single rings, whose fields a memo has."""
 
-    def __init__(self, memo: Memo) -> None:
-        super().__init__()
-        self._shared = memo
-
     def fields(
         self, make: Callable[[], HarmonicModel], key: Key, request: UnitFields
     ) -> MeridianFields:
         """The unit fields of the requested loads, where stress is read for a maximum."""
-        return self._shared.get(
+        return self._memo.get(
             ("unit pressures", request[0], *key), lambda: _where_read(make().solve(*request))
         )
 
@@ -58,7 +54,7 @@ def unit_model(
     Raises: ArgumentError for lugs that do not fit the pin; MeshError, SolveError.
     """
     fitting = fitted(on_structure(pin, lugs), material, lugs)
-    steel, eyes = _elastic(material), tuple(map(_elastic_eye, lugs))
+    steel, eyes = material.elastic_part, tuple(map(_elastic_eye, lugs))
 
     def make() -> ContactModel:
         return ContactModel(pin, steel, eyes, cells, memo).without_meshes()
@@ -74,16 +70,11 @@ def unit_patterns(model: ContactModel) -> PressureModes:
     return PressureModes(model.pin, model.rings, (each,) * (model.cells.highest + 1))
 
 
-def _elastic(material: Material) -> Material:
-    """A material by what stress depends on alone."""
-    return Material("", material.youngs_modulus, material.poisson_ratio, material.density)
-
-
 def _elastic_eye(lug: Lug) -> Lug:
     """A lug by what its flexibility depends on alone."""
-    bushing = lug.bushing and replace(lug.bushing, material=_elastic(lug.bushing.material))
+    bushing = lug.bushing and replace(lug.bushing, material=lug.bushing.material.elastic_part)
     return Lug(
-        lug.connection, lug.outer_diameter, _elastic(lug.material),
+        lug.connection, lug.outer_diameter, lug.material.elastic_part,
         edge_radius=lug.edge_radius, bushing=bushing, range=LugRange(),
     )  # fmt: skip
 

@@ -103,9 +103,7 @@ def elastic(material: Material) -> Material:
     """
     if material.hardened:
         return material
-    return Material(
-        material.name, material.youngs_modulus, material.poisson_ratio, material.density
-    )
+    return replace(material.elastic_part, name=material.name)
 
 
 def _alike(study: Study, task: Task, requirement: Requirement) -> str:
