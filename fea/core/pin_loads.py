@@ -35,8 +35,9 @@ from geometry.shape.pin import SHOULDER
 
 Floats = NDArray[np.float64]
 Kind = Literal[
-    "force", "moment", "pull", "twist", "tilt", "pressure", "axial", "body", "shift", "turn"
-]
+    "force", "moment", "pull", "twist", "tilt", "pressure", "axial", "around", "body", "shift",
+    "turn",
+]  # fmt: skip
 Distribution = Literal["uniform", "cosine"]
 
 # Of the largest force and the pin's length: a moment across the axis below it is none.
@@ -51,8 +52,9 @@ class UnitLoad(NamedTuple):
     Per N, N m, or (kind "body") m/s^2; kinds "shift" and "turn" are distributed as "force" and
     "moment" but are motions of a clamp, per m and rad about the pin's origin.
     n: the harmonic.
-    parts: instead of one surface, those of a pressure, or a traction along the axis ("axial"), on
-    several, each with its amplitude, Pa; of a "pull" or "twist" the rings of the band, each with 1.
+    parts: instead of one surface, those of a pressure, or of a traction along the axis ("axial") or
+    about it ("around"), on several, each with its amplitude, Pa; of a "pull" or "twist" the rings
+    of the band, each with 1.
     """
 
     surface: str
@@ -95,7 +97,7 @@ class UnitLoad(NamedTuple):
         """
         if self.n:
             return (0, 1)
-        return (1,) if self.kind in ("moment", "twist", "turn") else (0,)
+        return (1,) if self.kind in ("moment", "twist", "around", "turn") else (0,)
 
 
 @dataclass(frozen=True)

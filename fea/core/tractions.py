@@ -49,6 +49,7 @@ PRESSURE_ALONG_X = np.array([2.0, 0.0, 0.0])  # amplitudes of a pressure with th
 ALONG_Z = np.array([0.0, 0.0, 1.0])
 ABOUT_Z = np.array([0.0, -1.0, 0.0])  # at phase 1
 INWARDS = np.array([-1.0, 0.0, 0.0])
+WAY_ON_RINGS = {"axial": ALONG_Z, "around": ABOUT_Z, "pressure": INWARDS}
 _NO_TRACTION = np.zeros(3)
 
 
@@ -58,7 +59,7 @@ def tractions_of(pin: PinLike, load: UnitLoad) -> tuple[Traction, ...]:
         return _fading(pin, load)
     if load.parts:
         bands = [(pin.band(name), amplitude) for name, amplitude in load.parts]
-        way = ALONG_Z if load.kind == "axial" else INWARDS
+        way = WAY_ON_RINGS[load.kind]
         return tuple(Traction(b.name, b.middle, x * way, _NO_TRACTION) for b, x in bands)
     return () if load.kind in ("body", "shift", "turn") else (traction(pin, load),)
 

@@ -29,6 +29,7 @@ from fea.support.contact.joint_contact import JointContact
 from fea.support.contact.pressure_loads import (
     MODE_TOLERANCE,
     PressureLoads,
+    PressureModes,
     pressure_modes,
 )
 from fea.support.contact.solve_joint import ContactModel
@@ -130,23 +131,23 @@ def rubbed_across(model: ContactModel, contact: JointContact, own: LoadedJoint) 
 
 
 def rubbed(
-    model: ContactModel, contact: JointContact
+    model: ContactModel, contact: JointContact, known: PressureModes | None = None
 ) -> tuple[PressureLoads, dict[str, list[PressureLoads]]]:
     """The loads of a contact at one instant, and those with friction by SHARES.
 
-    Their patterns are their own: tractions along the axis need a finer mesh, on which patterns of
-    other joints would be solved in vain.
+    known: patterns of pressures that have been solved.
     """
-    waves = model.waves(contact.contact)
-    patterns = model.patterns([(waves, MODE_TOLERANCE)])
+    bands, waves = model.bands, model.waves(contact.contact)
+    patterns = model.patterns([(waves, MODE_TOLERANCE)], known)
     plain = patterns.loads(waves, contact.loads.links, model.arcs(contact.contact))
     axial = waves * along_axis(model, contact)[:, None]
     modes = pressure_modes(model.pin, model.rings, [(axial, MODE_TOLERANCE)])
-    torque = opposed(ring_torques(model, contact.contact)[0], model.bands.z)
+    turning = turning_traction(model, opposed(ring_torques(model, contact.contact)[0], bands.z))
 
     def loads(along: float, around: float) -> PressureLoads:
-        acting = {**plain.acting, **modes.amounts(along * axial, "axial")}
-        return with_torques(replace(plain, acting=acting), around * torque)
+        by_friction = modes.amounts(along * axial, "axial")
+        by_friction |= {unit: around * amount for unit, amount in turning.items()}
+        return replace(plain, acting={**plain.acting, **by_friction})
 
     return plain, {name: [loads(*share) for share in every] for name, every in SHARES.items()}
 
@@ -172,13 +173,15 @@ def _areas(bands: Bands) -> Floats:
     return 2.0 * np.pi * bands.radius * bands.length
 
 
-def with_torques(loads: PressureLoads, torque: Floats) -> PressureLoads:
-    """Loads on rings with further torques (R,) N m on them at every instant."""
-    moments, acting = loads.moments.copy(), dict(loads.acting)
-    moments[:, : len(torque), 2] += torque
-    for r in np.flatnonzero(torque):
-        unit = UnitLoad(loads.surfaces[r], "moment", 0)
-        amount = np.zeros((len(loads), 2)) + acting.get(unit, 0.0)
-        amount[:, 1] += torque[r]
-        acting[unit] = amount
-    return replace(loads, moments=moments, acting=acting)
+def turning_traction(model: ContactModel, torque: Floats) -> dict[UnitLoad, Floats]:
+    """The traction about the axis of torques (R,) N m on rings, as a unit load with its amount
+    (1, 2) at one instant; none where there is no torque.
+
+    It is one pattern over all rings, as those along the axis are: within a lug it has no edge.
+    """
+    shear = torque / (_areas(model.bands) * model.bands.radius)
+    size = float(np.linalg.norm(shear))
+    if size == 0.0:
+        return {}
+    parts = tuple(zip(model.rings, (shear / size).tolist(), strict=True))
+    return {UnitLoad("", "around", 0, parts): np.array([[0.0, size]])}

@@ -53,10 +53,10 @@ class PressureLoads(PinLoads):
 
     @property
     def in_sections(self) -> LoadAmounts:
-        """The loads `on_rings`, and the tractions along the axis that sections feel."""
-        axial = {u: x for u, x in self.acting.items() if u.kind == "axial" and u.n < 2}
+        """The loads `on_rings`, and the shears along the axis and about it that sections feel."""
+        shear = {u: x for u, x in self.acting.items() if u.kind in ("axial", "around") and u.n < 2}
         return LoadAmounts(
-            self.case, {**self.on_rings.coefficients(), **axial}, len(self), self.pressed
+            self.case, {**self.on_rings.coefficients(), **shear}, len(self), self.pressed
         )
 
     def coefficients(self) -> Mapping[UnitLoad, Floats]:

@@ -213,7 +213,7 @@ def _over_joint(
         for contact, others in zip(at, varied, strict=True)
     ]
     stress = _at_places(model, requirement, every) if any(every) else []
-    by_friction = _by_friction(model, requirement, at, vary)
+    by_friction = _by_friction(model, requirement, patterns, at, vary)
     out = []
     of_contacts = zip(at, likes, over, varied, missing, by_friction, strict=True)
     for contact, (like, given), names, joints, why, more in of_contacts:
@@ -275,12 +275,13 @@ def _ratio(
 def _by_friction(
     model: ContactModel,
     requirement: Requirement,
+    known: PressureModes,
     at: Sequence[JointContact],
     vary: Sequence[bool],
 ) -> list[tuple[Variation, ...]]:
     """The variations of each contact by the friction of lugs, relative to those without.
 
-    They are compared among themselves, on a solution of their own.
+    known: patterns of the pressures that have been solved.
     """
     if not rubs(model.lugs):
         return [()] * len(at)
@@ -289,7 +290,7 @@ def _by_friction(
         if not so:
             out.append(())
             continue
-        without, changed = rubbed(model, contact)
+        without, changed = rubbed(model, contact, known)
         plain, *stress = _at_places(model, requirement, [[without], *changed.values()])
         pairs = [(x.row / (plain.row or 1.0), x.beneath / (plain.beneath or 1.0)) for x in stress]
         ratios = {name: [pairs.pop(0) for _ in loads] for name, loads in changed.items()}

@@ -14,14 +14,20 @@ import numpy as np
 import pytest
 
 from fea.core.requirement import Requirement
+from fea.core.tractions import tractions_of
 from fea.solve.solve import solve_in_lugs
 from fea.support.bands import Bands
 from fea.support.contact.contact_state import ContactState
-from fea.support.contact.friction import band_torques, coefficient_words, opposed
+from fea.support.contact.friction import (
+    band_torques,
+    coefficient_words,
+    opposed,
+    turning_traction,
+)
 from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from fea.support.support import PinProblem, Solution
-from geometry import ArgumentError
+from geometry import ArgumentError, Pin, Segment
 from pinbase.arrays import Floats
 from tests.fea.support.contact.test_solve_in_lugs import FORCE, LUGS, PIN, STEADY, STEEL, D, pull
 
@@ -76,6 +82,28 @@ def test_the_order_of_rings_is_that_along_the_pin() -> None:
     assert not opposed(np.zeros(3), z).any()
 
 
+def test_torques_on_rings_are_one_traction_about_the_axis() -> None:
+    """Of every ring its torque, without an edge that would be a singularity of its own."""
+    names, radius = ("A", "B"), np.array([0.010, 0.012])
+    segments = [
+        Segment(L, 2.0 * r, connection=name)
+        for L, r, name in zip((0.02, 0.03), radius, names, strict=True)
+    ]
+    pin = Pin("P", tuple(segments))
+    bands = SimpleNamespace(radius=radius, length=np.array([0.02, 0.03]))
+    model = cast(ContactModel, SimpleNamespace(bands=bands, rings=names))
+    torque = np.array([3.0, -5.0])
+    ((load, amount),) = turning_traction(model, torque).items()
+    assert not load.shears
+    assert load.phases == (1,)
+    for one, expected in zip(tractions_of(pin, load), torque, strict=True):
+        band = pin.band(one.surface)
+        shear = one.mean * amount[0, 1]
+        assert shear[[0, 2]].tolist() == [0.0, 0.0]
+        assert -shear[1] * band.area * band.radius == pytest.approx(expected, rel=1e-12)
+    assert not turning_traction(model, np.zeros(2))
+
+
 def test_coefficients_outside_their_range_are_refused() -> None:
     for wrong in (-0.1, 1.1, math.nan):
         with pytest.raises(ArgumentError, match="friction must be from 0 to 1"):
@@ -103,7 +131,7 @@ def test_the_torque_of_a_clevis_is_that_of_its_arcs_of_contact(rubbing: Solution
 
 def test_torsion_by_friction_adds_to_bending_as_by_hand(rubbing: Solution) -> None:
     """sqrt(s^2 + 3 t^2) at mid-span, t = 16 T / (pi d^3), T half of all torque. The bound reverses
-    the friction within the middle lug, and the step of its traction there adds 1.5 % locally.
+    the friction within the middle lug, and the step of its traction there adds 2.2 % locally.
     """
     joint, peak = rubbing.joint, rubbing.peak
     assert joint is not None
@@ -114,7 +142,7 @@ def test_torsion_by_friction_adds_to_bending_as_by_hand(rubbing: Solution) -> No
     (turning,) = (v for v in joint.range.variations if v.value == "0.15, links turning on the pin")
     expected = math.sqrt(1.0 + 3.0 * (shear / peak.max_von_mises) ** 2)
     assert turning.what == "friction"
-    assert expected <= turning.max_von_mises / peak.max_von_mises <= 1.02 * expected
+    assert expected <= turning.max_von_mises / peak.max_von_mises <= 1.025 * expected
     assert joint.range.max_von_mises[1] >= turning.max_von_mises
 
 
