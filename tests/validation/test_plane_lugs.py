@@ -65,8 +65,9 @@ def test_the_bore_of_a_lug_is_stressed_as_calculix_says(case: Case) -> None:
         assert angle_apart(ours.angle, theirs.angle, mirrored=not case[1]) < CLOSE_ANGLE
 
 
+@pytest.mark.long
 @pytest.mark.peers
-@pytest.mark.parametrize("case", [ANEW[0], pytest.param(ANEW[1], marks=pytest.mark.long)])
+@pytest.mark.parametrize("case", ANEW)
 def test_calculix_agrees_anew(case: Case) -> None:
     eye = case_of(*case)
     theirs = figures_of_ccx(ccx_answer(eye))

@@ -201,6 +201,7 @@ def test_ratios_that_spread_too_far_are_not_taken(
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_rows_on_narrow_arcs_are_within_their_error_of_those_on_narrower_ones() -> None:
     """Rough cells follow neither: by their ratio alone the row would be half of what it is."""
     loose = dict.fromkeys((f"pin.P.lug.{x}.clearance" for x in ("left", "middle", "right")), 0.05)

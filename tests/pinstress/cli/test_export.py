@@ -322,6 +322,7 @@ def test_calculix_finds_the_stress_under_a_lug(tmp_path: Path) -> None:
     assert at_node == pytest.approx(float(numbers["node_von_mises"]), rel=limit)
 
 
+@pytest.mark.long
 @pytest.mark.peers
 def test_calculix_finds_the_stress_of_a_fillet_beside_a_lug(tmp_path: Path) -> None:
     """On a coarse mesh, with three elements on half of an arc; forces as statics has them."""

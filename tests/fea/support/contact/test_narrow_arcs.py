@@ -102,6 +102,7 @@ def test_cells_follow_narrow_arcs_to_the_tolerance(
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_light_case_leaves_the_cells_of_a_heavy_one_as_they_are() -> None:
     """Cells that follow the arcs of the light case have fewer rings than the heavy one needs."""
     heavy, light = loose(1.0), loose(LIGHT[1])
