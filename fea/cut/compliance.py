@@ -13,6 +13,7 @@ loads are combinations of few, for which alone the solid is solved.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -38,6 +39,10 @@ from pinbase.arrays import Floats
 # Of the largest nodal forces that relieve a cut of a unit load: those that are negligible. With a
 # tenth of it pressures about the flat and hole of the tests change by 0.03 % of the largest.
 RELIEF_TOLERANCE = 2e-3
+# Of the largest stress on the cuts of any combination of unit loads: that of combinations that are
+# negligible. With a tenth of it the added work changes by 2e-5 of the largest.
+STRESS_TOLERANCE = 1e-4
+WORK_TOLERANCE = 1e-4  # of the response to relieving forces, of the largest (fea.cut.two_level)
 
 
 @dataclass
@@ -46,23 +51,49 @@ class _Reliefs:
 
     basis: (3 N, B) orthonormal.
     amounts: (B, K) of each for every load so far.
+    sizes: (B,) N, of the forces for which each was needed.
     largest: of all forces so far, N.
     """
 
     basis: Floats
     amounts: Floats
+    sizes: Floats
     largest: float = 0.0
 
-    def add(self, forces: Floats) -> None:
-        """Add the forces (3 N, L) of further loads."""
-        self.largest = max(self.largest, float(np.linalg.norm(forces, axis=0).max(initial=0.0)))
-        amounts = self.basis.T @ forces
-        left = forces - self.basis @ amounts
+    def add(self, forces: Floats, shares: Floats) -> None:
+        """Add further loads, by the forces (3 N, C) of combinations of them, and the shares (C, L)
+        of these in each load.
+        """
+        squares = np.einsum("cl,cd,dl->l", shares, forces.T @ forces, shares, optimize=True)
+        self.largest = max(self.largest, math.sqrt(max(0.0, squares.max(initial=0.0))))
+        left = forces - self.basis @ (self.basis.T @ forces)
         more, size, _ = np.linalg.svd(left, full_matrices=False)
-        more = more[:, size > RELIEF_TOLERANCE * self.largest]
+        needed = size > RELIEF_TOLERANCE * self.largest
+        more = more[:, needed]
         self.basis = np.concatenate([self.basis, more], axis=1)
+        self.sizes = np.concatenate([self.sizes, size[needed]])
         before = np.pad(self.amounts, ((0, more.shape[1]), (0, 0)))
-        self.amounts = np.concatenate([before, self.basis.T @ forces], axis=1)
+        self.amounts = np.concatenate([before, self.basis.T @ forces @ shares], axis=1)
+
+
+@dataclass(frozen=True)
+class AddedCompliance:
+    """The work that unit loads do on what cuts add to the displacement under each, by the few
+    forces that relieve the cuts.
+
+    units: the unit loads in all their phases, (K,).
+    amounts: of the relieving forces under each, (B, K).
+    on: their work on the displacement under each, (B, K) N m.
+    """
+
+    units: tuple[Unit, ...]
+    amounts: Floats
+    on: Floats
+
+    def work(self, loads: Floats) -> Floats:
+        """The work (U, U), N m, of sums of the unit loads (K, U)."""
+        work = (self.amounts @ loads).T @ (self.on @ loads)
+        return np.asarray(0.5 * (work + work.T))  # iteration and interpolation leave a little
 
 
 def added_compliance(
@@ -71,9 +102,8 @@ def added_compliance(
     pieces: Sequence[Piece],
     bands: Sequence[tuple[float, float]],
     loads: Sequence[tuple[UnitLoad, ...]],
-) -> tuple[tuple[Unit, ...], Floats]:
-    """The unit loads in all their phases (K,), and the work (K, K), N m, that each does on what the
-    cuts add to the displacement under each.
+) -> AddedCompliance:
+    """By how much cuts make a pin more compliant under unit loads.
 
     pin: without its cuts.
     pieces: about its cuts. bands: loaded ones with cuts in them (fea.cut.region.loaded_bands).
@@ -89,59 +119,77 @@ def added_compliance(
     fields = [section.solve(x, points) for x in loads]
     units = [tuple((load, p) for load in x for p in load.phases) for x in loads]
     every = tuple(unit for part in units for unit in part)
-    work, first = np.zeros((len(every), len(every))), 0
+    parts, first = [], 0
     for model in models:
         here = slice(first, first + len(section_points(model)))
         first = here.stop
-        work += _of_piece(model, here, list(zip(fields, units, strict=True)))
-    return every, work
+        parts += _of_piece(model, here, list(zip(fields, units, strict=True)))
+    amounts, on = (np.concatenate(x) for x in zip(*parts, strict=True))
+    return AddedCompliance(every, amounts, on)
 
 
 def _of_piece(
     model: LocalModel, here: slice, parts: Sequence[tuple[MeridianFields, tuple[Unit, ...]]]
-) -> Floats:
-    """The added work (K, K) of one piece.
+) -> list[tuple[Floats, Floats]]:
+    """The amounts (B, K) of the forces that relieve one piece's cuts, and their work (B, K) on the
+    displacement under each load, class by class.
 
     here: of its section_points among those at which the fields have stress.
     parts: fields and unit loads, harmonic by harmonic.
     """
     classes = model.parities.classes
-    nothing = np.zeros((model.unknowns, 0)), np.zeros((0, 0))
-    reliefs = [_Reliefs(*nothing) for _ in classes]
-    for fields, units in parts:
-        stress = _on_cuts(model, fields, here, units)
-        for relief, forces in zip(reliefs, model.reliefs(stress), strict=True):
-            relief.add(forces)
+    none = np.zeros((model.unknowns, 0))
+    reliefs = [_Reliefs(none, np.zeros((0, 0)), np.zeros(0)) for _ in classes]
+    for stress, shares in _on_cuts(model, here, parts):
+        by_class = model.reliefs(stress) if len(shares) else [none] * len(classes)
+        for relief, forces in zip(reliefs, by_class, strict=True):
+            relief.add(forces, shares)
     on_uncut = [np.zeros((x.basis.shape[1], 0)) for x in reliefs]
     for displaced in _displaced(model, parts):
-        by_class = model.parities.split_vectors(displaced)
+        moved_by_class = model.parities.split_vectors(displaced)
         for c, relief in enumerate(reliefs):
-            basis = relief.basis.reshape(len(model.space.nodes), 3, -1 if relief.basis.size else 0)
+            basis = relief.basis.reshape(len(model.space.nodes), 3, len(relief.sizes))
             basis = basis[model.nodes_once]
-            done = np.einsum("pab,pal->bl", basis, by_class[c], optimize=True)
+            done = np.einsum("pab,pal->bl", basis, moved_by_class[c], optimize=True)
             on_uncut[c] = np.concatenate([on_uncut[c], done], axis=1)
-    out = np.zeros((len(reliefs[0].amounts.T),) * 2)
+    out = []
     for c, relief in enumerate(reliefs):
-        if not relief.basis.shape[1]:
-            continue
-        moved = model.displaced(relief.basis, classes[c])
-        own = relief.amounts.T @ on_uncut[c]
-        within = relief.amounts.T @ (relief.basis.T @ moved) @ relief.amounts
-        out += len(classes) * (own + within)
-    return np.asarray(0.5 * (out + out.T))  # iteration and interpolation leave a little besides
+        within = np.zeros_like(relief.amounts)
+        if relief.basis.shape[1]:
+            # By their sizes, so that what adds little is solved less accurately.
+            moved = model.displaced(relief.basis * relief.sizes, classes[c], WORK_TOLERANCE)
+            within = relief.basis.T @ (moved / relief.sizes) @ relief.amounts
+        out.append((relief.amounts, len(classes) * (on_uncut[c] + within)))
+    return out
 
 
 def _on_cuts(
-    model: LocalModel, fields: MeridianFields, here: slice, units: tuple[Unit, ...]
-) -> Floats:
-    """The stress (G, P, 6, L) of the uncut pin at the images of a piece's points, on cuts alone."""
-    x, columns = model.images, [fields.loads.index(load) for load, _ in units]
-    first = len(fields.displacement)
-    at = fields.stress[first + here.start : first + here.stop]
-    amplitude = np.zeros((*x.shape[:2], *fields.stress.shape[1:]))
-    amplitude[:, model.cut] = at.reshape(len(x), -1, *at.shape[1:])
+    model: LocalModel, here: slice, parts: Sequence[tuple[MeridianFields, tuple[Unit, ...]]]
+) -> Iterator[tuple[Floats, Floats]]:
+    """The stress (G, P, 6, C) of the uncut pin at the images of a piece's points, on cuts alone,
+    under combinations of the unit loads of each harmonic, and the shares (C, L) of these in each.
+
+    Few combinations of pressures on rings reach a cut, the fewer the higher their harmonic.
+    """
+    x = model.images
     angle = np.arctan2(x[..., 1], x[..., 0])
-    return cartesian(amplitude[..., columns], angle, model.piece.angle, units)
+    combined = []
+    for fields, units in parts:
+        loads, first = tuple(dict.fromkeys(load for load, _ in units)), len(fields.displacement)
+        columns = [fields.loads.index(load) for load in loads]
+        at = fields.stress[first + here.start : first + here.stop][..., columns]
+        combined.append(np.linalg.svd(at.reshape(-1, len(loads)), full_matrices=False))
+    largest = max(size.max(initial=0.0) for _, size, _ in combined)
+    for (_, units), (on_points, size, of_loads) in zip(parts, combined, strict=True):
+        some = size > STRESS_TOLERANCE * largest
+        amplitude = np.zeros((*x.shape[:2], 6, some.sum()))
+        at_cut = on_points[:, some] * size[some]
+        amplitude[:, model.cut] = at_cut.reshape(len(x), model.cut.sum(), 6, some.sum())
+        load = units[0][0]
+        every = tuple((load, phase) for _ in range(some.sum()) for phase in load.phases)
+        twice = np.repeat(amplitude, len(load.phases), axis=-1)
+        shares = np.kron(of_loads[some], np.eye(len(load.phases)))
+        yield cartesian(twice, angle, model.piece.angle, every), shares
 
 
 def _displaced(

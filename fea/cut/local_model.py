@@ -234,9 +234,12 @@ class LocalModel:
         whole = np.maximum(_size(pressed), np.sum([_size(f) for f in forces], axis=0))
         return forces, [size > MIN_CLASS_TRACTION * most for size in sizes], whole
 
-    def displaced(self, forces: Floats, parity: tuple[int, ...]) -> Floats:
-        """Displacements (3 N, L) of a class under balanced nodal forces (3 N, L)."""
-        return self.system.displace(forces, parity, _size(forces))
+    def displaced(self, forces: Floats, parity: tuple[int, ...], tolerance: float) -> Floats:
+        """Displacements (3 N, L) of a class under balanced nodal forces (3 N, L).
+
+        tolerance: of iterations, as of fea.cut.two_level.
+        """
+        return self.system.displace(forces, parity, _size(forces), tolerance)
 
     def _moved(self, u: Floats, parity: tuple[int, ...]) -> Floats:
         """The rigid motions (2, 6, L) of both ends by displacements (3 N, L) of a class.
@@ -301,7 +304,7 @@ class LocalModel:
             # class.
             lost = modes.T @ self._forces(stress, bearing.cuts)
             on = bearing.on(self.points, self.normals) & ~self.cut
-            for shear in (True, False):
+            for shear in np.unique(shears).tolist():
                 here = np.flatnonzero(shears == shear)
                 trial = trial_forces(self.space, self.surface, bearing, shear)[:, allowed]
                 # Amounts of the trial tractions that restore these resultants.

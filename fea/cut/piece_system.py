@@ -12,7 +12,7 @@ import scipy.sparse as sp
 from fea.core.linear_solver import ConstrainedSystem, SolveError
 from fea.core.material import Material
 from fea.cut.parity import Parities
-from fea.cut.two_level import MAX_FACTORED_UNKNOWNS, TwoLevel
+from fea.cut.two_level import ENERGY_TOLERANCE, MAX_FACTORED_UNKNOWNS, TwoLevel
 from fea.solid.assembly import Discretisation
 from fea.solid.model import rigid_modes
 from pinbase.arrays import Floats, Ints
@@ -40,12 +40,19 @@ class PieceSystem:
         """Number of displacement components, constrained ones included."""
         return self.space.unknowns
 
-    def displace(self, forces: Floats, parity: tuple[int, ...], whole: Floats) -> Floats:
+    def displace(
+        self,
+        forces: Floats,
+        parity: tuple[int, ...],
+        whole: Floats,
+        tolerance: float = ENERGY_TOLERANCE,
+    ) -> Floats:
         """Displacements (3 N, L) of a class, after balancing its forces.
 
         forces: (3 N, L) N.
         parity: of the class.
         whole: (3 N,) size of all classes' forces.
+        tolerance: of iterations (TwoLevel.solve).
         """
         free = np.ones(self.unknowns)
         free[self._fixed(parity)] = 0.0
@@ -65,7 +72,7 @@ class PieceSystem:
         rank = int(np.sum(size > TRACTION_RANK_TOLERANCE * size[0]))
         some = left[:, :rank] * size[:rank]
         u = (
-            self._two_level.solve(free, held, some)
+            self._two_level.solve(free, held, some, tolerance)
             if self.unknowns > MAX_FACTORED_UNKNOWNS
             else None
         )

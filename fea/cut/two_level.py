@@ -21,7 +21,7 @@ from fea.solid.assembly import Discretisation
 from pinbase.arrays import Floats, Ints
 
 MAX_FACTORED_UNKNOWNS = 8_000  # up to which factoring takes less time
-ENERGY_TOLERANCE = 1e-5  # root of the residual's energy over that of the largest forces
+ENERGY_TOLERANCE = 1e-5  # where none is asked for
 MAX_CONJUGATE_GRADIENT_STEPS = 60  # 10 to 15 are usual
 # Chosen by judgement:
 SMOOTHER_DEGREE = 2  # of the Chebyshev polynomial
@@ -50,12 +50,15 @@ class TwoLevel:
         """Numbers of the linear tetrahedra's unknowns among all."""
         return np.asarray((3 * self._corners[:, None] + np.arange(3)).ravel())
 
-    def solve(self, free: Floats, held: Ints, forces: Floats) -> Floats | None:
+    def solve(
+        self, free: Floats, held: Ints, forces: Floats, tolerance: float = ENERGY_TOLERANCE
+    ) -> Floats | None:
         """Unknowns (3 N, K) under forces (3 N, K); None where the iteration does not converge.
 
         free: (3 N,) 0 where unknowns are zero, else 1.
         held: unknowns, of corners, that remove the rigid motions that remain without forces; they
         are zero on the coarse level alone.
+        tolerance: root of the residual's energy over that of the largest forces.
         """
         free = free[:, None]
         on_coarse = free.copy()
@@ -77,7 +80,7 @@ class TwoLevel:
         z = precondition(r)
         energy = np.sum(r * z, axis=0)
         least, active, x, p = (
-            ENERGY_TOLERANCE**2 * energy.max(),
+            tolerance**2 * energy.max(),
             np.arange(r.shape[1]),
             solution.copy(),
             z,

@@ -16,7 +16,7 @@ import numpy as np
 
 from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
-from fea.cut.compliance import added_compliance
+from fea.cut.compliance import AddedCompliance, added_compliance
 from fea.cut.region import loaded_bands, pieces
 from fea.support.bands import Bands
 from fea.support.contact.pressure_loads import waves_of_sectors
@@ -31,12 +31,12 @@ MIN_CELL_LEFT = 0.15  # of a cell's area: a cell with less presses no more; chos
 class SeenCuts:
     """The cuts of a pin, and what they add to the work of pressures on its rings.
 
-    work: (K, K) N m, of unit pressures: by harmonic, ring and phase.
+    compliance: under unit pressures, by harmonic, ring and phase.
     of: (K, 3) harmonic, ring and phase of each.
     """
 
     cut: CutPin
-    work: Floats
+    compliance: AddedCompliance
     of: Floats
 
     @cached_property
@@ -83,7 +83,7 @@ class SeenCuts:
         amounts *= here
         share = np.linalg.solve(motions.T @ motions, motions.T)
         balanced = amounts - (amounts @ motions) @ share
-        return np.asarray(balanced.T @ self.work @ balanced)
+        return self.compliance.work(balanced)
 
 
 def seen_cuts(
@@ -102,6 +102,6 @@ def seen_cuts(
         tuple(UnitLoad("", "pressure", n, ((name, 1.0),)) for name in rings)
         for n in range(highest + 1)
     ]
-    units, work = added_compliance(ringed, material, pieces(cut, (), bands=bands), bands, loads)
-    of = np.array([(load.n, number[load.parts[0][0]], phase) for load, phase in units])
-    return SeenCuts(cut, work, of)
+    added = added_compliance(ringed, material, pieces(cut, (), bands=bands), bands, loads)
+    of = np.array([(load.n, number[load.parts[0][0]], phase) for load, phase in added.units])
+    return SeenCuts(cut, added, of)

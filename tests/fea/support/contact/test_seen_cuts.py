@@ -10,6 +10,7 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.cut import compliance
 from fea.support.contact.contact_state import ContactState
 from fea.support.contact.resolution import Resolution
 from fea.support.contact.solve_joint import ContactModel
@@ -124,9 +125,25 @@ def test_cuts_add_compliance_each_on_its_own() -> None:
         matrix = of.cuts.added(of.bands, ROUGH.sectors, np.eye(len(of.rings)))
         assert matrix == pytest.approx(matrix.T, abs=1e-9 * np.abs(matrix).max())
         assert np.linalg.eigvalsh(of.contact._compliance)[0] > 0.0
-        added.append(of.cuts.work)
+        added.append(of.cuts.compliance.work(np.eye(len(of.cuts.of))))
     together = np.linalg.norm(added[2])
     assert np.linalg.norm(added[2] - added[0] - added[1]) < 0.02 * together
+
+
+@pytest.mark.slow
+def test_few_combinations_of_pressures_reach_a_cut(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of them, and of iterations that end early, the cells learn what all of them would say."""
+    known = model(LOOSE, FLAT)
+    monkeypatch.setattr(compliance, "STRESS_TOLERANCE", 0.0)
+    monkeypatch.setattr(compliance, "WORK_TOLERANCE", 1e-6)
+    alone = ContactModel(CLEVIS, STEEL, LOOSE, ROUGH, Memo()).seeing(CutPin.of(CLEVIS, [FLAT]))
+    few, every = (
+        x.cuts.added(x.bands, ROUGH.sectors, np.eye(len(x.rings)))
+        for x in (known, alone)
+        if x.cuts is not None
+    )
+    assert few == pytest.approx(every, abs=1e-3 * np.abs(every).max())
+    assert (few != every).any()
 
 
 @pytest.mark.slow
