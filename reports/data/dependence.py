@@ -15,7 +15,7 @@ from fea.support.records import FRICTION, JointResult, Variation
 from pinbase.arrays import Mask
 from pinbase.dimensions import Floats
 from reports.data.decision import factor_ends
-from reports.data.row import Dependence, LandingRange, PinResult, SharingRange
+from reports.data.row import Dependence, LandingRange, LostFit, PinResult, SharingRange
 
 BENEATH_CONTACT: Literal["beneath"] = "beneath"
 WITH_ERROR = "with its error"  # of what lies beneath, which exceeds what is permitted only with it
@@ -114,13 +114,22 @@ def _over_loads_and_joint(
     strength = judged.strength
     ranges = [*_beneath(judged, contact), *_over_joint(judged, contact, joint)]
     if judged.safe:  # loose it is strong enough, but what retains it is open
-        lost = ", ".join(pin.lost_fits)
-        ranges += [Dependence(LOST_FIT, lost, PRESS_FIT, strength / judged.maximum)] if lost else []
+        ranges += _loose(pin.lost_fits, strength / judged.maximum)
     if pin.landing is not None:
         ranges += _with_beneath(judged, contact, pin.landing)
     if pin.sharing is not None:
         ranges += _over_links(judged, contact, pin.sharing)
     return ranges or list(_together(judged, contact, joint, pin))
+
+
+def _loose(lost: Sequence[LostFit], factor: float) -> Iterator[Dependence]:
+    """Yield the interference of the lugs in which a pin comes loose, by the one that lacks most."""
+    if lost:
+        worst, where = max(lost, key=lambda x: x.needed), ", ".join(x.where for x in lost)
+        yield Dependence(
+            LOST_FIT, where, PRESS_FIT, factor, given=worst.given, flips_at=worst.needed,
+            dimension="length",
+        )  # fmt: skip
 
 
 def joined(names: Sequence[str]) -> str:

@@ -85,6 +85,20 @@ class Dependence:
 
 
 @dataclass(frozen=True)
+class LostFit:
+    """A lug in which a pin is pressed no longer at the temperature of a case.
+
+    where: the lug, with the temperature at which the pin becomes loose in it, in words.
+    given, needed: the least interference there, and the least that holds, both without the
+    temperature.
+    """
+
+    where: str
+    given: Length
+    needed: Length
+
+
+@dataclass(frozen=True)
 class LandingRange:
     """The results of one pin over the ranges of a landing's impulse, at P points.
 
@@ -147,8 +161,7 @@ class PinResult:
     exponent: with which the factor grows with the diameters, by the law of the section
     (assess.diameter_law).
     depends_on: values within the study's ranges that change whether the maximum is permitted.
-    lost_fits: lugs in which the pin is pressed no longer at the temperature of the case, with the
-    temperature at which it becomes loose, in words.
+    lost_fits: lugs in which the pin is pressed no longer at the temperature of the case.
     published_*: the publication's value, in the study's units.
     units: of its numbers.
     """
@@ -173,7 +186,7 @@ class PinResult:
     shank_angles: tuple[tuple[str, float], ...] = ()
     exponent: float = BENDING_EXPONENT
     depends_on: tuple[Dependence, ...] = ()
-    lost_fits: tuple[str, ...] = ()
+    lost_fits: tuple[LostFit, ...] = ()
     published_max_von_mises: float | None = None
     published_safety_factor: float | None = None
     units: Units = field(default=SI, compare=False)

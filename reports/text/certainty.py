@@ -5,7 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from assess.judgement import DEPENDS, FAILS, NOT_DECIDED
-from reports.data.dependence import BENEATH_CONTACT, IMPULSE_RANGES_TOGETHER, TOGETHER
+from reports.data.dependence import (
+    BENEATH_CONTACT,
+    IMPULSE_RANGES_TOGETHER,
+    PRESS_FIT,
+    TOGETHER,
+)
 from reports.data.overview import GOOD, PinLine
 from reports.data.results import Results
 from reports.data.row import Dependence, PinResult, Units
@@ -191,7 +196,7 @@ def flips(row: PinResult, units: Units) -> str:
 def _at(d: Dependence, units: Units) -> str:
     """Return at which values an outcome differs: "above 0.0007 in", "half-sine"; or nothing."""
     value = d.flips_at if d.flips_at is not None else d.at
-    if value is None:
+    if value is None or d.over == PRESS_FIT:
         return "" if d.what == BENEATH_CONTACT else d.value
     side = "" if d.given is None else "above " if (d.at or value) > d.given else "below "
     return f"{side}{threshold(value)} {unit_name(d.dimension, units)}"

@@ -10,10 +10,11 @@ from assess.strength.fatigue_life import FATIGUE_LIFE
 from pinbase.grouped import grouped
 from reports.data.changes import Remedy, command
 from reports.data.decision import largest_factor, limit
+from reports.data.dependence import PRESS_FIT
 from reports.data.overview import GOOD, PinLine, QuietCase, quiet_cases
 from reports.data.results import PinShape, Results
 from reports.data.row import PinResult
-from reports.format.numbers import engineering, short
+from reports.format.numbers import above, engineering, short
 from reports.format.place_words import action, place_words
 from reports.format.ranges import factor_range
 from reports.format.words import WITHIN_ERROR, undecided_because
@@ -88,7 +89,7 @@ def actions(results: Results, lines: Sequence[PinLine], study: str = "") -> Acti
     study: its path, by default its name.
     """
     repairs = [*lug_advice(results, lines), *_exceeded(lines), *_singular(lines)]
-    repairs += [*unsized_notes(results), *_near(lines)]
+    repairs += [*unsized_notes(results), *_loose(results), *_near(lines)]
     if not results.changes:
         return Actions(repairs, [], "")
     needed = [line for line in lines if line.diameter and line.diameter.needed]
@@ -260,6 +261,22 @@ def _eyes(results: Results, lines: Sequence[PinLine]) -> Content:
         f"{names([x.pin for x in small])} would not fit lugs of {', '.join(sorted(eyes))} "
         f"{results.units.length} outer diameter: enlarge the lugs or add shear planes."
     ]
+
+
+def _loose(results: Results) -> Content:
+    """Return a sentence on each pin that comes loose, with the interference that would hold."""
+    lost = grouped(
+        (r.pin, (r.case, d)) for r in results.pins for d in r.depends_on if d.over == PRESS_FIT
+    )
+    told = []
+    for pin, cases in lost.items():
+        where = names(list(dict.fromkeys(case for case, _ in cases)))
+        needed = f"{above(max(d.flips_at or 0.0 for _, d in cases))} {results.units.length}"
+        told.append(
+            f"{pin} needs an interference of more than {needed}, or something else that retains it "
+            f"({where})."
+        )
+    return told
 
 
 def _near(lines: Sequence[PinLine]) -> Content:

@@ -325,9 +325,10 @@ def _notes(
         yield said
     for p in nominal.pins:
         if p.lost_fits:
+            where = ", ".join(x.where for x in p.lost_fits)
             yield (
-                f"Pin {p.pin} comes loose in {p.case}: its press fit is lost in "
-                f"{', '.join(p.lost_fits)}. What else retains it is not judged here."
+                f"Pin {p.pin} comes loose in {p.case}: its press fit is lost in {where}. What else "
+                "retains it is not judged here."
             )
     yield from left_out(nominal.pins, laws)
     if any(p.verdict == "singular" for p in nominal.pins):

@@ -7,11 +7,13 @@ from collections.abc import Iterable
 from pinstress.study.model.tasks import Task
 from pinstress.study.model.temperature import rise_of, temperature_words
 from pinstress.study.reading.file import Study
+from reports.data.row import LostFit
+from reports.format.numbers import above
 
 
-def lost_fits(study: Study, task: Task, case: str) -> tuple[str, ...]:
+def lost_fits(study: Study, task: Task, case: str) -> tuple[LostFit, ...]:
     """Return the lugs from which a pin pressed into them comes loose at the temperature of a case,
-    with the least of its interferences, in words: "LEFT above 143 degC".
+    with the least of its interferences: "LEFT above 143 degC".
     """
     rise, out = rise_of(study, case), []
     for lug in task.given:
@@ -19,8 +21,15 @@ def lost_fits(study: Study, task: Task, case: str) -> tuple[str, ...]:
         lost = [x for x in every if x < 0.0 <= x + lug.growth]
         if rise and lost:
             opens = temperature_words(study, -rise * max(lost) / lug.growth)
-            out.append(f"{lug.connection} {'above' if rise > 0.0 else 'below'} {opens}")
+            where = f"{lug.connection} {'above' if rise > 0.0 else 'below'} {opens}"
+            out.append(LostFit(where, -max(lost), lug.growth))
     return tuple(out)
+
+
+def _longest(study: Study, lost: Iterable[LostFit]) -> str:
+    """Return the largest interference that is needed, in the study's units: "0.0228 mm"."""
+    needed = max(x.needed for x in lost) / study.system.factor("length")
+    return f"{above(needed)} {study.system.length}"
 
 
 def lost_fit_warnings(study: Study, todo: Iterable[Task]) -> list[str]:
@@ -30,7 +39,8 @@ def lost_fit_warnings(study: Study, todo: Iterable[Task]) -> list[str]:
             study.error(
                 f"case.{case.case}.temperature: pin {task.pin.name} is no longer pressed in at "
                 f"{temperature_words(study, rise_of(study, case.case))}: its press fit is lost in "
-                f"{', '.join(lost)}; use a tighter fit, or say what else retains the pin"
+                f"{', '.join(x.where for x in lost)}; use an interference of more than "
+                f"{_longest(study, lost)}, or say what else retains the pin"
             )
         )
         for task in todo

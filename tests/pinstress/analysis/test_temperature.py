@@ -14,10 +14,12 @@ from pinstress.explore.sweep.parameters import parameters_of
 from pinstress.study.model.lost_fits import lost_fit_warnings
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.in_python import study_from
+from reports.data.overview import pin_lines
 from reports.data.requirements import requirement_rows
 from reports.data.row import PinResult
 from reports.data.unknowns import decided_by, unknowns
 from reports.format.words import headline
+from reports.text.overview import actions
 from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.pins.remembered import remembered
@@ -203,13 +205,25 @@ def test_that_a_pin_comes_loose_is_said_once_as_what_it_is(
     rows = requirement_rows(loosened)
     assert [x.outcome for x in rows if (x.case, x.check) == ("hot", "rupture")] == ["met"]
     assert not decided_by(unknowns(loosened.pins))
+    (needed,) = actions(loosened, pin_lines(loosened)).repairs
+    assert needed == (
+        "P needs an interference of more than 0.0228 mm, or something else that retains it (hot)."
+    )
 
 
-def test_a_pin_that_comes_loose_is_warned_of() -> None:
-    plan = prepare(study_from(changed((FIT, "clearance = -0.01\n"))))
-    (warning,) = lost_fit_warnings(plan.study, plan.tasks)
+def loosening(interference: float) -> list[str]:
+    """The warnings of a pin with so much interference, mm."""
+    plan = prepare(study_from(changed((FIT, f"clearance = -{interference}\n"))))
+    return lost_fit_warnings(plan.study, plan.tasks)
+
+
+def test_a_pin_that_comes_loose_is_warned_of_and_what_is_said_to_hold_it_does() -> None:
+    (warning,) = loosening(0.01)
     assert "case.hot.temperature: pin P is no longer pressed in at 120 degC" in warning
     assert "L above 63.9 degC" in warning
+    assert "use an interference of more than 0.0228 mm" in warning
+    assert not loosening(0.02281)
+    assert loosening(0.0227)
 
 
 def test_the_assumption_of_the_reference_is_said(loosened: pinstress.RunResults) -> None:
