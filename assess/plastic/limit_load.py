@@ -37,6 +37,7 @@ EQUILIBRIUM_ALLOWANCE = 0.01
 # When the path ends; chosen by judgement.
 STEP_GROWTH_TOLERANCE = 2e-3  # relative growth of the factor in the last step, at most
 MAX_FLOW_WORK_RATIO = 1.02  # work of flow over that of the loads in that step, at most
+ROUND_OFF = 1e-9  # of the largest displacement
 MIN_FLOW_WORK_RATIO = 0.97  # factor over work of flow, at least, where Newton's method fails
 
 
@@ -120,10 +121,15 @@ def _curve(body: FlowingBody, path: EquilibriumPath, states: list[State]) -> Loa
     def largest(unknowns: Floats) -> float:
         return float(np.linalg.norm(body.displacement(unknowns), axis=1).max())
 
+    def permanent(state: State) -> float:
+        """What remains, without the round-off of a state that is elastic throughout."""
+        remains = largest(state.unknowns - state.factor * path.elastic)
+        return remains if remains > ROUND_OFF * largest(state.unknowns) else 0.0
+
     return LoadCurve(
         np.array([s.factor for s in states]),
         np.array([largest(s.unknowns) for s in states]),
-        np.array([largest(s.unknowns - s.factor * path.elastic) for s in states]),
+        np.array([permanent(s) for s in states]),
     )
 
 

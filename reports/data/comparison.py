@@ -68,7 +68,7 @@ class RowPair:
         if a.maximum is None or b.maximum is None:
             return UNCHANGED if a.maximum == b.maximum else NOT_SOLVED
         if _same(a.maximum, b.maximum):  # the factor also has the strength, which has no error
-            return UNCHANGED if _equal(a.factor, b.factor) else BEYOND_ERRORS
+            return UNCHANGED if unchanged(a.factor, b.factor) else BEYOND_ERRORS
         apart = _above(a.low, b.high) or _above(b.low, a.high)
         return BEYOND_ERRORS if apart else WITHIN_ERRORS
 
@@ -204,10 +204,11 @@ def _differing(
         ValuePair(names, first.get(names), second.get(names))
         for names in dict.fromkeys((*first, *second))
     )
-    return tuple(pair for pair in pairs if not _equal(pair.first, pair.second))
+    return tuple(pair for pair in pairs if not unchanged(pair.first, pair.second))
 
 
-def _equal(a: Any, b: Any) -> bool:
+def unchanged(a: Any, b: Any) -> bool:
+    """Return whether two values are equal, numbers but for round-off."""
     numbers = isinstance(a, float) and isinstance(b, float)
     return _same(a, b) if numbers else bool(a == b)
 

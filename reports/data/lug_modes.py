@@ -45,3 +45,11 @@ def lug_mode(method: str) -> str | None:
         if method.startswith(methods):
             return mode
     return None
+
+
+def bore_wall(method: str) -> str:
+    """Return which wall of a bushed lug a check of the stress at the bore judges: "bushing" or
+    "hole"; empty for a lug without one, and for other checks.
+    """
+    is_wall = lug_mode(method) == BORE_STRESS
+    return next((w for w in ("bushing", "hole") if is_wall and method.endswith(f", {w}")), "")

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from reports.data.comparison import CHANGE_KINDS, UNCHANGED, RunComparison
+from reports.data.comparison import CHANGE_KINDS, UNCHANGED, RunComparison, unchanged
 from reports.data.requirement_pairs import GONE, LOST, LOWERED, NEWLY_MET
 from reports.format.files import markdown
 from reports.format.ranges import factor_text
@@ -72,7 +72,7 @@ def _factor_changes(comparison: RunComparison) -> list[str]:
             continue
         first, second = (min(side, default=None) for side in factors[pin])
         before, after = (_factor(x, y) for x, y in ((first, second), (second, first)))
-        if before != after:
+        if before != after and not unchanged(first, second):
             words.append(f"pin {pin}: {before} to {after}")
     return words
 

@@ -17,8 +17,8 @@ from math import sqrt
 
 from assess.clauses.ekvall import BORE_EXPONENT, TESTED_WIDTHS
 from assess.judgement import FAILS
-from reports.data.headline import JudgedCheck
-from reports.data.lug_modes import BORE_STRESS, lug_mode
+from reports.data.headline import JudgedCheck, judged_checks
+from reports.data.lug_modes import BORE_STRESS, bore_wall, lug_mode
 from reports.data.overview import PinLine
 from reports.data.results import LugSketch, PinShape, Results
 from reports.data.row import Units
@@ -40,7 +40,7 @@ PASSING_WORDS = {
 
 def lug_advice(results: Results, lines: Iterable[PinLine]) -> list[str]:
     """Return sentences on the lugs that fail where a check of one is the worst of its pin."""
-    failing = _failing(lines)
+    failing = _with_other_walls(_failing(lines), results)
     whole = [
         c
         for c in failing
@@ -57,7 +57,7 @@ def lug_advice(results: Results, lines: Iterable[PinLine]) -> list[str]:
 def lug_peaks(lines: Iterable[PinLine], units: Units) -> str:
     """Return a sentence on the stress of the lugs that fail by it; empty without any."""
     told = [
-        f"{c.lug} {engineering(c.margin.demand, 3)} {units.stress}"
+        f"{_with_wall(c)} {engineering(c.margin.demand, 3)} {units.stress}"
         for c in _failing(lines)
         if c.margin and _at_bore(c)
     ]
@@ -65,8 +65,38 @@ def lug_peaks(lines: Iterable[PinLine], units: Units) -> str:
 
 
 def _failing(lines: Iterable[PinLine]) -> list[JudgedCheck]:
+    """Return the checks of lugs that fail, each in its worst case."""
     checks = [line.check for line in lines if line.check.outcome == FAILS]
-    return [check for check in checks if check.lug and check.factor]
+    return _each_once(check for check in checks if check.lug and check.factor)
+
+
+def _each_once(checks: Iterable[JudgedCheck]) -> list[JudgedCheck]:
+    """Return the worst of every check of a lug over the cases."""
+    worst: dict[tuple[str, str, str], JudgedCheck] = {}
+    for check in sorted(checks, key=lambda check: check.rank):
+        worst.setdefault((check.pin, check.lug, check.check), check)
+    return list(worst.values())
+
+
+def _with_other_walls(failing: list[JudgedCheck], results: Results) -> list[JudgedCheck]:
+    """Return also the other wall of a bushed lug where it fails: a stronger bushing does not make
+    the hole about it safe.
+    """
+    bushed = {(c.pin, c.lug) for c in failing if bore_wall(c.check)}
+    if not bushed:
+        return failing
+    others = [
+        c
+        for c in judged_checks(results)
+        if (c.pin, c.lug) in bushed and bore_wall(c.check) and c.outcome == FAILS and c.factor
+    ]
+    return _each_once([*failing, *others])
+
+
+def _with_wall(check: JudgedCheck) -> str:
+    """Return the name of a lug, and in brackets the wall that is meant if it has a bushing."""
+    wall = bore_wall(check.check)
+    return f"{check.lug} ({wall})" if wall else check.lug
 
 
 def _at_bore(check: JudgedCheck) -> bool:
@@ -88,8 +118,12 @@ def _of_whole(checks: Sequence[JudgedCheck]) -> str:
 def _of_lug(check: JudgedCheck, results: Results) -> str:
     lug, ways = _lug(check, results), _ways(check, results)
     where = "at the bore" if _at_bore(check) else check.check
+    wall = bore_wall(check.check)
+    if wall == "hole":
+        where = "at the hole about its bushing"
+    name = f"{'The bushing of lug' if wall == 'bushing' else 'Lug'} {check.lug} of {check.pin}"
     factor = f"factor {engineering(check.factor, 3)} {where}"
-    return f"Lug {check.lug} of {check.pin} ({factor}) needs {_or(ways, _pressed(lug))}."
+    return f"{name} ({factor}) needs {_or(ways, _pressed(lug))}."
 
 
 def _lug(check: JudgedCheck, results: Results) -> LugSketch | None:

@@ -22,7 +22,7 @@ from reports.page.comparison import PicturePair, write_comparison
 from reports.plots.comparison import comparison_plot
 from reports.tables.comparison import inputs_table, rows_table
 from reports.tables.json_results import to_json
-from reports.text.comparison import headline, write_markdown
+from reports.text.comparison import headline, review, write_markdown
 from tests.support.results.made_up_run import make_results
 
 
@@ -67,6 +67,13 @@ def test_another_strength_changes_a_row_whose_stress_stays(run: dict[str, Any]) 
     """It was unchanged, and not in the table, though its factor had fallen from 3.64 to 3.14."""
     before, after = (changed(run, safety_factor=x, outcome="safe") for x in (3.64, 3.14))
     assert compare(before, after).rows[0].kind == BEYOND_ERRORS
+
+
+def test_round_off_is_no_change_of_a_factor(run: dict[str, Any]) -> None:
+    """The same clevis, turned: "Pin P: 2.30445 to 2.30" stood above "1 row: 1 unchanged"."""
+    one = {**run, "pins": run["pins"][:1]}
+    before, after = (changed(one, safety_factor=2.30444649013 * x) for x in (1.0, 1.0 - 1e-14))
+    assert review(compare(before, after)).startswith("No factor of a pin changed")
 
 
 def test_a_change_is_beyond_the_errors_or_within(run: dict[str, Any]) -> None:

@@ -17,6 +17,7 @@ from reports.tables.json_results import to_json
 from reports.tables.strength.limit_load import limit_load_table, limit_word, limits_table
 from reports.vtk.fields import write_flow
 from tests.support.each import each
+from tests.support.results.rows import with_values
 
 CURVE = LoadCurve(
     np.array([0.0, 0.5, 0.9]), np.array([0.0, 1e-3, 4e-3]), np.array([0.0, 0.0, 2.5e-3])
@@ -59,8 +60,21 @@ def test_a_file_of_flow_has_the_pin(results: Results, tmp_path: Path) -> None:
         (LimitLoad("none", note="no mesh"), "not computed"),
     ],
 )
-def test_words(limit: LimitLoad, word: str) -> None:
-    assert limit_word(limit) == word
+def test_words(results: Results, limit: LimitLoad, word: str) -> None:
+    row = with_values(results.pins[0], safety_factor=0.9)
+    assert limit_word(row, limit) == word
+
+
+@each(("permanent_set", "word"), [(0.0, "does not yield"), (1e-3, "bends")])
+def test_a_pin_that_does_not_yield_does_not_bend(
+    results: Results, permanent_set: float, word: str
+) -> None:
+    """A limit load that was asked for, of a pin with the factor 1.33, said that it bends."""
+    row = with_values(results.pins[0], safety_factor=1.33, verdict="converged")
+    limit = replace(FOUND, carries=True, permanent_set=permanent_set, permanent_at=1.0)
+    assert limit_word(row, limit) == word
+    singular = with_values(row, verdict="singular")
+    assert limit_word(singular, limit) == "bends"
 
 
 def test_the_cache_gives_back_what_it_took() -> None:

@@ -77,6 +77,32 @@ def test_no_size_takes_off_the_stress_of_a_press_fit(used: float, needs: str) ->
     assert "thickness" not in text
 
 
+def test_a_bushing_and_the_hole_about_it_need_strengths_of_their_own() -> None:
+    """The strength that the bushing needs was told of the lug, whose own wall fails, too; a lug
+    that fails in two cases was named twice.
+    """
+    bushing = replace(STRESS, method=f"{STRESS.method}, bushing", demand=50e3)
+    hole = replace(STRESS, method=f"{STRESS.method}, hole", demand=60e3, allowable=100e3)
+    results, _ = failing(bushing)
+    lugs = tuple(
+        replace(x, bushing=0.1, interference=0.002) for s in results.shapes for x in s.lugs
+    )
+    shapes = tuple(replace(s, lugs=lugs) if s.lugs else s for s in results.shapes)
+    cold = replace(results.pins[0], worst=(bushing, hole), margins=(bushing, hole))
+    hot = with_values(cold, case="hot")
+    results = replace(results, pins=(cold, hot), shapes=shapes)
+    lines = pin_lines(results)
+    assert lug_advice(results, lines) == [
+        "The bushing of lug L of A (factor 1.60 at the bore) needs a yield strength of 100,000 "
+        "psi.",
+        "Lug L of A (factor 1.67 at the hole about its bushing) needs a yield strength of 120,000 "
+        "psi.",
+    ]
+    assert lug_peaks(lines, results.units) == (
+        "At the bore of lug L (bushing) 50,000 psi (with error)."
+    )
+
+
 def test_a_joint_that_is_much_too_small() -> None:
     """Of 16 times the stress no eye is free: all of the joint 4 times as large."""
     results, lines = failing(replace(STRESS, demand=640e3))

@@ -30,7 +30,7 @@ COLUMNS: list[Column[tuple[PinResult, LimitLoad]]] = [
 LIMIT_COLUMNS: list[Column[tuple[PinResult, LimitLoad]]] = [
     read_only("pin", lambda row: row[0].pin, numeric=False),
     read_only("case", lambda row: row[0].case, numeric=False),
-    read_only("under its loads", lambda row: limit_word(row[1]), numeric=False),
+    read_only("under its loads", lambda row: limit_word(*row), numeric=False),
     read_only("collapses at × loads", lambda row: limit_range(row[1])),
     read_only("by", lambda row: row[1].method, numeric=False),
     read_only("permanent set", lambda row: engineering(row[1].permanent_set, 3), "length", rank=1),
@@ -48,15 +48,21 @@ def limit_rows(results: Results) -> list[tuple[PinResult, LimitLoad]]:
     return [(pin, pin.limit_load) for pin in results.pins if pin.limit_load is not None]
 
 
-def limit_word(limit: LimitLoad) -> str:
-    """Return whether the pin collapses under its loads, in a word or two."""
+def limit_word(row: PinResult, limit: LimitLoad) -> str:
+    """Return whether the pin collapses under its loads, in a word or two.
+
+    A limit load that the study requires is also found of a pin that does not yield.
+    """
     if limit.stopped:
         return "not computed: --limit-load computes it"
     if limit.method == "none":
         return "not computed"
     if limit.carries is None:
         return "not decided"
-    return "bends" if limit.carries else "collapses"
+    if not limit.carries:
+        return "collapses"
+    is_elastic = row.yields is False and row.verdict != "singular" and not limit.permanent_set
+    return "does not yield" if is_elastic else "bends"
 
 
 def limits_table(results: Results) -> Table[tuple[PinResult, LimitLoad]]:

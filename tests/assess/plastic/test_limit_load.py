@@ -114,6 +114,9 @@ def test_thick_cylinder_in_plane_strain() -> None:
     found = limit_on_mesh(*cylinder(2))
     assert found.reached == pytest.approx(exact, rel=5e-3)
     assert exact * (1.0 - 1e-4) <= found.above.factor <= 1.004 * exact
+    elastic = found.curve.permanent < 1e-9 * found.curve.displacement
+    assert elastic.any()  # loaded, and nothing remains: not the round-off of the solution
+    assert not found.curve.permanent[elastic].any()
 
 
 def test_the_upper_bound_holds_for_mechanisms_whose_volume_changes() -> None:
