@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from math import inf
 from typing import Any
@@ -61,13 +61,8 @@ class JudgedCheck:
 
 def judged_checks(results: Results) -> list[JudgedCheck]:
     """Return all checks that count, the worst first."""
-    rows = {(row.pin, row.case): row for row in results.pins}
     checks = [_of_row(row, limit(row)) for row in results.pins]
-    checks += (
-        _of_margin(m, rows.get((m.pin, m.case)))
-        for m in results.margins
-        if m.margin.governs and m.margin.method != YIELD_METHOD and m.used >= 0.0
-    )
+    checks += checks_of(results, results.margins)
     checks += map(_of_requirement, _besides(results))
     open_ = results.fatigue.not_decided if results.fatigue else {}
     checks += (
@@ -75,6 +70,14 @@ def judged_checks(results: Results) -> list[JudgedCheck]:
         for pin, reason in open_.items()
     )
     return sorted(checks, key=lambda check: check.rank)
+
+
+def checks_of(results: Results, margins: Iterable[PinMargin]) -> Iterator[JudgedCheck]:
+    """Yield those of some margins that count as checks besides yield."""
+    rows = {(row.pin, row.case): row for row in results.pins}
+    for m in margins:
+        if m.margin.governs and m.margin.method != YIELD_METHOD and m.used >= 0.0:
+            yield _of_margin(m, rows.get((m.pin, m.case)))
 
 
 def _besides(results: Results) -> list[RequirementRow]:

@@ -13,11 +13,14 @@ Source: J. C. Ekvall, J. Aircraft 23(5), 1986, 438-443.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from math import sqrt
 
 from assess.clauses.ekvall import BORE_EXPONENT, TESTED_WIDTHS
 from assess.judgement import FAILS
-from reports.data.headline import JudgedCheck, judged_checks
+from assess.margin import PinMargin
+from pinbase.grouped import grouped
+from reports.data.headline import JudgedCheck, checks_of
 from reports.data.lug_modes import BORE_STRESS, bore_wall, lug_mode
 from reports.data.overview import PinLine
 from reports.data.results import LugSketch, PinShape, Results
@@ -40,7 +43,7 @@ PASSING_WORDS = {
 
 def lug_advice(results: Results, lines: Iterable[PinLine]) -> list[str]:
     """Return sentences on the lugs that fail where a check of one is the worst of its pin."""
-    failing = _with_other_walls(_failing(lines), results)
+    failing = _with_others(_failing(lines), results)
     whole = [
         c
         for c in failing
@@ -48,8 +51,9 @@ def lug_advice(results: Results, lines: Iterable[PinLine]) -> list[str]:
     ]
     alone = [c for c in failing if c not in whole]
     told = [_of_whole(whole)] if whole else []
-    told += [_of_lug(check, results) for check in alone[:MAX_TOLD_LUGS]]
-    if rest := alone[MAX_TOLD_LUGS:]:
+    alike = list(grouped((_needs(check, results), check) for check in alone).items())
+    told += [_of_lugs(needs, checks) for needs, checks in alike[:MAX_TOLD_LUGS]]
+    if rest := [c for _, checks in alike[MAX_TOLD_LUGS:] for c in checks]:
         told.append(f"Likewise {_and([f'lug {c.lug} of {c.pin}' for c in rest])}.")
     return [*told, SIZE_NOTE] if failing and results.changes else told
 
@@ -78,19 +82,22 @@ def _each_once(checks: Iterable[JudgedCheck]) -> list[JudgedCheck]:
     return list(worst.values())
 
 
-def _with_other_walls(failing: list[JudgedCheck], results: Results) -> list[JudgedCheck]:
-    """Return also the other wall of a bushed lug where it fails: a stronger bushing does not make
-    the hole about it safe.
+def _with_others(failing: list[JudgedCheck], results: Results) -> list[JudgedCheck]:
+    """Return also the other lugs of these pins that fail, and the other wall of a bushed one, each
+    by its worst check: to mend one does not make the others safe.
     """
-    bushed = {(c.pin, c.lug) for c in failing if bore_wall(c.check)}
-    if not bushed:
+    if not failing:
         return failing
-    others = [
-        c
-        for c in judged_checks(results)
-        if (c.pin, c.lug) in bushed and bore_wall(c.check) and c.outcome == FAILS and c.factor
-    ]
-    return _each_once([*failing, *others])
+    pins = {c.pin for c in failing}
+    # results.margins have every check at its worst place alone, thus of one lug.
+    rows = [row for row in results.pins if row.pin in pins]
+    margins = (PinMargin(row.pin, row.case, m) for row in rows for m in row.margins)
+    others = sorted(checks_of(results, margins), key=lambda check: check.rank)
+    others = [c for c in others if c.lug and c.factor and c.outcome == FAILS]
+    worst: dict[tuple[str, str, str], JudgedCheck] = {}
+    for check in (*failing, *others):
+        worst.setdefault((check.pin, check.lug, bore_wall(check.check)), check)
+    return list(worst.values())
 
 
 def _with_wall(check: JudgedCheck) -> str:
@@ -115,15 +122,35 @@ def _of_whole(checks: Sequence[JudgedCheck]) -> str:
     )
 
 
-def _of_lug(check: JudgedCheck, results: Results) -> str:
-    lug, ways = _lug(check, results), _ways(check, results)
+@dataclass(frozen=True)
+class Needs:
+    """What lugs of a pin that are alike need.
+
+    wall: of bushed ones. factor: with its place. change: what is enough.
+    """
+
+    pin: str
+    wall: str
+    factor: str
+    change: str
+
+
+def _needs(check: JudgedCheck, results: Results) -> Needs:
+    """Return what the lug of a check needs."""
+    lug, ways, wall = _lug(check, results), _ways(check, results), bore_wall(check.check)
     where = "at the bore" if _at_bore(check) else check.check
-    wall = bore_wall(check.check)
     if wall == "hole":
         where = "at the hole about its bushing"
-    name = f"{'The bushing of lug' if wall == 'bushing' else 'Lug'} {check.lug} of {check.pin}"
     factor = f"factor {engineering(check.factor, 3)} {where}"
-    return f"{name} ({factor}) needs {_or(ways, _pressed(lug))}."
+    return Needs(check.pin, wall, factor, _or(ways, _pressed(lug)))
+
+
+def _of_lugs(needs: Needs, checks: Sequence[JudgedCheck]) -> str:
+    """Return the sentence on lugs that are alike, by a check of each."""
+    many, which = len(checks) > 1, _and([c.lug for c in checks])
+    of_bushing = f"The bushing{'s' * many} of l" if needs.wall == "bushing" else "L"
+    lugs = f"{of_bushing}ug{'s' * many} {which} of {needs.pin}"
+    return f"{lugs} ({needs.factor}) need{'s' * (not many)} {needs.change}."
 
 
 def _lug(check: JudgedCheck, results: Results) -> LugSketch | None:

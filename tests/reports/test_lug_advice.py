@@ -103,6 +103,24 @@ def test_a_bushing_and_the_hole_about_it_need_strengths_of_their_own() -> None:
     )
 
 
+def test_every_lug_of_the_pin_that_fails_is_told() -> None:
+    """The worst alone was, so that its twin was found to fail only after it was mended."""
+    clause = replace(CLAUSE, at="N")
+    results, _ = failing(STRESS)
+    row = replace(
+        results.pins[0],
+        worst=(STRESS, clause),
+        margins=(STRESS, replace(STRESS, at="M"), clause, replace(CLAUSE, factor=0.8)),
+    )
+    (shape,) = (x for x in results.shapes if x.lugs)
+    (lug,) = shape.lugs
+    twin, other = (replace(lug, connection=name) for name in "MN")
+    results = replace(results, pins=(row,), shapes=(replace(shape, lugs=(lug, twin, other)),))
+    both, third = lug_advice(results, pin_lines(results))
+    assert both.startswith("Lugs L and M of A (factor 1.60 at the bore) need a thickness of 1.25 ")
+    assert third.startswith("Lug N of A (factor 0.833 BTH-1 plate, tension) needs an eye of 3.25")
+
+
 def test_a_joint_that_is_much_too_small() -> None:
     """Of 16 times the stress no eye is free: all of the joint 4 times as large."""
     results, lines = failing(replace(STRESS, demand=640e3))
