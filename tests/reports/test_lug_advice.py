@@ -92,6 +92,7 @@ def test_a_bushing_and_the_hole_about_it_need_strengths_of_their_own() -> None:
     hot = with_values(cold, case="hot")
     results = replace(results, pins=(cold, hot), shapes=shapes)
     lines = pin_lines(results)
+    assert check_words(lines[0]) == "lug L, bushing: 1.60 of 2"
     assert lug_advice(results, lines) == [
         "The bushing of lug L of A (factor 1.60 at the bore) needs a yield strength of 100,000 "
         "psi.",

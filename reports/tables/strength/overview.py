@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from assess.judgement import DEPENDS
 from assess.strength.model_stress import YIELD_METHOD
 from reports.data.decision import limit
-from reports.data.lug_modes import BORE_STRESS, lug_mode
+from reports.data.lug_modes import BORE_STRESS, bore_wall, lug_mode
 from reports.data.overview import Diameter, PinLine
 from reports.data.results import Results
 from reports.format.numbers import DASH, engineering, short
@@ -190,8 +190,8 @@ def error_words(line: PinLine) -> str:
 
 def check_words(line: PinLine) -> str:
     """Return the worst check where it is another than the maximum against yield and has a load,
-    with its factor and the required one: "lug L, bore: 1.85 of 1.5". One over all cases is named
-    in any case, since the factor beside it is not its own.
+    with its factor and the required one: "lug L, bore: 1.85 of 1.5", "lug L, bushing: 1.2 of 1.5".
+    One over all cases is named in any case, since the factor beside it is not its own.
     """
     check = line.check
     if check.check == YIELD_METHOD or (check.case and check.used == 0.0):
@@ -199,7 +199,7 @@ def check_words(line: PinLine) -> str:
     name = check.check
     if check.lug:
         where = "bore" if lug_mode(check.check) == BORE_STRESS else check.check
-        name = f"lug {check.lug}, {where}"
+        name = f"lug {check.lug}, {bore_wall(check.check) or where}"
     if not check.factor:
         return name
     return f"{name}: {factor_text(check.factor, check.required)} of {short(check.required)}"
