@@ -13,6 +13,20 @@ FRICTION = "friction"  # the property of a joint whose range only adds to the st
 
 
 @dataclass(frozen=True)
+class LostFit:
+    """A lug in which a pin is pressed no longer at the temperature of a case.
+
+    where: the lug, with the temperature at which the pin becomes loose in it, in words.
+    given, needed: the least interference there, and the least that holds, both without the
+    temperature.
+    """
+
+    where: str
+    given: Length
+    needed: Length
+
+
+@dataclass(frozen=True)
 class BandContact:
     """A band in its lug.
 

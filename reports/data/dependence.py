@@ -11,11 +11,11 @@ import numpy as np
 
 from assess.judgement import BELOW_YIELD, NOT_DECIDED, SAFE
 from fea.core.places import ContactPlace
-from fea.support.records import FRICTION, JointResult, Variation
+from fea.support.records import FRICTION, JointResult, LostFit, Variation
 from pinbase.arrays import Mask
 from pinbase.dimensions import Floats
 from reports.data.decision import factor_ends
-from reports.data.row import Dependence, LandingRange, LostFit, PinResult, SharingRange
+from reports.data.row import Dependence, LandingRange, PinResult, SharingRange
 
 BENEATH_CONTACT: Literal["beneath"] = "beneath"
 WITH_ERROR = "with its error"  # of what lies beneath, which exceeds what is permitted only with it

@@ -14,7 +14,7 @@ from assess.strength.bending_arms import BendingArms
 from fea.core.peak import Maximum, Refinement, SingularZone
 from fea.core.places import Places
 from fea.core.requirement import MINOR_CASE
-from fea.support.records import JointResult
+from fea.support.records import JointResult, LostFit
 from pinbase.dimensions import (
     Floats,
     Forces,
@@ -82,20 +82,6 @@ class Dependence:
     flips_at: Annotated[float, "own"] | None = None
     dimension: str = "1"
     reach: Length | None = None
-
-
-@dataclass(frozen=True)
-class LostFit:
-    """A lug in which a pin is pressed no longer at the temperature of a case.
-
-    where: the lug, with the temperature at which the pin becomes loose in it, in words.
-    given, needed: the least interference there, and the least that holds, both without the
-    temperature.
-    """
-
-    where: str
-    given: Length
-    needed: Length
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from decimal import Decimal
 DASH = "–"
 SUPERSCRIPT_DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 COMPONENT_ROUND_OFF = 1e-9  # of the largest component; anything smaller is round-off
-ROUND_OFF = 1e-9  # by which a value may exceed the digits that it is rounded up to
 LARGE_NUMBER = 1000.0  # from which on three digits would need an exponent
 
 
@@ -84,12 +83,6 @@ def seconds(value: float | None) -> str:
     if value is None:
         return engineering(None)
     return f"{engineering(value, 2)} s" if value >= 0.1 else f"{engineering(1e3 * value, 2)} ms"
-
-
-def above(value: float) -> str:
-    """Return a positive value that is to be exceeded, rounded up to three digits: "0.0229"."""
-    digit = 10.0 ** (math.floor(math.log10(value)) - 2)
-    return threshold(digit * math.ceil(value / digit * (1.0 - ROUND_OFF)))
 
 
 def threshold(value: float) -> str:

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, OUTCOME_ORDER, SAFE, YIELDS
 from assess.strength.fatigue_life import FATIGUE_LIFE
 from pinbase.grouped import grouped
+from pinbase.rounding import rounded_up
 from reports.data.changes import Remedy, command
 from reports.data.decision import largest_factor, limit
 from reports.data.dependence import PRESS_FIT
 from reports.data.overview import GOOD, PinLine, QuietCase, quiet_cases
 from reports.data.results import PinShape, Results
 from reports.data.row import PinResult
-from reports.format.numbers import above, engineering, short
+from reports.format.numbers import engineering, short, threshold
 from reports.format.place_words import action, place_words
 from reports.format.ranges import factor_range
 from reports.format.words import WITHIN_ERROR, undecided_because
@@ -271,7 +272,8 @@ def _loose(results: Results) -> Content:
     told = []
     for pin, cases in lost.items():
         where = names(list(dict.fromkeys(case for case, _ in cases)))
-        needed = f"{above(max(d.flips_at or 0.0 for _, d in cases))} {results.units.length}"
+        most = max(d.flips_at or 0.0 for _, d in cases)
+        needed = f"{threshold(rounded_up(most))} {results.units.length}"
         told.append(
             f"{pin} needs an interference of more than {needed}, or something else that retains it "
             f"({where})."

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from fea.support.records import LostFit
+from pinbase.rounding import rounded_up
 from pinstress.study.model.tasks import Task
 from pinstress.study.model.temperature import rise_of, temperature_words
 from pinstress.study.reading.file import Study
-from reports.data.row import LostFit
-from reports.format.numbers import above
 
 
 def lost_fits(study: Study, task: Task, case: str) -> tuple[LostFit, ...]:
@@ -29,7 +29,7 @@ def lost_fits(study: Study, task: Task, case: str) -> tuple[LostFit, ...]:
 def _longest(study: Study, lost: Iterable[LostFit]) -> str:
     """Return the largest interference that is needed, in the study's units: "0.0228 mm"."""
     needed = max(x.needed for x in lost) / study.system.factor("length")
-    return f"{above(needed)} {study.system.length}"
+    return f"{rounded_up(needed):.3g} {study.system.length}"
 
 
 def lost_fit_warnings(study: Study, todo: Iterable[Task]) -> list[str]:

@@ -1,0 +1,13 @@
+"""Numbers rounded to the digits that are shown, to the side that keeps what is said true."""
+
+from __future__ import annotations
+
+import math
+
+ROUND_OFF = 1e-9  # by which a value may exceed the digits that it is rounded up to
+
+
+def rounded_up(value: float, digits: int = 3) -> float:
+    """Return a positive value that is to be exceeded, rounded up to some digits: 0.0229."""
+    last = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
+    return last * math.ceil(value / last * (1.0 - ROUND_OFF))
