@@ -71,10 +71,13 @@ def utilisation(pin: PinResult, limit: float) -> Ends | None:
 
 
 def worst_first(results: Results) -> list[PinResult]:
-    """Return the rows that fail, then those not decided, then the others, each by utilisation."""
+    """Return the rows that fail, then those not decided, then the others, by utilisation: first
+    where that is unknown, last where no load stresses the pin.
+    """
 
     def place(pin: PinResult) -> tuple[int, float]:
         used = utilisation(pin, limit(pin))
-        return OUTCOME_ORDER[pin.outcome], -inf if used is None else -used[1]
+        unknown = 0.0 if pin.max_von_mises == 0.0 else inf
+        return OUTCOME_ORDER[pin.outcome], -(unknown if used is None else used[1])
 
     return sorted(results.pins, key=place)

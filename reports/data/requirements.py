@@ -263,6 +263,8 @@ def _assumed(
 
 def _judged(plain: RequirementRow, margins: list[Margin], row: PinResult | None) -> RequirementRow:
     """Return a requirement as its margins have it, or the row's stress if it is of that."""
+    if row is not None and row.max_von_mises == 0.0 and not margins:
+        return replace(plain, outcome="met")  # nothing acts on the pin, so that no formula applies
     if plain.check not in ("yield", "rupture") or row is None:
         by_formula = _of_margins(plain, margins, row.most_loads if row else None)
         return _beside_cuts(by_formula, margins, row)

@@ -50,6 +50,12 @@ def test_pins_without_load_have_no_factor_to_name(results: Results) -> None:
     both = replace(results, pins=(idle, other))
     assert headline(both) == "Both pins are safe: no load stresses them."
     assert headline(replace(results, pins=(idle,))) == "Pin A is safe: no load stresses it."
+    loaded = with_values(
+        idle, case="extend", max_von_mises=100.0, safety_factor=3.0, safety_factor_interval=None
+    )
+    one = replace(results, pins=(idle, loaded))
+    assert worst_first(one) == [loaded, idle]
+    assert headline(one) == "Pin A is safe: factor 3.00 ≥ 2 required (extend)."
 
 
 @pytest.mark.parametrize(

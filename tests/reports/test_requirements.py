@@ -15,6 +15,7 @@ from assess.requirement import StatedRequirement
 from pinstress import run, study_from
 from pinstress.analysis.results import RunResults
 from reports.data.requirements import RequirementRow, requirement_rows
+from reports.format.words import headline
 from tests.pinstress.analysis.test_margins import STRENGTHS, study
 from tests.support.each import each
 from tests.support.results.rows import with_values
@@ -147,6 +148,19 @@ def test_a_row_without_a_maximum_is_not_decided(strong: RunResults) -> None:
     row = the(requirement_rows(replace(strong, pins=(failed,))), "limit", "yield")
     assert (row.outcome, row.reached) == ("not decided", None)
     assert "failed" in row.needs
+
+
+def test_a_case_in_which_nothing_acts_meets_what_is_required() -> None:
+    """No formula has a force to apply to, which was said to leave the pin undecided."""
+    raw = study(required_safety_factor=1.5)
+    pull = raw["case"]["pull"]
+    rest = {**pull, "forces": {name: [0, 0] for name in pull["forces"]}}
+    require = [{"check": check, "factor": 2.0} for check in ("bearing", "shear")]
+    results = run(study_from({**raw, "case": {"pull": pull, "rest": rest}, "require": require}))
+    rows = [r for r in requirement_rows(results) if r.case == "rest" and r.stated]
+    assert {r.check for r in rows} == {"yield", "bearing", "shear"}
+    assert {(r.outcome, r.reached) for r in rows} == {("met", None)}
+    assert headline(results).startswith("Pin P is safe: factor ")
 
 
 def test_no_collapse_before_yield(strong: RunResults) -> None:
