@@ -37,7 +37,12 @@ class CurvePoint:
     def rank(self) -> tuple[int, float]:
         """The sort key of cases: the worst outcome, then the smallest factor, comes first."""
         outcome = self.outcome.removesuffix(f" {AS_DESCRIBED}")
-        return OUTCOME_ORDER[outcome], self.safety_factor or 0.0
+        return OUTCOME_ORDER[outcome], self.known_factor
+
+    @property
+    def known_factor(self) -> float:
+        """The factor; 0 where nothing is known of it, inf where no load stresses the pin."""
+        return math.inf if self.max_von_mises == 0.0 else self.safety_factor or 0.0
 
     @property
     def factor_ends(self) -> tuple[float, float] | None:
@@ -107,9 +112,7 @@ class FactorCurve:
         since nothing is known of them.
         """
         by_value = grouped((point.value, point) for point in self.points if point.pin == pin)
-        return tuple(
-            min(points, key=lambda p: p.safety_factor or 0.0) for points in by_value.values()
-        )
+        return tuple(min(points, key=lambda p: p.known_factor) for points in by_value.values())
 
     def worst(self, pin: str) -> tuple[CurvePoint, ...]:
         """At every value the worst case of a pin: a smaller factor may be all that is required."""

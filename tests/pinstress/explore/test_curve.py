@@ -54,6 +54,9 @@ def test_the_case_that_counts_is_the_worst_or_one_of_which_nothing_is_known() ->
     worst = of(point(1.0, 3.0, case="a"), point(1.0, 2.0, case="b"), point(2.0, 4.0, case="a"),
                point(2.0, None, case="b"))  # fmt: skip
     assert [p.case for p in worst.least("P")] == ["b", "b"]
+    idle = CurvePoint(1.0, "P", "rest", 0.0, 0.0, None, "safe")
+    beside_idle = of(idle, point(1.0, 3.0, case="a"))
+    assert [p.case for p in (*beside_idle.least("P"), *beside_idle.worst("P"))] == ["a", "a"]
 
 
 def test_a_curve_is_one_short_line_in_a_notebook() -> None:
