@@ -256,13 +256,13 @@ class PinResult:
 
     @property
     def location(self) -> tuple[float, float, float] | None:
-        """The point (x, y, z) of the maximum in the pin's own axes."""
-        return self.maximum.location
+        """The point (x, y, z) of the maximum in the pin's own axes; None without stress."""
+        return self.maximum.location if self.maximum.max_von_mises else None
 
     @property
     def time(self) -> float | None:
         """The governing instant; None without a motion or a maximum."""
-        return self.maximum.time if self.maximum.location else None
+        return self.maximum.time if self.location else None
 
     @property
     def singular_at(self) -> tuple[SingularZone, ...]:

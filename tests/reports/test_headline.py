@@ -55,6 +55,8 @@ def test_pins_without_load_have_no_factor_to_name(results: Results) -> None:
     )
     one = replace(results, pins=(idle, loaded))
     assert worst_first(one) == [loaded, idle]
+    assert loaded.location is not None
+    assert idle.location is None
     assert headline(one) == "Pin A is safe: factor 3.00 ≥ 2 required (extend)."
 
 
