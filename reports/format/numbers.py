@@ -9,7 +9,8 @@ from decimal import Decimal
 DASH = "–"
 SUPERSCRIPT_DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 COMPONENT_ROUND_OFF = 1e-9  # of the largest component; anything smaller is round-off
-LARGE_NUMBER = 1000.0  # from which on three digits would need an exponent
+# From which on, and below which, three digits would need an exponent
+LARGE_NUMBER, SMALL_NUMBER = 1e3, 1e-4
 
 
 def engineering(value: float | None, digits: int = 4) -> str:
@@ -86,5 +87,8 @@ def seconds(value: float | None) -> str:
 
 
 def threshold(value: float) -> str:
-    """Return a value at which something changes, with three digits: "0.000387", "0.1", "88,900"."""
-    return engineering(value, 3) if abs(value) >= LARGE_NUMBER else f"{value:.3g}"
+    """Return a value at which something changes, with three digits: "22.8×10⁻⁶", "0.000387", "0.1",
+    "88,900".
+    """
+    few = SMALL_NUMBER <= abs(value) < LARGE_NUMBER
+    return f"{value:.3g}" if few else engineering(value, 3)

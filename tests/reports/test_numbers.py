@@ -6,7 +6,7 @@ import pytest
 
 from reports.format.drawing.spread import rows
 from reports.format.file_names import plot_name
-from reports.format.numbers import engineering, like, ratio, short
+from reports.format.numbers import engineering, like, ratio, short, threshold
 
 
 @pytest.mark.parametrize(
@@ -52,3 +52,17 @@ def test_plot_names_are_safe_and_differ() -> None:
     assert "/" not in plot_name("reactions", "../x", "/etc")
     assert plot_name("k", "a.b", "c") != plot_name("k", "a", "b.c")
     assert plot_name("k", "a b") != plot_name("k", "a_b")
+
+
+@pytest.mark.parametrize(
+    ("value", "expected"),
+    [
+        (0.1, "0.1"),
+        (0.0003871, "0.000387"),
+        (2.28e-5, "22.8×10⁻⁶"),
+        (88_912.0, "88,900"),
+        (0.0, "0"),
+    ],
+)
+def test_a_value_at_which_something_changes(value: float, expected: str) -> None:
+    assert threshold(value) == expected
