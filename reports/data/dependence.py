@@ -59,6 +59,8 @@ def depends_on(pin: PinResult) -> tuple[Dependence, ...]:
     yield strength last. A pin that comes loose depends on what else retains it.
     """
     described = pin.as_described
+    if pin.max_von_mises == 0.0:  # which does not keep a pin in its place
+        return tuple(_loose(pin.lost_fits, math.inf))
     if described == NOT_DECIDED or not pin.max_von_mises or not pin.safety_factor:
         return ()
     strength = pin.safety_factor * pin.max_von_mises

@@ -211,8 +211,9 @@ def headline(results: Results) -> str:
     if first.outcome in (FAILS, YIELDS):
         return f"Pin {row.pin} {first.outcome}: {factor} < {needed} ({row.case})."
     state, fails = ("is safe", "fails") if row.required else ("stays below yield", "yields")
+    described = f"{factor} ≥ {needed}" if row.max_von_mises else "no load stresses it"
     return (
-        f"Pin {row.pin} {state} as described ({factor} ≥ {needed}; {row.case}), "
+        f"Pin {row.pin} {state} as described ({described}; {row.case}), "
         f"{but_words(row.depends_on, results.units, fails)}."
     )
 

@@ -211,6 +211,19 @@ def test_that_a_pin_comes_loose_is_said_once_as_what_it_is(
     )
 
 
+def test_a_pin_without_load_comes_loose_too() -> None:
+    """It was safe, since no load stresses it."""
+    parts = changed((FIT, "clearance = -0.01\n")).split("[case.hot]")
+    text = parts[0] + "[case.hot]" + parts[1].replace("9000", "0").replace("18000", "0")
+    results = pinstress.run(study_from(text), cases=["hot"])
+    (hot,) = results.pins
+    assert (hot.as_described, hot.outcome) == ("safe", "depends")
+    said = "Pin P is safe as described (no load stresses it; hot), but comes loose (press fit lost"
+    assert headline(results).startswith(said)
+    (needed,) = actions(results, pin_lines(results)).repairs
+    assert "more than 0.0228 mm" in needed
+
+
 def loosening(interference: float) -> list[str]:
     """The warnings of a pin with so much interference, mm."""
     plan = prepare(study_from(changed((FIT, f"clearance = -{interference}\n"))))
