@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 from pinbase.dimensions import Force, Forces, Length, Lengths, Moments, Stress, Time, Times
@@ -79,6 +80,21 @@ class Variation:
     lugs: tuple[tuple[str, float], ...] = ()
 
 
+def range_ends(stress: float, variations: Iterable[Variation]) -> tuple[float, float]:
+    """The ends of the range of a maximum over variations of the joint, with the error of the model
+    where that is a part of them; friction only raises the upper one.
+
+    stress: the maximum with the joint as given.
+    """
+    ends = [stress]
+    for x in variations:
+        if x.what == FRICTION:
+            ends.append(max(stress, x.max_von_mises))
+        else:
+            ends += x.interval or (x.max_von_mises,)
+    return min(ends), max(ends)
+
+
 @dataclass(frozen=True)
 class JointRange:
     """The range of the maximum over the uncertain properties of the joint.
@@ -93,6 +109,14 @@ class JointRange:
     variations: tuple[Variation, ...]
     model: str = "contact"
     assumed: bool = False
+
+    def without(self, what: str, stress: float) -> JointRange:
+        """The range without the variations of one property.
+
+        stress: the maximum von Mises stress with the joint as given.
+        """
+        rest = tuple(x for x in self.variations if x.what != what)
+        return replace(self, max_von_mises=range_ends(stress, rest), variations=rest)
 
     @property
     def across(self) -> float:

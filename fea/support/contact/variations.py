@@ -45,7 +45,7 @@ from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.changes import joint_variations
 from fea.support.lugs.lug import Lug
 from fea.support.lugs.rings import USUAL_RING_COUNT
-from fea.support.records import FRICTION, JointRange, Variation
+from fea.support.records import JointRange, Variation, range_ends
 
 # Of the largest amplitude: what a pattern must add to the pressures of a varied joint. Chosen by
 # judgement, coarser than MODE_TOLERANCE since only ratios of maxima follow from it.
@@ -94,12 +94,7 @@ class ResolutionComparison:
             )
             for x in self.over
         )
-        ends = [largest]
-        for x in over:
-            if x.what != FRICTION:
-                ends += x.interval or (x.max_von_mises,)
-        ends += [max(largest, x.max_von_mises) for x in over if x.what == FRICTION]
-        return JointRange((min(ends), max(ends)), over)
+        return JointRange(range_ends(largest, over), over)
 
     def is_at(self, links: PinLoads, case: PinLoads) -> bool:
         """Return whether an instant is this one, or no farther from it than two of the case's are

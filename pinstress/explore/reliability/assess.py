@@ -7,7 +7,7 @@ from designs that were solved as a run solves them: nothing is fitted or interpo
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
@@ -29,11 +29,12 @@ from pinstress.explore.reliability.form import (
     distinct,
     form_quantile,
 )
-from pinstress.explore.reliability.open_ranges import growth, left_out
+from pinstress.explore.reliability.open_ranges import growth, left_out, with_open_ranges
 from pinstress.explore.reliability.risk import AssessedRow, RiskColumn, Sample, risk_of
 from pinstress.explore.reliability.sampling import importance_draws, plain_draws
 from pinstress.explore.sweep.batches import DesignProblem, evaluator_of, shapes
 from pinstress.explore.sweep.evaluate import Evaluator
+from pinstress.explore.sweep.number import Path
 from pinstress.explore.sweep.parameters import Parameter
 from pinstress.explore.sweep.possible import drawn, require_balance
 from pinstress.study.model.hardened import require_strengths
@@ -98,10 +99,11 @@ def assess(
     centres = [c for form in forms for c in form.centres]
     weighted = weighted_sample(designs, centres, settings)
     shares = _indices(designs, settings) if space.lower is None else None
-    assessed = _assessed_rows(parameters, designs, forms, shares, nominal)
-    laws = [p.key for p in parameters]
+    laws = {path for p in parameters for path in p.number.paths}
+    open_rows = replace(nominal, pins=tuple(with_open_ranges(row, laws) for row in nominal.pins))
+    assessed = _assessed_rows(parameters, designs, forms, shares, open_rows)
     of_study = [row.nominal for row in assessed if row.column.row is not None]
-    growths = np.array([growth(row, laws) for row in of_study])
+    growths = np.array([growth(row) for row in of_study])
     return Reliability(
         title=study.table.title,
         study=str(study.path),
@@ -314,7 +316,7 @@ def _worst(nominal: Results) -> PinResult | None:
 
 
 def _notes(
-    study: Study, nominal: Results, table: Iterable[tuple[str, str]], laws: Sequence[str]
+    study: Study, nominal: Results, table: Iterable[tuple[str, str]], laws: Collection[Path]
 ) -> Iterable[str]:
     yield (
         "Not included: the choice of the laws themselves, the model's idealisations (linear "

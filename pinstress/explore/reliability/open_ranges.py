@@ -5,33 +5,48 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from dataclasses import replace
 
+from pinstress.explore.sweep.number import Path
 from reports.data.row import PinResult
 from reports.data.unknowns import factor_spread
 
+CLEARANCE = "clearance"  # of all lugs, as a joint is varied by it
+CLEARANCE_KEYS = (CLEARANCE, "interference", "fit")
+RANGES = {  # by whose they are
+    "landing": "a landing's impulse",
+    "strength": "a yield strength",
+    CLEARANCE: "the clearances",
+}
 
-def growth(row: PinResult | None, laws: Collection[str]) -> float:
-    """Return the stress over all that is open in a row, over that as described; at least 1.
 
-    row: of the study as it is; None, or one without a factor, has no growth.
-    laws: keys of the numbers with a law. A range that one of them describes does not count.
+def with_open_ranges(row: PinResult, laws: Collection[Path]) -> PinResult:
+    """Return a row of the study as it is, without the ranges that a law describes.
+
+    laws: paths of the numbers with a law.
     """
-    if row is None:
-        return 1.0
-    by_law = _by_law(row, laws)
-    rest = replace(
+    by_law, joint = _by_law(row, laws), row.joint
+    if CLEARANCE in by_law and joint is not None and joint.range is not None:
+        joint = replace(joint, range=joint.range.without(CLEARANCE, row.max_von_mises or 0.0))
+    return replace(
         row,
+        joint=joint,
         landing=None if "landing" in by_law else row.landing,
         strength_range=None if "strength" in by_law else row.strength_range,
     )
-    spread = factor_spread(rest)
-    return 1.0 if spread is None else max((row.safety_factor or 0.0) / spread[0], 1.0)
 
 
-def left_out(rows: Iterable[PinResult], laws: Collection[str]) -> Iterable[str]:
+def growth(row: PinResult | None) -> float:
+    """Return the stress over all that is open in a row, over that as described; at least 1.
+
+    row: None, or one without a factor, has no growth.
+    """
+    spread = factor_spread(row) if row else None
+    return max((row.safety_factor or 0.0) / spread[0], 1.0) if row and spread else 1.0
+
+
+def left_out(rows: Iterable[PinResult], laws: Collection[Path]) -> Iterable[str]:
     """Yield a sentence on each range that does not count, since a law describes it."""
-    names = {"landing": "a landing's impulse", "strength": "a yield strength"}
     pins = [(owner, row.pin) for row in rows for owner in _by_law(row, laws)]
-    for owner, name in names.items():
+    for owner, name in RANGES.items():
         if some := dict.fromkeys(pin for x, pin in pins if x == owner):
             yield (
                 f"The range of {name} is left out, since a law takes its place: a run judges pins "
@@ -39,11 +54,29 @@ def left_out(rows: Iterable[PinResult], laws: Collection[str]) -> Iterable[str]:
             )
 
 
-def _by_law(row: PinResult, laws: Collection[str]) -> set[str]:
+def _by_law(row: PinResult, laws: Collection[Path]) -> set[str]:
     """Return the owners of the row's ranges that a law describes."""
     owners = set()
-    if row.landing is not None and any(key.startswith(f"case.{row.case}.") for key in laws):
+    if row.landing is not None and any(path[:2] == ("case", row.case) for path in laws):
         owners.add("landing")
-    if row.strength_range is not None and any(key.endswith(".yield_strength") for key in laws):
+    if row.strength_range is not None and any(path[-1] == "yield_strength" for path in laws):
         owners.add("strength")
+    if _clearances_by_law(row, laws):
+        owners.add(CLEARANCE)
     return owners
+
+
+def _clearances_by_law(row: PinResult, laws: Collection[Path]) -> bool:
+    """Return whether laws describe the clearances of all lugs of a pin in contact, of which the
+    joint is varied at once.
+    """
+    joint = row.joint
+    if joint is None or joint.range is None or joint.range.model != "contact":
+        return False
+    if all(x.what != CLEARANCE for x in joint.range.variations):
+        return False
+    alike = len({band.clearance for band in joint.bands}) == 1  # none has one of its own
+    if alike and any(("lug_defaults", key) in laws for key in CLEARANCE_KEYS):
+        return True
+    lugs = [("pin", row.pin, "lug", band.name) for band in joint.bands]
+    return all(any((*lug, key) in laws for key in CLEARANCE_KEYS) for lug in lugs)
