@@ -241,6 +241,14 @@ def singularities_of(
     )
 
 
+def edges_of_loads(
+    pin: Pin, surfaces: Collection[str], material: Material, distance: float
+) -> tuple[Zone, ...]:
+    """Zones about the edges of shears that are even on surfaces (by name)."""
+    every = find_singularities(pin, (), tuple(surfaces), material.poisson_ratio, distance)
+    return tuple(zone for zone in every if zone.kind == "edge of a load")
+
+
 def _shearing(pin: Pin, case: PinLoads) -> Iterator[UnitLoad]:
     """The unit loads with a shear at their edges that act at some instant, by more than
     round-off.

@@ -17,11 +17,12 @@ import numpy as np
 from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.requirement import Requirement
+from fea.core.zone import Zone
 from fea.harmonic.beneath import maxima_beneath
 from fea.harmonic.field import HarmonicField
 from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.section.section_stress import SectionField
-from fea.singular.singularities import singularities_of
+from fea.singular.singularities import edges_of_loads, singularities_of
 from fea.support.contact.bending import LoadedJoint, growth_across, growth_of_lugs
 from fea.support.contact.cell_error import (
     MIN_HARMONICS_PER_ARC,
@@ -286,7 +287,9 @@ def _by_friction(
             out.append(())
             continue
         without, changed = rubbed(model, contact, known)
-        plain, *stress = _at_places(model, requirement, [[without], *changed.values()])
+        # Friction is even on every ring, and its step at the edges a singularity of that alone.
+        edges = edges_of_loads(model.pin, model.rings, model.material, requirement.distance)
+        plain, *stress = _at_places(model, requirement, [[without], *changed.values()], edges)
         pairs = [(x.row / (plain.row or 1.0), x.beneath / (plain.beneath or 1.0)) for x in stress]
         ratios = {name: [pairs.pop(0) for _ in loads] for name, loads in changed.items()}
         own = _Joint(model.waves(contact.contact), list(contact.contact))
@@ -307,18 +310,25 @@ def _loads(
 
 
 def _at_places(
-    model: ContactModel, requirement: Requirement, every: Sequence[Sequence[PressureLoads]]
+    model: ContactModel,
+    requirement: Requirement,
+    every: Sequence[Sequence[PressureLoads]],
+    unread: tuple[Zone, ...] = (),
 ) -> list[AtPlaces]:
-    """The stress at the places on the first mesh, of loads of one instant each."""
+    """The stress at the places on the first mesh, of loads of one instant each.
+
+    unread: zones that are not read, about which the mesh is no finer.
+    """
     whole = stacked(list(itertools.chain(*every)))
     singular = singularities_of(model.pin, model.material, (), (whole,), requirement.distance)
     problem = SectionProblem(model.pin, model.material, (), (whole,), singular, model.first)
     section = harmonic_solution(problem, 0, 1.0)
     in_sections = whole.in_sections
+    zones = tuple(dict.fromkeys((*singular, *unread)))
     places = (
-        HarmonicField(section, singular).maxima(whole),
+        HarmonicField(section, zones).maxima(whole),
         SectionField(model.pin, model.material, (), (in_sections,)).maxima(in_sections),
-        maxima_beneath(section.fields, whole, singular),
+        maxima_beneath(section.fields, whole, zones),
     )
     return [AtPlaces(*stress) for stress in zip(*(x.tolist() for x in places), strict=True)]
 

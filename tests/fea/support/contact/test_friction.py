@@ -131,7 +131,7 @@ def test_the_torque_of_a_clevis_is_that_of_its_arcs_of_contact(rubbing: Solution
 
 def test_torsion_by_friction_adds_to_bending_as_by_hand(rubbing: Solution) -> None:
     """sqrt(s^2 + 3 t^2) at mid-span, t = 16 T / (pi d^3), T half of all torque. The bound reverses
-    the friction within the middle lug, and the step of its traction there adds 2.2 % locally.
+    the friction within the middle lug, and the step of its traction there adds 1.5 % locally.
     """
     joint, peak = rubbing.joint, rubbing.peak
     assert joint is not None
@@ -142,7 +142,7 @@ def test_torsion_by_friction_adds_to_bending_as_by_hand(rubbing: Solution) -> No
     (turning,) = (v for v in joint.range.variations if v.value == "0.15, links turning on the pin")
     expected = math.sqrt(1.0 + 3.0 * (shear / peak.max_von_mises) ** 2)
     assert turning.what == "friction"
-    assert expected <= turning.max_von_mises / peak.max_von_mises <= 1.025 * expected
+    assert expected <= turning.max_von_mises / peak.max_von_mises <= 1.02 * expected
     assert joint.range.max_von_mises[1] >= turning.max_von_mises
 
 
