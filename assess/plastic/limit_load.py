@@ -122,7 +122,7 @@ def _curve(body: FlowingBody, path: EquilibriumPath, states: list[State]) -> Loa
         return float(np.linalg.norm(body.displacement(unknowns), axis=1).max())
 
     def permanent(state: State) -> float:
-        """What remains, without the round-off of a state that is elastic throughout."""
+        """The displacement that remains, without round-off where a state is elastic throughout."""
         remains = largest(state.unknowns - state.factor * path.elastic)
         return remains if remains > ROUND_OFF * largest(state.unknowns) else 0.0
 

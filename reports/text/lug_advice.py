@@ -124,7 +124,7 @@ def _of_whole(checks: Sequence[JudgedCheck]) -> str:
 
 @dataclass(frozen=True)
 class Needs:
-    """What lugs of a pin that are alike need.
+    """The needs of lugs of a pin that are alike.
 
     wall: of bushed ones. factor: with its place. change: what is enough.
     """

@@ -83,7 +83,7 @@ def test_the_order_of_rings_is_that_along_the_pin() -> None:
 
 
 def test_torques_on_rings_are_one_traction_about_the_axis() -> None:
-    """Of every ring its torque, without an edge that would be a singularity of its own."""
+    """Every ring has its torque, without an edge that would be a singularity of its own."""
     names, radius = ("A", "B"), np.array([0.010, 0.012])
     segments = [
         Segment(L, 2.0 * r, connection=name)

@@ -132,7 +132,7 @@ def test_cuts_add_compliance_each_on_its_own() -> None:
 
 @pytest.mark.slow
 def test_few_combinations_of_pressures_reach_a_cut(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of them, and of iterations that end early, the cells learn what all of them would say."""
+    """From them, and iterations that end early, cells learn what all of them would say."""
     known = model(LOOSE, FLAT)
     monkeypatch.setattr(compliance, "STRESS_TOLERANCE", 0.0)
     monkeypatch.setattr(compliance, "WORK_TOLERANCE", 1e-6)
