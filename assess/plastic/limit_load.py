@@ -37,8 +37,8 @@ EQUILIBRIUM_ALLOWANCE = 0.01
 # When the path ends; chosen by judgement.
 STEP_GROWTH_TOLERANCE = 2e-3  # relative growth of the factor in the last step, at most
 MAX_FLOW_WORK_RATIO = 1.02  # work of flow over that of the loads in that step, at most
-ROUND_OFF = 1e-9  # of the largest displacement
 MIN_FLOW_WORK_RATIO = 0.97  # factor over work of flow, at least, where Newton's method fails
+ROUND_OFF = 1e-9  # of the largest displacement: a permanent one below it is none
 
 
 @dataclass(frozen=True)

@@ -76,10 +76,9 @@ def _failing(lines: Iterable[PinLine]) -> list[JudgedCheck]:
 
 def _each_once(checks: Iterable[JudgedCheck]) -> list[JudgedCheck]:
     """Return the worst of every check of a lug over the cases."""
-    worst: dict[tuple[str, str, str], JudgedCheck] = {}
-    for check in sorted(checks, key=lambda check: check.rank):
-        worst.setdefault((check.pin, check.lug, check.check), check)
-    return list(worst.values())
+    worst_first = sorted(checks, key=lambda check: check.rank)
+    alike = grouped(((check.pin, check.lug, check.check), check) for check in worst_first)
+    return [same[0] for same in alike.values()]
 
 
 def _with_others(failing: list[JudgedCheck], results: Results) -> list[JudgedCheck]:
@@ -94,10 +93,8 @@ def _with_others(failing: list[JudgedCheck], results: Results) -> list[JudgedChe
     margins = (PinMargin(row.pin, row.case, m) for row in rows for m in row.margins)
     others = sorted(checks_of(results, margins), key=lambda check: check.rank)
     others = [c for c in others if c.lug and c.factor and c.outcome == FAILS]
-    worst: dict[tuple[str, str, str], JudgedCheck] = {}
-    for check in (*failing, *others):
-        worst.setdefault((check.pin, check.lug, bore_wall(check.check)), check)
-    return list(worst.values())
+    alike = grouped(((c.pin, c.lug, bore_wall(c.check)), c) for c in (*failing, *others))
+    return [same[0] for same in alike.values()]
 
 
 def _with_wall(check: JudgedCheck) -> str:

@@ -282,13 +282,13 @@ def _by_friction(
     if not rubs(model.lugs):
         return [()] * len(at)
     out: list[tuple[Variation, ...]] = []
+    # Friction is even on every ring, and its step at the edges a singularity of that alone.
+    edges = edges_of_loads(model.pin, model.rings, model.material, requirement.distance)
     for contact, so in zip(at, vary, strict=True):
         if not so:
             out.append(())
             continue
         without, changed = rubbed(model, contact, known)
-        # Friction is even on every ring, and its step at the edges a singularity of that alone.
-        edges = edges_of_loads(model.pin, model.rings, model.material, requirement.distance)
         plain, *stress = _at_places(model, requirement, [[without], *changed.values()], edges)
         pairs = [(x.row / (plain.row or 1.0), x.beneath / (plain.beneath or 1.0)) for x in stress]
         ratios = {name: [pairs.pop(0) for _ in loads] for name, loads in changed.items()}
