@@ -1,4 +1,4 @@
-"""Numbers rounded to the digits that are shown, to the side that keeps what is said true."""
+"""Numbers rounded to the digits that are shown, to the side on which the message stays true."""
 
 from __future__ import annotations
 
@@ -8,6 +8,6 @@ ROUND_OFF = 1e-9  # by which a value may exceed the digits that it is rounded up
 
 
 def rounded_up(value: float, digits: int = 3) -> float:
-    """Return a positive value that is to be exceeded, rounded up to some digits: 0.0229."""
+    """Return a positive limit that must be exceeded, rounded up to some digits: 0.0229."""
     last = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
     return last * math.ceil(value / last * (1.0 - ROUND_OFF))

@@ -21,7 +21,7 @@ from fea.solid.assembly import Discretisation
 from pinbase.arrays import Floats, Ints
 
 MAX_FACTORED_UNKNOWNS = 8_000  # up to which factoring takes less time
-ENERGY_TOLERANCE = 1e-5  # of TwoLevel.solve, where no other is asked for
+ENERGY_TOLERANCE = 1e-5  # of TwoLevel.solve, unless another is given
 MAX_CONJUGATE_GRADIENT_STEPS = 60  # 10 to 15 are usual
 # Chosen by judgement:
 SMOOTHER_DEGREE = 2  # of the Chebyshev polynomial
