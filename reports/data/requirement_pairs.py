@@ -36,17 +36,20 @@ class RequirementPair:
         """The verdict of a review on it, one of REQUIREMENT_CHANGES.
 
         Lost is one that was met and no longer is, whatever the reason; gone one that is no longer
-        there, which is as bad.
+        there, which is as bad. One that asks for less is no progress, whether or not it is met now.
         """
         a, b = self.first, self.second
         if a is None:
             return NEW
         if b is None:
             return GONE
-        if (a.outcome == MET) != (b.outcome == MET):
-            return LOST if a.outcome == MET else NEWLY_MET
-        if b.required < a.required:
+        before, after = a.outcome == MET, b.outcome == MET
+        if before and not after:
+            return LOST
+        if b.required < a.required:  # also where it is met only since then
             return LOWERED
+        if after and not before:
+            return NEWLY_MET
         return UNCHANGED if (a.outcome, a.required) == (b.outcome, b.required) else OTHER
 
 

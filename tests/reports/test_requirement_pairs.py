@@ -51,7 +51,7 @@ def compare(
           for x in ("missed", "depends", "not decided", "not checked")),
         (replace(E, outcome="missed"), replace(E, outcome="depends"), "changed"),
         (E, replace(E, required=1.2), "asks for less"),
-        (replace(E, outcome="missed"), replace(E, required=1.2), "newly met"),
+        (replace(E, outcome="missed"), replace(E, required=1.2), "asks for less"),
         (E, replace(E, required=1.7, outcome="missed"), "lost"),
         (E, None, "gone"),
         (replace(E, outcome="missed"), None, "gone"),
