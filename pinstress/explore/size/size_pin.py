@@ -283,11 +283,12 @@ def _verified(search: _Search, scale: float, result: SizingResult) -> SizingResu
 
 
 def _accepted(answer: PinAnswer, search: _Search) -> bool:
-    """Return whether a factor is reached, and closely where diameters may be any: the less so, the
-    more full solutions have missed it already.
+    """Return whether a factor is reached, and closely where diameters may be any: of pins without
+    contact the less so, the more full solutions have missed it already.
     """
-    sized, close = search.sized, len(search.full) * _close(search.sized)
-    most = math.inf if sized.standard else sized.required * (1.0 + close)
+    sized = search.sized
+    misses = 0 if sized.in_lugs else len(search.full) - 1
+    most = math.inf if sized.standard else sized.required * (1.0 + (1 + misses) * _close(sized))
     return sized.required <= answer.trial.factor <= most
 
 
