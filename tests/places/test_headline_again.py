@@ -25,7 +25,7 @@ QUICK = ["one_pin"]
 # Whose pins other tests in CI solve (browser, least weight, portable, validation), and linkages in
 # a plane of which CI has bowman2019, matrix_four_bar, slider_crank and planetary.
 LONG = ["landing_gear", "landing_gear_part25", "crane", "engine", "excavator", "grenier2008"]
-LONG += ["bucket", "hood", "main_gear", "pump_jack", "scissor_lift", "drop"]
+LONG += ["bucket", "bucket_pin", "hood", "main_gear", "pump_jack", "scissor_lift", "drop"]
 LOADS_ALONE = ["slider_crank_jammed"]  # has no pin
 Row = dict[str, Any]
 SAME = 1e-9

@@ -39,9 +39,11 @@ def _study(folder: Path, more: str = SIDE) -> pinstress.Study:
 @pytest.mark.slow
 def test_pins_carry_all_six_components(tmp_path: Path) -> None:
     """E is floating, A fixed in the ground and without a shoulder; others are as without it."""
-    results = pinstress.run(_study(tmp_path), pins=["A", "E"], cases=["landing", "side"])
+    results = pinstress.run(
+        _study(tmp_path), pins=["A", "E"], cases=["landing", "side"], tolerance=0.1
+    )
     rows = {(row.pin, row.case): row for row in results.pins}
-    alone = pinstress.run(_study(tmp_path, ""), pins=["E"], cases=["landing"])
+    alone = pinstress.run(_study(tmp_path, ""), pins=["E"], cases=["landing"], tolerance=0.1)
     for row in alone.pins:
         both = rows[row.pin, "landing"]
         assert both.verdict == row.verdict == "converged"

@@ -306,7 +306,7 @@ def test_a_sharp_flat_is_singular_and_says_what_would_help() -> None:
             BESIDE,
             OBLIQUE,
         ],
-        every=3,
+        every=6,
     ),
 )
 def test_beside_the_whole_solid(one: Cut) -> None:

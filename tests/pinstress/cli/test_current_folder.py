@@ -74,6 +74,7 @@ def test_nor_does_the_installed_program_or_any_process_that_it_starts(folder: Pa
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_nor_does_a_chart(folder: Path) -> None:
     script = as_script(folder)
     done = run(folder, script, *CHART[:1], "study.toml", *CHART[1:])
