@@ -138,7 +138,7 @@ def _case(case: SurfaceCase, pin: PinResult, number: int, surface: Surface) -> d
     error = sum(pin.error_parts.values())
     most = float(case.maxima[case.instant]) if surface.revolved else (pin.max_von_mises or 0.0)
     least = SURFACE_MAXIMUM_SHARE * most - (0.0 if surface.revolved else error)
-    location = case.location or pin.location
+    location = case.location or pin.maximum.location
     amounts = case.amounts / _largest(surface)[:, None]
     scale = np.abs(amounts).max(axis=(0, 2), initial=0.0)
     return {

@@ -131,6 +131,21 @@ def test_a_maximum_on_the_surface_is_not_beneath(results: Results, surface: Surf
     assert found["beneath"]
 
 
+def test_a_solid_without_stress_has_a_view(results: Results, surface: Surface) -> None:
+    """The view turns about a place, which an idle row of a solid does not name."""
+    (case,) = surface.cases
+    solid = replace(surface, triangles=np.array([[1, 2, 3]]), cases=(replace(case, section=None),))
+    rows = tuple(
+        with_values(p, max_von_mises=0.0) if (p.pin, p.case) == ("B", "landing") else p
+        for p in results.pins
+    )
+    (idle,) = (p for p in rows if (p.pin, p.case) == ("B", "landing"))
+    assert idle.location is None
+    (found,) = data(replace(results, pins=rows), solid)["cases"]
+    assert np.shape(found["location"]) == (3,)
+    assert np.shape(found["turn"]) == (3, 3)
+
+
 def test_names_do_not_end_the_script(results: Results, surface: Surface, tmp_path: Path) -> None:
     (case,) = surface.cases
     evil = replace(surface, cases=(replace(case, case=EVIL),))
