@@ -75,6 +75,21 @@ def test_a_clevis_beside_contact_in_three_dimensions(sharp: Solution) -> None:
     assert "contact" in peak.why
 
 
+def test_a_press_fit_without_load_has_the_stress_of_the_fit() -> None:
+    """In proportion to the interference; the round-off of its pressures is no load out of balance,
+    for which such a pin was said not to be held.
+    """
+    idle, most = pull(np.zeros((1, 2))), []
+    for size in (1e-5, 2e-5):
+        lugs = tuple(replace(lug, clearance=-size) for lug in LUGS)
+        (found,) = solve_in_lugs(problem(PIN, STEEL, lugs, (idle,)), QUICK)
+        assert found.peak.verdict == "converged"
+        most.append(found.peak.max_von_mises)
+    assert most[0]
+    assert most[1] == pytest.approx(2.0 * most[0], rel=1e-3)
+    assert most[1] == pytest.approx(STEEL.youngs_modulus * 0.5e-3 * (1.0 - 0.4**2), rel=0.3)
+
+
 def test_the_error_names_the_cells(sharp: Solution) -> None:
     peak = sharp.peak
     assert peak.parts is not None
