@@ -116,12 +116,12 @@ def _places(cases: Sequence[_Case]) -> list[_Place]:
 
 
 def _governing(cases: Sequence[_Case]) -> Iterator[_Place]:
-    """The places of the largest von Mises stress of the surface, case by case."""
+    """The places of the largest von Mises stress of the surface, by case; none of idle ones."""
     for case in cases:
         peak = case.solution.peak
         at = peak.location if peak.places is None else peak.places.surface.location
         text = f"largest von Mises stress, {peak.case}"
-        if at is None:
+        if at is None or not peak.max_von_mises:
             continue
         x, y, z = at
         if case.known.revolved:

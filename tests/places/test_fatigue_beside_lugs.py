@@ -77,6 +77,16 @@ def test_the_critical_point_is_in_the_fillet_with_the_range_of_the_surface() -> 
     assert len({round(abs(p.location[2] - 0.5 * pin(1.15).length), 4) for p in points}) > 1
 
 
+def test_an_idle_case_has_no_critical_point() -> None:
+    """Nothing is largest in it: the middle of the pin's end was a critical point."""
+    idle = PinLoads("idle", tuple("ABC"), np.zeros((1, 3, 3)))
+    lugs = tuple(Lug(n, 0.06, STEEL, 2e-5) for n in "ABC")
+    given = PinProblem(pin(1.0), STEEL, lugs, (idle, PinLoads("pull", idle.surfaces, PULL)))
+    points = stress_histories("P", solve_in_lugs(given, Requirement(0.1, cells="rough", meshes=1)))
+    assert points
+    assert not any("idle" in point.chosen for point in points)
+
+
 def test_a_point_beside_an_edge_has_both_halves_of_its_range() -> None:
     """On the plain pin, just beside and just under the edges of the middle lug, where that and
     the outer ones press by turns: the range of bending, from the moment of contact there. With the
