@@ -101,6 +101,15 @@ def test_codes_side_by_side(found: Joint) -> None:
     assert "Least margin of each code" in printed(print_safety_factors, found.results)
 
 
+def test_an_idle_case_adds_no_place_to_the_codes(tmp_path: Path) -> None:
+    """Its checks have no margin, and name the pin's first segment, on which no link bears."""
+    forces = "forces = { A = [0, 0], B = [0, 0], C = [0, 0] }"
+    text = STUDY.replace("profile = [", "profile = [\n  { length = 0.1, diameter = 0.75 },")
+    both = joint(tmp_path, f'{text}\n[case.idle]\nkind = "given"\n{forces}\n')
+    assert [row.case for row in both.results.pins] == ["pull", "idle"]
+    assert {row.at for row in codes_table(both.results).rows} == {"A", "B", "C"}
+
+
 def test_one_code_is_not_compared(tmp_path: Path) -> None:
     """Nor are those of the general one named, which a study has without a choice."""
     text = re.sub(r"code = .*\n", "", STUDY)

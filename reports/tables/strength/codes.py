@@ -46,10 +46,13 @@ def codes_table(results: Results) -> Table[CodesRow]:
 
 
 def _made(results: Results) -> Iterator[tuple[str, Margin]]:
-    """Yield the checks of all rows that were made at a named place by a code, with their pins."""
+    """Yield the checks of all rows that were made at a named place by a code, with their pins.
+
+    A check without a demand has no margin, and no place.
+    """
     for row in results.pins:
         for m in row.margins:
-            if m.at and m.code and m.governs and m.used >= 0.0:
+            if m.at and m.code and m.governs and m.used > 0.0:
                 yield row.pin, m
 
 
