@@ -241,8 +241,10 @@ def _path(study: Study, raw: Any, key: str) -> Path:
             continue
         if part in (0, 1) and path[-1] in PAIR_KEYS and isinstance(here, int | float | str):
             here = [here, here]
+        if not path and part == "vary":
+            raise _no_number("says how numbers vary, and does not vary itself")
         value = here[part] if _has(here, part) else None
-        if value is None or (not path and part == "vary"):
+        if value is None:
             if part == -1:
                 raise _no_number("has the index 0; elements are counted from 1")
             said = f"[{part + 1}]" if isinstance(part, int) else as_text(part)
