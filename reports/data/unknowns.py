@@ -65,9 +65,16 @@ class Unknown:
         return [(row, value.flips) for row, value in self.rows if value.flips]
 
     @property
+    def largest(self) -> tuple[PinResult, OpenValue]:
+        """The row whose factor changes most, one that may lose all its stress last: its factor is
+        infinite then, which says nothing on the others.
+        """
+        return max(self.rows, key=lambda x: (math.isfinite(x[1].ratio), x[1].ratio))
+
+    @property
     def ratio(self) -> float:
         """The largest ratio of factors of a row over its range."""
-        return max(value.ratio for _, value in self.rows)
+        return self.largest[1].ratio
 
     @property
     def ends(self) -> Ends | None:

@@ -119,7 +119,7 @@ def measure_first(unknown: Sequence[Unknown], lines: Sequence[PinLine] = ()) -> 
         owner, pins = next(iter(deciding.items()))
         return [f"Measure first: {MEASURED[owner]} ({names(pins)})."]
     first = matters[0]
-    row, value = max(first.rows, key=lambda x: x[1].ratio)
+    row, value = first.largest
     low, high = (factor_text(end, row.required or 1.0) for end in (value.low, value.high))
     depending = [x.pin for x in lines if x.outcome == DEPENDS and x.check.row is None]
     others = list(dict.fromkeys(depending))

@@ -151,3 +151,14 @@ def test_what_flips_most_pins_comes_first_then_what_matters_most() -> None:
     assert measure_first(ranked) == ["Measure first: force over time at landing (A)."]
     (nothing,) = measure_first(unknowns(rows[1:]))
     assert nothing.startswith("Nothing open changes an outcome alone; velocity change matters most")
+
+
+def test_a_row_that_may_lose_all_its_stress_hides_no_other() -> None:
+    """As an idle press fit without interference does: its factor has no upper end."""
+    rows = [pin(9.0, (0.9, 1.3)), with_values(pin(8.0, (0.0, 1.0)), pin="idle")]
+    (tilt,) = unknowns(rows)
+    assert tilt.ratio == pytest.approx(1.3 / 0.9)
+    assert measure_first([tilt]) == [
+        "Nothing open changes an outcome alone; tilt matters most (factor of A 6.92 to 10.0)."
+    ]
+    assert unknowns(rows[1:])[0].ratio == math.inf
