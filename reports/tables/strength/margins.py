@@ -160,11 +160,11 @@ def not_made_briefly(results: Results) -> str:
     """
     materials: dict[str, dict[str, None]] = {}
     lugs: dict[str, dict[tuple[str, str], None]] = {}
-    others: list[str] = []
+    others: dict[str, None] = {}
     for needs, margins in skipped(results).items():
         keys = keys_in(needs)
         if not all(key.startswith(("material.", "lug.")) for key in keys):
-            others.append(needs)
+            others |= dict.fromkeys(keys)
             continue
         for key in keys:
             kind, _, rest = key.partition(".")

@@ -102,11 +102,12 @@ def test_the_worst_check_of_each_pin_is_first(results: Results) -> None:
 
 
 def test_what_checks_lack_is_told_in_brief(results: Results) -> None:
-    """Materials by name, lugs by their number, and what is neither as it is."""
+    """Materials by name, lugs by their number, and what is neither as it is, each once."""
     missing = {
         "A": ("material.steel.ultimate_strength", "lug.left.shank, lug.right.shank"),
         "B": ("lug.left.shank", 'material.steel.ultimate_strength, material."Al 7".shear_strength'),
-        "C": ("a maximum of the model, which is failed",),
+        "C": ("a maximum of the model, which is failed", "left.factors.K, left.factors.k_tru"),
+        "D": ("left.factors.k_tru",),
     }
     margins = tuple(
         PinMargin(pin, "c", skipped("check", "", "model", "ultimate", 1.5, need))
@@ -115,6 +116,6 @@ def test_what_checks_lack_is_told_in_brief(results: Results) -> None:
     )
     assert not_made_briefly(replace(results, spectrum_margins=margins)) == (
         "steel lacks ultimate_strength; Al 7 lacks shear_strength; 3 lugs lack shank; "
-        "missing a maximum of the model, which is failed"
+        "missing a maximum of the model, which is failed, left.factors.K, left.factors.k_tru"
     )
     assert not_made_briefly(replace(results, spectrum_margins=())) == ""
