@@ -8,6 +8,7 @@ from typing import Any
 
 from loads import MB, FileError, read_regular
 from pinstress.study.reading.file import MAX_PATH_LENGTH, Study, raw_study
+from pinstress.study.reading.in_python import key_part
 from pinstress.study.schema.shown import in_toml
 
 MAX_TABLE_SIZE = 256 * MB
@@ -31,7 +32,8 @@ def inputs(study: Study) -> dict[str, str]:
 def _leaves(node: Any, key: str) -> Iterator[tuple[str, Any]]:
     if isinstance(node, dict):
         for name, inner in node.items():
-            yield from _leaves(inner, f"{key}.{name}" if key else name)
+            part = key_part(name)  # without quotes a name with dots could be another key's parts
+            yield from _leaves(inner, f"{key}.{part}" if key else part)
     elif isinstance(node, list) and any(isinstance(x, dict) for x in node):
         for k, inner in enumerate(node, 1):
             yield from _leaves(inner, f"{key}[{k}]")

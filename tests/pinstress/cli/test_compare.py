@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from pinstress import load_study, run
 from pinstress.cli.commands import run_command_line
+from pinstress.study.reading.file import raw_study
+from pinstress.study.reading.in_python import key_parts
 from pinstress.study.reading.inputs import inputs
 from reports.vtk.read_back import open_results
 from tests.conftest import ROOT
@@ -48,6 +51,23 @@ def test_inputs_have_the_numbers_of_lists(tmp_path: Path) -> None:
     after = inputs(load_study(path))
     changed = {key: (before[key], after[key]) for key in before if before[key] != after[key]}
     assert changed == {"case.landing.forces.B": ("[0.0, -988.86]", "[0.0, -1000.5]")}
+
+
+def test_inputs_have_the_keys_that_commands_take(tmp_path: Path) -> None:
+    """With names in quotes that need them: forces of "a.b" were at `forces.a.b`."""
+    path = tmp_path / "study.toml"
+    path.write_text(
+        ONE_PIN.replace('connection = "B"', 'connection = "B.1"').replace("{ B = [", '{ "B.1" = [')
+    )
+    study = load_study(path)
+    known = inputs(study)
+    assert 'case.landing.forces."B.1"' in known
+    for key, text in known.items():
+        value: Any = raw_study(study)
+        for part in key_parts(study, key):
+            value = value[part]
+        assert not isinstance(value, str | float) or str(value) == text
+        assert not isinstance(value, dict)
 
 
 @pytest.fixture(scope="module")
