@@ -8,6 +8,7 @@ from decimal import Decimal
 
 DASH = "–"
 SUPERSCRIPT_DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+MARGIN_DIGITS = 3
 COMPONENT_ROUND_OFF = 1e-9  # of the largest component; anything smaller is round-off
 # From which on, and below which, three digits would need an exponent
 LARGE_NUMBER, SMALL_NUMBER = 1e3, 1e-4
@@ -28,6 +29,13 @@ def engineering(value: float | None, digits: int = 4) -> str:
         return _plain(rounded, digits, size)
     power = 3 * (size // 3)
     return f"{_plain(float(Decimal(rounded).scaleb(-power)), digits, size - power)}×{ten_to(power)}"
+
+
+def margin_text(margin: float | None) -> str:
+    """Return a margin of safety with its sign, "+∞" without any demand; a dash for None."""
+    if margin is not None and math.isinf(margin):
+        return "+∞"
+    return f"{'+' if (margin or 0.0) > 0.0 else ''}{engineering(margin, MARGIN_DIGITS)}"
 
 
 def ten_to(power: int) -> str:

@@ -11,7 +11,7 @@ from reports.data.dependence import BENEATH_CONTACT, PRESS_FIT
 from reports.data.headline import JudgedCheck, worst_checks
 from reports.data.results import Results
 from reports.data.row import Dependence, PinResult, Units
-from reports.format.numbers import engineering, short, threshold
+from reports.format.numbers import engineering, margin_text, short, threshold
 from reports.format.ranges import factor_range, factor_text
 from reports.format.units import unit_name
 
@@ -312,5 +312,4 @@ def spare_words(check: JudgedCheck) -> str:
         return f"factor {factor}, {short(check.required)} required"
     if check.used == 0.0:
         return "∞"
-    spare = 1.0 / check.used - 1.0
-    return f"{'+' if spare > 0.0 else ''}{engineering(spare, 3)}"
+    return margin_text(1.0 / check.used - 1.0)

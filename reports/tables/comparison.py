@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from reports.data.comparison import NOT_SOLVED, UNCHANGED, RowPair, RunComparison, Side, ValuePair
 from reports.data.requirement_pairs import REQUIREMENT_CHANGES, RequirementPair
 from reports.data.requirements import RequirementRow
-from reports.format.numbers import DASH, engineering, short
+from reports.format.numbers import DASH, engineering, margin_text, short
 from reports.format.ranges import factor_text
 from reports.tables.column import Column, Table, read_only, texts
 
@@ -104,9 +104,9 @@ def margins_table(comparison: RunComparison) -> Table[ValuePair]:
     """Return the least margins of safety that differ."""
     columns: list[Column[ValuePair]] = [
         read_only("pin", lambda pair: pair.names[0], numeric=False),
-        read_only("least margin A", lambda pair: _signed((pair.first or (None,))[0])),
+        read_only("least margin A", lambda pair: margin_text((pair.first or (None,))[0])),
         read_only("check A", lambda pair: (pair.first or (DASH,))[-1], numeric=False),
-        read_only("least margin B", lambda pair: _signed((pair.second or (None,))[0])),
+        read_only("least margin B", lambda pair: margin_text((pair.second or (None,))[0])),
         read_only("check B", lambda pair: (pair.second or (DASH,))[-1], numeric=False),
     ]
     return Table("margins", columns, comparison.margins)
@@ -136,9 +136,3 @@ def _range(side: Side | None) -> str:
 def per_cent(change: float | None) -> str:
     """Return a change with its sign."""
     return DASH if change is None else f"{100.0 * change:+.3g} %".replace("-", "−")
-
-
-def _signed(margin: float | None) -> str:
-    if margin is None:
-        return DASH
-    return f"{'+' if margin > 0.0 else ''}{engineering(margin, CHANGE_DIGITS)}"

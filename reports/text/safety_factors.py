@@ -11,7 +11,7 @@ from reports.data.governing import governing
 from reports.data.overview import PinLine, pin_lines
 from reports.data.results import Results
 from reports.data.unknowns import Unknown, unknowns
-from reports.format.numbers import engineering, short
+from reports.format.numbers import margin_text, short
 from reports.format.words import headline
 from reports.tables.published import published_maxima
 from reports.tables.strength.codes import CODES_TITLE, codes_table
@@ -131,8 +131,7 @@ def _margins(results: Results) -> list[str]:
     m = worst.margin
     if worst.used == 0.0:
         return ["no load in any."]
-    sign = "+" if (m.margin or 0.0) > 0.0 else ""
     negative = sum(1 for x in checks if x.used > 1.0)
     some = f"; {negative} negative" if negative > 1 else ""
     at = f"{worst.pin} at {m.level}"
-    return [f"least margin {sign}{engineering(m.margin, 3)} ({at}){some}."]
+    return [f"least margin {margin_text(m.margin)} ({at}){some}."]

@@ -9,7 +9,7 @@ from assess.margin import RATIO_DIMENSION, Margin, PinMargin
 from assess.work import WorkQuantity
 from reports.data.results import Results
 from reports.data.row import Units
-from reports.format.numbers import engineering, short
+from reports.format.numbers import margin_text, short
 from reports.format.work_words import passing_text, quantity_text, work_lines
 
 if TYPE_CHECKING:
@@ -49,9 +49,8 @@ def _body(m: Margin, units: Units) -> Iterator[str]:
         for value in (m.demand, m.allowable)
     )
     loads = f"{m.level} load: {short(m.factor)} × {demand}"
-    sign = "+" if (m.margin or 0.0) > 0.0 else ""
     limit = "1" if m.dimension == RATIO_DIMENSION else allowable
-    yield f"{loads} against {limit}: margin {sign}{engineering(m.margin, 3)}"
+    yield f"{loads} against {limit}: margin {margin_text(m.margin)}"
     if passing := passing_text(m, units):
         yield f"{passing} would pass"
     for text in (m.basis, m.scatter, m.omits):

@@ -6,7 +6,8 @@ import pytest
 
 from reports.format.drawing.spread import rows
 from reports.format.file_names import plot_name
-from reports.format.numbers import engineering, like, ratio, short, threshold
+from reports.format.numbers import DASH, engineering, like, margin_text, ratio, short, threshold
+from tests.support.each import each
 
 
 @pytest.mark.parametrize(
@@ -66,3 +67,12 @@ def test_plot_names_are_safe_and_differ() -> None:
 )
 def test_a_value_at_which_something_changes(value: float, expected: str) -> None:
     assert threshold(value) == expected
+
+
+@each(
+    ("margin", "text"),
+    [(0.11111, "+0.111"), (0.0, "0"), (-0.5, "−0.500"), (math.inf, "+∞"), (None, DASH)],
+)
+def test_a_margin_has_its_sign(margin: float | None, text: str) -> None:
+    """Without a demand it was "+–" in --show-work."""
+    assert margin_text(margin) == text

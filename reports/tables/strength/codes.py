@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from assess.margin import Margin
 from reports.data.results import Results
-from reports.format.numbers import DASH, engineering
+from reports.format.numbers import DASH, margin_text
 from reports.tables.column import Column, Table, read_only, texts
 
 CODES_TITLE = "Least margin of each code (without the checks that all of them have)"
@@ -63,5 +63,4 @@ def _column(code: str) -> Column[CodesRow]:
 def _cell(m: Margin | None) -> str:
     if m is None:
         return DASH
-    sign = "+" if (m.margin or 0.0) > 0.0 else ""
-    return f"{sign}{engineering(m.margin, 3)} ({m.method})"
+    return f"{margin_text(m.margin)} ({m.method})"

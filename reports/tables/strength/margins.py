@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 
@@ -12,7 +11,7 @@ from reports.data.governing import governing, skipped
 from reports.data.requirements import keys_in
 from reports.data.results import Results
 from reports.data.row import PinResult, Units
-from reports.format.numbers import DASH, engineering, short
+from reports.format.numbers import DASH, engineering, margin_text, short
 from reports.format.units import unit_name
 from reports.format.work_words import passing_text, work_text
 from reports.tables.column import Column, Table, fields, in_order, read_only, texts
@@ -86,7 +85,7 @@ COLUMNS: list[Column[MarginRow]] = [
     Column("utilisation", lambda row: row.margin.utilisation, "", "utilisation",
            lambda row: _per_cent(row.margin.utilisation)),
     Column("margin", lambda row: row.margin.margin, "", "margin",
-           lambda row: _signed(row.margin.margin)),
+           lambda row: margin_text(row.margin.margin)),
     *fields("unit"),
     Column("time", lambda row: row.margin.time, "time", "time", drop_if_empty=True),
     *fields("margin.basis"),
@@ -208,9 +207,3 @@ def _over_joint(row: ArmsRow, moment: float) -> str:
 
 def _per_cent(used: float | None) -> str:
     return f"{engineering(None if used is None else 100.0 * used, 3)} %"
-
-
-def _signed(margin: float | None) -> str:
-    if margin is not None and math.isinf(margin):
-        return "+∞"
-    return f"{'+' if (margin or 0.0) > 0.0 else ''}{engineering(margin, 3)}"
