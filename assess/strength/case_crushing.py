@@ -16,7 +16,7 @@ from assess.situation import Situation
     "rule of pinstress: half-plane, Johnson, Contact Mechanics, 2.5",
     kind="model",
     takes="results",
-    omits="bending of the pin, which the von Mises stress has; the edges of lugs",
+    omits="Not covered: bending of the pin, which the von Mises stress has; the edges of lugs.",
 )
 def crushed_case(text: CheckText, s: Situation) -> list[Margin]:
     """The margin of the core's yield strength beneath the pressure; only of hardened pins in

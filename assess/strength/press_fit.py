@@ -25,7 +25,7 @@ METHOD = "press fit"
     "AFFDL-TR-69-42, 9.16",
     kind="model",
     takes="loads",
-    omits="the loads, which the stress of a lug with a shank has; the eye is a ring",
+    omits="Not covered: the loads, which a lug with a shank has in its stress; eyes but rings.",
 )
 def press_fit(text: CheckText, s: Situation) -> list[Margin]:
     """The margins of pin, bushing and eye with an interference whose stress is not solved."""
