@@ -140,10 +140,7 @@ def _peaks(study: Study, case: CaseLoads) -> tuple[PeakReaction, ...]:
     if case.peaks is None:
         return ()
     peaks = case.peaks
-    position: list[float | None] = [None] * len(peaks.force)
-    if drive_position(study, case) is not None and case.solve is not None:
-        dynamics = case.solve(np.array([peak.time for peak in peaks.force.values()]))
-        position = list(_drive_positions(study, dynamics)[:, 0].tolist())
+    position = _positions_at(study, case, [peak.time for peak in peaks.force.values()])
     return tuple(
         PeakReaction(
             name,
@@ -156,6 +153,19 @@ def _peaks(study: Study, case: CaseLoads) -> tuple[PeakReaction, ...]:
         )
         for c, (name, peak) in enumerate(peaks.force.items())
     )
+
+
+def _positions_at(study: Study, case: CaseLoads, times: list[float]) -> list[float | None]:
+    """Return the position of the only drive at each time (s); None unless there is one."""
+    if drive_position(study, case) is None:
+        return [None] * len(times)
+    if case.solve_space is not None:
+        shown = positions_in_space(study, case.solve_space(np.array(times)))
+    elif case.solve is not None:
+        shown = _drive_positions(study, case.solve(np.array(times)))
+    else:
+        return [None] * len(times)
+    return [float(position) for position in shown[:, 0]]
 
 
 def _pairs(values: Floats) -> tuple[tuple[float, float], ...]:

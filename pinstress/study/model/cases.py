@@ -69,7 +69,7 @@ class CaseLoads:
     range: reactions over the ranges of an impulse.
     impulse: reactions of the only impulse in the case.
     space: dynamics of a linkage in space.
-    solve: dynamics at other times (T,) s.
+    solve: dynamics at other times (T,) s. solve_space: the same of a linkage in space.
     peaks: the largest forces over the time.
     over: other results of the whole motion.
     frictionless: the same without friction, where there is any.
@@ -89,6 +89,7 @@ class CaseLoads:
     impulse: ImpulseShare | None = None
     space: InSpace | None = None
     solve: Callable[[Floats], Dynamics] | None = None
+    solve_space: Callable[[Floats], InSpace] | None = None
     peaks: PeakForces | None = None
     over: OverTime | None = None
     frictionless: OverTime | None = None
@@ -122,6 +123,9 @@ def at_time(case: CaseLoads, time: float) -> CaseLoads | None:
     if case.solve is not None:
         dynamics = case.solve(at)
         return replace(case, reactions=dynamics.reactions, dynamics=dynamics)
+    if case.solve_space is not None:
+        space = case.solve_space(at)
+        return replace(case, reactions=space.reactions, space=space)
     if case.at is not None:
         return replace(case, reactions=case.at(at))
     k = int(np.abs(times - time).argmin())
@@ -319,6 +323,7 @@ def _in_space(
         note=solved.note,
         at=moved.reactions,
         space=solved,
+        solve_space=moved.solve,
         peaks=solved.peaks,
         moving=moving,
     )
