@@ -9,6 +9,7 @@ from loads import GROUND, Dynamics, Joint
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.lugs import ShankTable
+from pinstress.study.schema.mechanism import MechanismTable
 from pinstress.study.schema.shown import listed
 
 
@@ -16,19 +17,28 @@ def shank_angles(study: Study, pin: str, case: CaseLoads) -> dict[str, ShankAngl
     """Return the angles of a pin's shanks in a case, by connection; those that neither the study
     nor the mechanism gives are left out.
 
-    Raises: InputError for a joint that does not exist, and where the other joints of a body lie
-    about the lug.
+    Raises: InputError for a joint that does not exist, or that no linkage in the plane gives, and
+    where the other joints of a body lie about the lug.
     """
-    out = {}
+    out, mechanism = {}, study.table.mechanism
     for name, lug in study.table.pin[pin].lug.items():
         if lug.shank is None:
             continue
+        at = f"pin.{pin}.lug.{name}.shank"
         if lug.shank.angle is not None:
             out[name] = ShankAngle(np.array([lug.shank.angle]))
-        elif case.dynamics is not None and _turns(case, name, lug.shank):
-            at = f"pin.{pin}.lug.{name}.shank"
-            if others := _others(study, at, case.dynamics, name, lug.shank.toward):
-                out[name] = _toward(study, at, name, others, case)
+        elif lug.shank.toward is not None and not isinstance(mechanism, MechanismTable):
+            raise study.error(
+                f"{at}.toward: needs the joints of a linkage in the plane; give angle",
+                f"{at}.toward",
+                "direction-unknown",
+            )
+        elif (
+            case.dynamics is not None
+            and _turns(case, name, lug.shank)
+            and (others := _others(study, at, case.dynamics, name, lug.shank.toward))
+        ):
+            out[name] = _toward(study, at, name, others, case)
     return out
 
 

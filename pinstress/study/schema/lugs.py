@@ -63,7 +63,8 @@ class ShankTable(StrictTable):
     """Direction of the shank from the bore, from the pin's x axis. Default: towards the middle of
     the body's other joints; where no mechanism gives it, against the largest force on the lug."""
     toward: Name | None = None
-    """Name of the joint towards which the shank points. Not with `angle`."""
+    """Name of the joint, of a linkage in the plane, towards which the shank points. Not with
+    `angle`."""
 
     _one_direction = at_most_one("angle", "toward")
 

@@ -171,6 +171,7 @@ def test_a_shank_turns_with_its_link(tmp_path: Path) -> None:
         ("{ length = 10 }", "held inside of its head"),
         ("{ end = 9 }", "no wall"),
         ('{ angle = "0 deg", toward = "X" }', "not both"),
+        ('{ toward = "X" }', "toward: needs the joints of a linkage in the plane"),
         ('{ shape = "oval" }', "shape"),
         ("{ length = -1 }", "must be positive"),
     ],
