@@ -287,8 +287,8 @@ def _accepted(answer: PinAnswer, search: _Search) -> bool:
     contact the less so, the more full solutions have missed it already.
     """
     sized = search.sized
-    misses = 0 if sized.in_lugs else len(search.full) - 1
-    most = math.inf if sized.standard else sized.required * (1.0 + (1 + misses) * _close(sized))
+    close = _close(sized) * (1 if sized.in_lugs else len(search.full))
+    most = math.inf if sized.standard else sized.required * (1.0 + close)
     return sized.required <= answer.trial.factor <= most
 
 
