@@ -29,7 +29,7 @@ from pinbase.arrays import Floats
 # Both limits are chosen by judgement, as parts of the largest force or torque.
 MIN_WARNED_IMBALANCE = 0.01  # less is round-off of numbers that were typed
 MAX_IMBALANCE = 0.1  # more means that a load or a support is missing
-BALANCE_NOISE = 1e-9  # of the largest load: smaller ones are zero
+BALANCE_NOISE = 1e-9  # of the largest load, or of what squeezes the pin: smaller ones are zero
 # Of the largest couple: more has no solution in lugs that are all free to tilt.
 MAX_FREE_COUPLE = 1e-6
 # Of the largest couple: what may remain where changing one force is enough.
@@ -104,7 +104,7 @@ def out_of_balance(
     moments = loads.moments
     turning = max(largest * pin.length, _largest(moments[..., :2]))
     twisting = float(np.abs(moments[..., 2]).max(initial=0.0))
-    least = BALANCE_NOISE * max(largest, _largest(moments) / pin.length)
+    least = BALANCE_NOISE * max(largest, loads.squeezing, _largest(moments) / pin.length)
     across, along = not carried.force, not carried.along
     measures = (
         (np.maximum(across * _size(force[:, :2]), along * np.abs(force[:, 2])), largest, least),

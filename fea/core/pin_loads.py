@@ -158,6 +158,13 @@ class PinLoads:
         """The loads that sections carry: these, or the resultants of contact pressures on rings."""
         return self
 
+    @property
+    def squeezing(self) -> float:
+        """The largest force, N, by which pressures that balance themselves squeeze the pin: their
+        round-off is no load.
+        """
+        return 0.0
+
     def tilting_links(self, length: float) -> tuple[str, ...]:
         """The surfaces whose links state moments across the axis.
 

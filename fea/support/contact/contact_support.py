@@ -153,7 +153,7 @@ def _with_failures(
 
     cases: those that were held. failed: the errors of those without contact.
     """
-    starts = tuple(start for start in held.starts.values() if _acts(start.links))
+    starts = tuple(held.starts.values())
     rigid, _, notes = balanced(held.pin, problem.material, starts, "harmonic")
     for links in cases:
         if (said := seats_note(links, problem.lugs)) is not None:
@@ -161,13 +161,6 @@ def _with_failures(
     name = problem.pin.name
     without = {case: unsolved(name, case, "harmonic", error) for case, error in failed.items()}
     return replace(held, failures=held.failures | without | rigid, notes=notes)
-
-
-def _acts(links: PinLoads) -> bool:
-    """Return whether anything acts on the pin but its fits, whose pressures alone leave round-off
-    that no load exceeds.
-    """
-    return bool(links.forces.any() or links.moments.any() or links.body.any())
 
 
 def _seeing(model: ContactModel, pin: PinLike) -> ContactModel:

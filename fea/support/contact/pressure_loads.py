@@ -32,10 +32,12 @@ class PressureLoads(PinLoads):
     forces: resultants of the pressures on the rings, and the shares of axial forces; after the
     rings come other surfaces that take axial forces.
     of_links: the loads of the links that the pressures carry, at the same instants.
+    squeezing: the largest force, N, by which even pressures press all bands together.
     """
 
     acting: Mapping[UnitLoad, Floats] = field(default_factory=dict)
     of_links: PinLoads | None = None
+    squeezing: float = 0.0
 
     @property
     def links(self) -> PinLoads:
@@ -80,7 +82,9 @@ class PressureLoads(PinLoads):
         joined = super().merged(other)
         assert isinstance(joined, PressureLoads)
         acting = {load: x[first] for load, x in both.items()}
-        return replace(joined, of_links=self.links.merged(other.links), acting=acting)
+        squeezing = max(self.squeezing, other.squeezing)
+        links = self.links.merged(other.links)
+        return replace(joined, of_links=links, acting=acting, squeezing=squeezing)
 
 
 @dataclass(frozen=True)
@@ -105,6 +109,8 @@ class PressureModes:
         ring_loads = resultants(self.pin, self.rings, waves, links)
         acting = dict(others_along(self.pin, self.rings, links).coefficients())
         acting.update(self.amounts(waves))
+        areas = np.array([self.pin.band(name).area for name in self.rings])
+        squeezing = np.abs(waves[0, :, :, 0]) @ areas
         return PressureLoads(
             links.case,
             ring_loads.surfaces,
@@ -116,6 +122,7 @@ class PressureModes:
             of_links=links,
             pressed=pressed,
             bands=ring_loads.bands,
+            squeezing=float(squeezing.max(initial=0.0)),
         )
 
     def amounts(

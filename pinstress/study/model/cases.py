@@ -65,7 +65,6 @@ class CaseLoads:
     """The reactions of one case, with the dynamics behind them where a mechanism gives them.
 
     note: how the loads came about.
-    at: reactions at other times (T,) s of the same motion.
     range: reactions over the ranges of an impulse.
     impulse: reactions of the only impulse in the case.
     space: dynamics of a linkage in space.
@@ -84,7 +83,6 @@ class CaseLoads:
     reactions: Reactions
     dynamics: Dynamics | None = None
     note: str = ""
-    at: Callable[[Floats], Reactions] | None = None
     range: ImpulseLoads | None = None
     impulse: ImpulseShare | None = None
     space: InSpace | None = None
@@ -126,8 +124,6 @@ def at_time(case: CaseLoads, time: float) -> CaseLoads | None:
     if case.solve_space is not None:
         space = case.solve_space(at)
         return replace(case, reactions=space.reactions, space=space)
-    if case.at is not None:
-        return replace(case, reactions=case.at(at))
     k = int(np.abs(times - time).argmin())
     if abs(times[k] - time) > near:
         return None
@@ -200,9 +196,6 @@ class _Moved:
         solved = self.solve(times)
         return solved, {} if self.side is None else self.side.others(solved)
 
-    def reactions(self, times: Floats) -> Reactions:
-        return self.solve(times).reactions
-
     def acting(self, times: Floats) -> Acting:
         return acting(self.solve(times))
 
@@ -237,7 +230,6 @@ def _over_time(moved: _Moved, samples: int, note: str) -> CaseLoads:
         solved.reactions,
         solved,
         note,
-        moved.reactions,
         solve=moved.solve,
         peaks=over.peaks,
         over=over,
@@ -321,7 +313,6 @@ def _in_space(
     return CaseLoads(
         solved.reactions,
         note=solved.note,
-        at=moved.reactions,
         space=solved,
         solve_space=moved.solve,
         peaks=solved.peaks,

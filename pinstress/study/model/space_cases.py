@@ -119,10 +119,6 @@ class MovedInSpace:
         dynamics = space_reactions(self.name, self.course.at(times), loads)
         return _at_pins(dynamics, self.pins, self.ground, self.note)
 
-    def reactions(self, times: Floats) -> Reactions:
-        """Return the reactions at times (T,) s."""
-        return self.solve(times).reactions
-
     def acting(self, times: Floats) -> Acting:
         """Return reactions, and accelerations of the pins (T, C, 3) m/s^2, at times (T,) s."""
         solved = self.solve(times)

@@ -7,6 +7,7 @@ import pytest
 
 from pinstress import run
 from pinstress.analysis.plan import prepare
+from pinstress.study.model.cases import at_time
 from pinstress.study.reading.file import Study, load_study, parse_study
 from reports.data.row import PinResult
 from tests.conftest import ROOT
@@ -61,9 +62,9 @@ def test_loads_beside_the_maximum_are_those_of_its_instant() -> None:
     few = solved(41)
     assert few.time is not None
     plan = prepare(study(41), pins=["O"])
-    case = plan.loads["turn"]
-    assert case.at is not None
-    reactions = case.at(np.array([few.time]))
+    case = at_time(plan.loads["turn"], few.time)
+    assert case is not None
+    reactions = case.reactions
     (load,) = few.loads
     c = reactions.connections.index(load.connection)
     assert load.force == pytest.approx(reactions.forces[0, c], rel=1e-9)
@@ -75,8 +76,8 @@ def test_loads_between_samples_are_the_mechanisms_own() -> None:
     assert loads.moving is not None
     times = np.sort(np.random.default_rng(5).uniform(0.0, 0.25, 200))
     found, _ = loads.moving.at(times)
-    assert loads.at is not None
-    exact = loads.at(times)
+    assert loads.solve is not None
+    exact = loads.solve(times).reactions
     size = np.abs(exact.forces).max()
     assert np.abs(found.forces - exact.forces).max() <= 1e-6 * size
     assert np.abs(found.turn - exact.turn).max() <= 1e-6

@@ -75,11 +75,12 @@ def test_a_clevis_beside_contact_in_three_dimensions(sharp: Solution) -> None:
     assert "contact" in peak.why
 
 
-def test_a_press_fit_without_load_has_the_stress_of_the_fit() -> None:
+@pytest.mark.parametrize("force", [0.0, 1e-9])
+def test_a_press_fit_without_load_has_the_stress_of_the_fit(force: float) -> None:
     """In proportion to the interference; the round-off of its pressures is no load out of balance,
-    for which such a pin was said not to be held.
+    for which such a pin was said not to be held. Nor is it beside that of a linkage's forces.
     """
-    idle, most = pull(np.zeros((1, 2))), []
+    idle, most = pull(np.array([[force, 0.0]])), []
     for size in (1e-5, 2e-5):
         lugs = tuple(replace(lug, clearance=-size) for lug in LUGS)
         (found,) = solve_in_lugs(problem(PIN, STEEL, lugs, (idle,)), QUICK)
