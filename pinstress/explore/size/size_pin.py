@@ -52,8 +52,7 @@ PLAIN_FACTOR_TOLERANCE = 0.5 * FACTOR_TOLERANCE
 # contact by quick solutions, where so much leaves their difference from full ones on either side
 AIM_SHARE, CONTACT_AIM_SHARE = 0.25, 0.5
 QUICK_STEP = 0.03  # of the scale, which is not worth another quick solution
-# Of the factor, by which quick and full solutions may differ: 6 % on the pins of
-# studies/landing_gear.toml
+# Of the factor, by which quick and full solutions may differ: twice what was measured (above)
 QUICK_ERROR = 0.07
 NEXT_DIAMETER = 1e-6  # relative, beyond a standard diameter
 
