@@ -42,6 +42,7 @@ from pinstress.cli.shared import (
     example,
     open_page,
     output_folder,
+    read_chosen,
     read_study,
     warn,
 )
@@ -217,7 +218,7 @@ def run(
 ) -> int:
     if second_opinion is not None:
         _require_calculix()
-    loaded = read_study(study)
+    loaded = read_chosen(study, options)
     from pinstress.cli.run import OutputOptions, run_and_write
 
     chosen = {key: options.pop(key) for key in Selection.__annotations__}
@@ -248,7 +249,7 @@ def _require_calculix() -> None:
 @click.option("--plots/--no-pictures", default=False, help=PLOTS_HELP)
 @click.option("--quiet", is_flag=True, help="No notes; errors are still reported.")
 def loads(study: Path, out: Path | None, **options: Any) -> int:
-    loaded = read_study(study)
+    loaded = read_chosen(study, options)
     from pinstress.cli.run import loads_and_write
 
     directory = out or Path("out") / f"{loaded.name}-loads"

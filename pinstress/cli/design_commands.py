@@ -16,7 +16,7 @@ from pinstress.cli.shared import (
     cluster_choices,
     example,
     output_folder,
-    read_study,
+    read_chosen,
 )
 
 
@@ -37,15 +37,14 @@ from pinstress.cli.shared import (
 @cluster_choices
 @click.option("--resume", is_flag=True, help="Resume a sweep, or extend it to a larger count.")
 @click.option("--open", "opens", is_flag=True, help="Open the page in the browser when done.")
-def sweep(
-    study: Path, out: Path | None, pins: list[str] | None, cases: list[str] | None, **way: Any
-) -> int:
-    connection = chosen_connection(way)
-    loaded = read_study(study)
+def sweep(study: Path, out: Path | None, **options: Any) -> int:
+    connection = chosen_connection(options)
+    loaded = read_chosen(study, options)
     from pinstress.cli.sweep import Way, sweep_and_write
 
     directory = out or Path("out") / f"{loaded.name}-sweep"
-    return sweep_and_write(loaded, directory, pins, cases, Way(connection=connection, **way))
+    pins, cases = options.pop("pins"), options.pop("cases")
+    return sweep_and_write(loaded, directory, pins, cases, Way(connection=connection, **options))
 
 
 @click.command(
@@ -64,7 +63,7 @@ def sweep(
 @cluster_choices
 def reliability(study: Path, out: Path | None, **options: Any) -> int:
     connection = chosen_connection(options)
-    loaded = read_study(study)
+    loaded = read_chosen(study, options)
     from pinstress.cli.reliability import reliability_and_write
 
     directory = out or Path("out") / f"{loaded.name}-reliability"

@@ -24,7 +24,7 @@ from pinstress.cli.shared import (
     example,
     names,
     output_folder,
-    read_study,
+    read_chosen,
 )
 from pinstress.cli.streams import unneeded
 from pinstress.study.reading.errors import InputError, cannot_write
@@ -286,7 +286,7 @@ def size(
     from pinstress.study.schema.units import to_si
 
     connection = chosen_connection(options)
-    loaded = read_study(study)
+    loaded = read_chosen(study, options)
     try:
         metres = None if step is None else to_si(step, "length", loaded.system)
     except ValueError as error:
@@ -334,7 +334,7 @@ def size(
     help="Number of values, evenly spaced; the one in the study is added.",
 )
 @click.option(
-    "--pin", "--pins", "pins", callback=names, metavar="A,B",
+    "--pin", "--pins", "pins", metavar="A,B",
     help="Only these pins [that of the key, or all].",
 )  # fmt: skip
 @output_folder("<study>-curve.KEY")
@@ -343,7 +343,7 @@ def size(
 def curve(
     study: Path, key: str, out: Path | None, first: str | None, last: str | None, **options: Any
 ) -> int:
-    loaded = read_study(study)
+    loaded = read_chosen(study, options)
     from pinstress.cli.curve import curve_and_write, number_or_text
 
     directory = out or Path("out") / f"{loaded.name}-curve.{quote(key, safe='.[]')}"

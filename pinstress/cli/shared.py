@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import re
+from collections.abc import Callable, Container, Iterator
 from contextlib import contextmanager
 from itertools import chain
 from pathlib import Path
@@ -37,14 +38,15 @@ def names(_: click.Context, __: click.Parameter, value: str | None) -> list[str]
     return entries
 
 
+QUOTED = re.compile(r"""(["']).*\1""", re.DOTALL)
 PATH = click.Path(path_type=Path)
 NEW_FILE = click.Path(path_type=Path, dir_okay=False)
 POSITIVE = click.FloatRange(0.0, min_open=True)
 SHARE = click.FloatRange(0.0, 1.0, min_open=True, max_open=True)
 STUDY = click.argument("study", type=PATH)
 RESULTS = click.argument("results", type=PATH)
-PINS_OPTION = click.option("--pins", callback=names, metavar="A,B", help="Only these pins.")
-CASES_OPTION = click.option("--cases", callback=names, metavar="X,Y", help="Only these cases.")
+PINS_OPTION = click.option("--pins", metavar="A,B", help="Only these pins.")
+CASES_OPTION = click.option("--cases", metavar="X,Y", help="Only these cases.")
 JOBS_OPTION = click.option(
     "--jobs",
     type=click.IntRange(1),
@@ -148,6 +150,37 @@ def read_study(path: Path) -> Study:
     warnings = (weight_warnings(study), unsprung_warnings(study), given_warnings(study))
     warn(*study.warnings, *chain.from_iterable(warnings))
     return study
+
+
+def read_chosen(path: Path, options: dict[str, Any]) -> Study:
+    """Load a study like `read_study`.
+
+    options: those of the command; the texts of --pins and --cases become lists of names.
+
+    Raises: InputError.
+    """
+    study = read_study(path)
+    table = study.table
+    for key, known in ("pins", table.pin), ("cases", {**table.case, **table.sequence}):
+        if options.get(key) is not None:
+            options[key] = names_in(options[key], known)
+    return study
+
+
+def names_in(text: str, known: Container[str]) -> list[str]:
+    """Return the names in the text A,B.
+
+    known: names that may have commas; other names with commas are in quotes.
+    """
+    parts, entries, begin = text.split(","), list[str](), 0
+    while begin < len(parts):
+        joined = {n: ",".join(parts[begin:n]).strip() for n in range(begin + 1, len(parts) + 1)}
+        inner = {n: x[1:-1] for n, x in joined.items() if QUOTED.fullmatch(x)}
+        ends = [n for n in joined if joined[n] in known or inner.get(n) in known]
+        end = max(ends, default=min(inner, default=begin + 1))
+        entries.append(joined[end] if joined[end] in known else inner.get(end, joined[end]))
+        begin = end
+    return [entry for entry in entries if entry]
 
 
 def warn(*warnings: str) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from assess.requirement import REQUIRED_CHECKS
-from reports.data.requirements import MET, OUTCOMES, RequirementRow
+from reports.data.requirements import MET, NOT_CHECKED, OUTCOMES, RequirementRow
 
 LOST, GONE = "lost", "gone"
 NEWLY_MET, NEW, LOWERED, OTHER = "newly met", "new", "asks for less", "changed"
@@ -36,7 +36,8 @@ class RequirementPair:
         """The verdict of a review on it, one of REQUIREMENT_CHANGES.
 
         Lost is one that was met and no longer is, whatever the reason; gone one that is no longer
-        there, which is as bad. One that asks for less is no progress, whether or not it is met now.
+        there, which is as bad, or no longer stated where nothing checks it, so that no run tells of
+        it. One that asks for less is no progress, whether or not it is met now.
         """
         a, b = self.first, self.second
         if a is None:
@@ -46,6 +47,8 @@ class RequirementPair:
         before, after = a.outcome == MET, b.outcome == MET
         if before and not after:
             return LOST
+        if a.stated and not b.stated and b.outcome == NOT_CHECKED:
+            return GONE
         if b.required < a.required:  # also where it is met only since then
             return LOWERED
         if after and not before:
@@ -65,7 +68,7 @@ def requirement_pairs(
         return None
     a, b = _by_key(lists[0]), _by_key(lists[1])
     pairs = [RequirementPair(a.get(key), b.get(key)) for key in dict.fromkeys((*a, *b))]
-    counted = [pair for pair in pairs if pair.change != GONE or _counts(pair.row)]
+    counted = [pair for pair in pairs if pair.change != GONE or _counts(pair.first or pair.row)]
     return tuple(sorted(counted, key=lambda pair: REQUIREMENT_CHANGES.index(pair.change)))
 
 

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 from reports.data.comparison import CHANGE_KINDS, UNCHANGED, RunComparison, unchanged
 from reports.data.requirement_pairs import GONE, LOST, LOWERED, NEWLY_MET
 from reports.format.files import markdown
-from reports.format.ranges import factor_text
+from reports.format.numbers import engineering
+from reports.format.ranges import END_DIGITS, MAX_DIGITS
 from reports.tables.column import Table
 from reports.tables.comparison import (
     forces_table,
@@ -71,14 +72,20 @@ def _factor_changes(comparison: RunComparison) -> list[str]:
             words.append(f"pin {pin} {'is gone' if 0 in runs[pin] else 'is new'}")
             continue
         first, second = (min(side, default=None) for side in factors[pin])
-        before, after = (_factor(x, y) for x, y in ((first, second), (second, first)))
+        before, after = _apart(first, second)
         if before != after and not unchanged(first, second):
             words.append(f"pin {pin}: {before} to {after}")
     return words
 
 
-def _factor(factor: float | None, other: float | None) -> str:
-    return "none" if factor is None else factor_text(factor, other or 0.0)
+def _apart(*factors: float | None) -> list[str]:
+    """Return two factors with equally many digits, three or as many as show that they differ."""
+    texts: list[str] = []
+    for digits in range(END_DIGITS, MAX_DIGITS + 1):
+        texts = ["none" if x is None else engineering(x, digits) for x in factors]
+        if texts[0] != texts[1]:
+            break
+    return texts
 
 
 def _requirement_changes(comparison: RunComparison) -> str:

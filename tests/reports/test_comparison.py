@@ -23,6 +23,7 @@ from reports.plots.comparison import comparison_plot
 from reports.tables.comparison import inputs_table, rows_table
 from reports.tables.json_results import to_json
 from reports.text.comparison import headline, review, write_markdown
+from tests.support.each import each
 from tests.support.results.made_up_run import make_results
 
 
@@ -74,6 +75,24 @@ def test_round_off_is_no_change_of_a_factor(run: dict[str, Any]) -> None:
     one = {**run, "pins": run["pins"][:1]}
     before, after = (changed(one, safety_factor=2.30444649013 * x) for x in (1.0, 1.0 - 1e-14))
     assert review(compare(before, after)).startswith("No factor of a pin changed")
+
+
+@each(
+    ("before", "after", "said"),
+    [
+        (10.68096, 10.68, "10.681 to 10.680"),
+        (1.2, 1.9, "1.20 to 1.90"),
+        (1234.0, 1234.4, "1,234.0 to 1,234.4"),
+        (2.0, None, "2.00 to none"),
+    ],
+)
+def test_factors_are_told_apart_by_equally_many_digits(
+    run: dict[str, Any], before: float, after: float | None, said: str
+) -> None:
+    """It said "10.7 to 10.68" of a change of 0.009 %."""
+    one = {**run, "pins": run["pins"][:1]}
+    found = compare(*(changed(one, safety_factor=x) for x in (before, after)))
+    assert f": {said};" in review(found)
 
 
 def test_a_change_is_beyond_the_errors_or_within(run: dict[str, Any]) -> None:

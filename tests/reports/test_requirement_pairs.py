@@ -18,6 +18,7 @@ from tests.support.each import each
 from tests.support.results.made_up_run import make_results
 
 E = RequirementRow("E", "landing", "limit", "yield", 1.5, 1.6, "met")
+NOT_CHECKED = replace(E, check="rupture", outcome="not checked", reached=None, needs="a strength")
 
 
 @pytest.fixture(scope="module")
@@ -57,6 +58,10 @@ def compare(
         (replace(E, outcome="missed"), None, "gone"),
         (None, E, "new"),
         (replace(E, check="rupture", stated=False), None, "gone"),
+        (NOT_CHECKED, replace(NOT_CHECKED, stated=False, required=1.7), "gone"),
+        (NOT_CHECKED, replace(NOT_CHECKED, stated=False, required=1.2), "gone"),
+        (replace(NOT_CHECKED, stated=False), replace(NOT_CHECKED, stated=False), "unchanged"),
+        (replace(E, check="rupture"), replace(E, check="rupture", stated=False), "unchanged"),
         (replace(E, check="limit load", stated=False), None, ""),
         (replace(E, check="bending", stated=False), None, ""),
         (replace(E, check="rupture", stated=False, outcome="not checked"), None, ""),

@@ -100,7 +100,10 @@ def assess(
     weighted = weighted_sample(designs, centres, settings)
     shares = _indices(designs, settings) if space.lower is None else None
     laws = {path for p in parameters for path in p.number.paths}
-    open_rows = replace(nominal, pins=tuple(with_open_ranges(row, laws) for row in nominal.pins))
+    materials = {name: pin.material for name, pin in study.table.pin.items()}
+    open_rows = replace(
+        nominal, pins=tuple(with_open_ranges(p, laws, materials[p.pin]) for p in nominal.pins)
+    )
     assessed = _assessed_rows(parameters, designs, forms, shares, open_rows)
     of_study = [row.nominal for row in assessed if row.column.row is not None]
     growths = np.array([growth(row) for row in of_study])
@@ -332,7 +335,8 @@ def _notes(
                 f"Pin {p.pin} comes loose in {p.case}: its press fit is lost in {where}. What else "
                 "retains it is not judged here."
             )
-    yield from left_out(nominal.pins, laws)
+    materials = {name: pin.material for name, pin in study.table.pin.items()}
+    yield from left_out(nominal.pins, laws, materials)
     if any(p.verdict == "singular" for p in nominal.pins):
         yield (
             "Rows marked singular have unbounded stress at a corner or an edge (singular_zones.csv "

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 
+import numpy as np
+
 from pinstress.explore.sweep.number import Path
-from reports.data.row import PinResult
+from reports.data.row import LandingRange, PinResult
 from reports.data.unknowns import factor_spread
 
 CLEARANCE = "clearance"  # of all lugs, as a joint is varied by it
@@ -18,12 +20,12 @@ RANGES = {  # by whose they are
 }
 
 
-def with_open_ranges(row: PinResult, laws: Collection[Path]) -> PinResult:
+def with_open_ranges(row: PinResult, laws: Collection[Path], material: str) -> PinResult:
     """Return a row of the study as it is, without the ranges that a law describes.
 
-    laws: paths of the numbers with a law.
+    laws: paths of the numbers with a law. material: name of that of the row's pin.
     """
-    by_law, joint = _by_law(row, laws), row.joint
+    by_law, joint = _by_law(row, laws, material), row.joint
     if CLEARANCE in by_law and joint is not None and joint.range is not None:
         joint = replace(joint, range=joint.range.without(CLEARANCE, row.max_von_mises or 0.0))
     return replace(
@@ -43,9 +45,14 @@ def growth(row: PinResult | None) -> float:
     return max((row.safety_factor or 0.0) / spread[0], 1.0) if row and spread else 1.0
 
 
-def left_out(rows: Iterable[PinResult], laws: Collection[Path]) -> Iterable[str]:
-    """Yield a sentence on each range that does not count, since a law describes it."""
-    pins = [(owner, row.pin) for row in rows for owner in _by_law(row, laws)]
+def left_out(
+    rows: Iterable[PinResult], laws: Collection[Path], materials: Mapping[str, str]
+) -> Iterable[str]:
+    """Yield a sentence on each range that does not count, since a law describes it.
+
+    materials: names of those of the pins.
+    """
+    pins = [(owner, r.pin) for r in rows for owner in _by_law(r, laws, materials[r.pin])]
     for owner, name in RANGES.items():
         if some := dict.fromkeys(pin for x, pin in pins if x == owner):
             yield (
@@ -54,16 +61,28 @@ def left_out(rows: Iterable[PinResult], laws: Collection[Path]) -> Iterable[str]
             )
 
 
-def _by_law(row: PinResult, laws: Collection[Path]) -> set[str]:
+def _by_law(row: PinResult, laws: Collection[Path], material: str) -> set[str]:
     """Return the owners of the row's ranges that a law describes."""
     owners = set()
-    if row.landing is not None and any(path[:2] == ("case", row.case) for path in laws):
+    if row.landing is not None and _impulse_by_law(row.landing, laws):
         owners.add("landing")
-    if row.strength_range is not None and any(path[-1] == "yield_strength" for path in laws):
+    if row.strength_range is not None and ("material", material, "yield_strength") in laws:
         owners.add("strength")
     if _clearances_by_law(row, laws):
         owners.add(CLEARANCE)
     return owners
+
+
+def _impulse_by_law(landing: LandingRange, laws: Collection[Path]) -> bool:
+    """Return whether laws describe all that differs over the ranges of a landing's impulse."""
+    time, velocity = landing.nominal
+    ranges = {
+        "impulse_time": np.any(landing.impulse_time != time),
+        "velocity_change": np.any(landing.velocity_change != velocity),
+        "pulse": any(pulse != landing.nominal_pulse for pulse in landing.pulses),
+    }
+    by_law = {x[-1] for x in laws if x[:2] == ("case", landing.case) and x[-2] == "impulse"}
+    return all(key in by_law for key, differs in ranges.items() if differs)
 
 
 def _clearances_by_law(row: PinResult, laws: Collection[Path]) -> bool:

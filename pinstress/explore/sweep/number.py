@@ -14,7 +14,7 @@ from pinbase.errors import ArgumentError
 from pinstress.study.model.lugs import known_lugs
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import Study, raw_study, with_value
-from pinstress.study.reading.in_python import PAIR_KEYS, key_parts, single_keys
+from pinstress.study.reading.in_python import PAIR_KEYS, key_parts, single_keys, written_parts
 from pinstress.study.schema.lugs import with_lug_defaults
 from pinstress.study.schema.shown import as_text, nearest
 from pinstress.study.schema.thermal_units import TEMPERATURES, THERMAL_UNITS, temperature_unit
@@ -226,19 +226,12 @@ def _dimension_of_unit(unit: str) -> str:
 
 
 def _path(study: Study, raw: Any, key: str) -> Path:
-    """Return the path of a key in the raw content.
-
-    A list of one element may be meant without its index, a table where there may be a list with
-    [1], and one number for both ends with [1] or [2].
+    """Return the path of a key in the raw content; one number for both ends may be meant with [1]
+    or [2].
     """
     path: list[str | int] = []
     here = raw
-    for part in key_parts(study, key):
-        if isinstance(part, str) and isinstance(here, list) and len(here) == 1:
-            path.append(0)
-            here = here[0]
-        if part == 0 and isinstance(here, Mapping):
-            continue
+    for part in written_parts(raw, key_parts(study, key)):
         if part in (0, 1) and path[-1] in PAIR_KEYS and isinstance(here, int | float | str):
             here = [here, here]
         if not path and part == "vary":

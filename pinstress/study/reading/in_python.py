@@ -112,7 +112,7 @@ def _singles(study: Study, key: str) -> Iterator[str]:
 
 def _change(study: Study, document: Any, key: str, value: Any) -> None:
     """Set the value at a key of a document of tomlkit."""
-    parts = key_parts(study, key)
+    parts = written_parts(document, key_parts(study, key))
     match parts:
         case ["pin", str(pin), "lug", str(connection), *inner]:
             write_lug(document, study, pin, connection, inner[:-1])
@@ -154,7 +154,7 @@ def changed_raw(
     """
     for key, value in changes.items():
         for single in _singles(study, key):
-            parts = key_parts(study, single)
+            parts = written_parts(raw, key_parts(study, single))
             complete = with_lug_defaults(dict(raw))
             _place(study, _with_lug(complete, study, parts), parts, single)
             raw = with_value(raw, parts, unwrapped(_plain(value, key), key, [], []))
@@ -228,6 +228,28 @@ def key_parts(study: Study, key: str) -> list[str | int]:
     if not parts:
         raise study.error("'' is not a key", code="not-a-key")
     return parts
+
+
+def written_parts(content: Any, parts: Iterable[str | int]) -> list[str | int]:
+    """Return the parts of a key as the content of a study needs them.
+
+    A list of one element may be meant without its index, a table where there may be a list with
+    [1].
+    """
+    written: list[str | int] = []
+    here = _unwrapped(content)
+    for part in parts:
+        if isinstance(part, str) and isinstance(here, list) and len(here) == 1:
+            written.append(0)
+            here = _unwrapped(here[0])
+        if part == 0 and isinstance(here, Mapping):
+            continue
+        written.append(part)
+        try:
+            here = _unwrapped(here[part])
+        except (KeyError, IndexError, TypeError):
+            here = None
+    return written
 
 
 def _inside(study: Study, table: Any, part: str | int, key: str) -> Any:

@@ -17,6 +17,7 @@ import pinstress
 from pinbase.processes.pool import processes
 from pinstress.analysis.gather.gather import loads_only
 from pinstress.cli.commands import run_command_line
+from pinstress.cli.shared import names_in
 from pinstress.study.reading.file import Study
 from tests.conftest import ROOT
 from tests.support.each import each
@@ -181,3 +182,40 @@ def test_an_argument_without_a_name_is_not_told_as_an_option(
     arguments = ["export", str(STUDY), pin, case, "--deck", "abaqus", "--out", out]
     assert run_command_line(arguments) == 2
     assert capsys.readouterr().err.startswith(f"Error: the study has no {what}; ")
+
+
+@each(
+    ("text", "names"),
+    [
+        ("a,b", ["a", "b"]),
+        (" b , a,", ["b", "a"]),
+        ("lift, cold", ["lift, cold"]),
+        ("a,lift, cold,b", ["a", "lift, cold", "b"]),
+        ("a,'lift, cold'", ["a", "lift, cold"]),
+        ("\"a\",'b'", ["a", "b"]),
+        ("'a'", ["'a'"]),
+        ("lift, hot", ["lift", "hot"]),
+        ("'lift, hot',b", ["lift, hot", "b"]),
+        (",", []),
+    ],
+)
+def test_a_name_with_a_comma_is_one_name(text: str, names: list[str]) -> None:
+    known = ["a", "b", "lift, cold"] + ["'a'"] * (text == "'a'")
+    assert names_in(text, known) == names
+
+
+@each("command", ["run", "sweep", "reliability", "loads"])
+def test_a_case_with_a_comma_in_its_name_can_be_chosen(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    command: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = STUDY.read_text(encoding="utf-8").replace("case.landing", 'case."landing, cold"')
+    law = (
+        '[vary]\nsample = "sobol"\n[vary.parameters]\n"pin.B.fillet" = { normal = [0.06, 0.01] }\n'
+    )
+    Path("study.toml").write_text(f"{text}\n{law}", encoding="utf-8")
+    assert run_command_line([command, "study.toml", "--cases", "landing, cold,hot"]) == 2
+    assert "the study has no case 'hot'; " in capsys.readouterr().err

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from fea.support.records import FRICTION, BandContact, JointRange, JointResult, Variation
 from pinstress.explore.reliability.open_ranges import growth, left_out, with_open_ranges
 from pinstress.explore.sweep.number import Path
-from reports.data.row import PinResult
+from reports.data.row import LandingRange, PinResult
 from tests.support.each import each
 from tests.support.results.made_up_run import make_results
 from tests.support.results.rows import with_values
@@ -44,21 +47,60 @@ def row(model: str = "contact") -> PinResult:
 )
 def test_clearances_with_laws_are_not_open(laws: set[Path], expected: float) -> None:
     """They counted twice: by their law, and over the range that a joint without one has."""
-    open_row = with_open_ranges(row(), laws)
+    open_row = with_open_ranges(row(), laws, "steel")
     assert growth(open_row) == pytest.approx(expected)
     assert open_row.joint is not None
     assert open_row.joint.range is not None
     low, high = open_row.joint.range.max_von_mises
     assert (low, high) == pytest.approx((90.0 if expected > 1.4 else STRESS, STRESS * expected))
-    told = list(left_out([row()], laws))
+    told = list(left_out([row()], laws, {"A": "steel"}))
     assert bool(told) == (expected < 1.4)
     assert all(x.startswith("The range of the clearances is left out") for x in told)
+
+
+@each(
+    ("material", "law_of", "left"),
+    [("steel", "steel", True), ("steel", "bronze", False)],
+)
+def test_a_law_of_another_materials_strength_describes_no_range(
+    material: str, law_of: str, left: bool
+) -> None:
+    """A pin whose own strength has a range was safe where that of a bushing had a law."""
+    ranged = replace(row(), joint=None, strength_range=(200.0, 300.0))
+    laws: set[Path] = {("material", law_of, "yield_strength")}
+    assert (with_open_ranges(ranged, laws, material).strength_range is None) == left
+    assert bool(list(left_out([ranged], laws, {"A": material}))) == left
+
+
+@each(
+    ("velocities", "pulses", "laws", "left"),
+    [
+        ([2.0, 2.0], ["half-sine", "half-sine"], ["impulse_time"], True),
+        ([2.0, 3.0], ["half-sine", "half-sine"], ["impulse_time"], False),
+        ([2.0, 3.0], ["half-sine", "half-sine"], ["impulse_time", "velocity_change"], True),
+        ([2.0, 2.0], ["half-sine", "triangular"], ["impulse_time"], False),
+        ([2.0, 2.0], ["half-sine", "half-sine"], ["mass"], False),
+    ],
+)
+def test_a_law_describes_what_it_is_of_in_a_landing(
+    velocities: list[float], pulses: list[str], laws: list[str], left: bool
+) -> None:
+    """A law of any number of the case, as its temperature, took the range of the impulse away."""
+    values, stress = np.array(velocities), np.array([STRESS, 2.0 * STRESS])
+    case = row().case
+    landing = LandingRange(
+        "A", case, np.array([0.1, 0.2]), values, values, stress, 300.0 / stress, (0.1, 2.0),
+        "converged", pulses=tuple(pulses), nominal_pulse="half-sine",
+    )  # fmt: skip
+    impulse = "case", case, "apply", 0, "impulse"
+    every: set[Path] = {(*impulse, key) for key in laws} | {("case", case, "temperature")}
+    assert (with_open_ranges(replace(row(), landing=landing), every, "").landing is None) == left
 
 
 def test_the_range_of_a_prescribed_support_stays() -> None:
     """Its ends have the error of the foundation, which no variation has alone."""
     laws = {("lug_defaults", "clearance")}
-    assert growth(with_open_ranges(row("foundation"), laws)) == pytest.approx(1.5)
+    assert growth(with_open_ranges(row("foundation"), laws, "steel")) == pytest.approx(1.5)
 
 
 def test_nothing_is_open_without_a_row() -> None:

@@ -11,6 +11,7 @@ import pytest
 
 import pinstress
 from pinstress import InputError, changed_study, load_study, shipped_studies, study_from
+from pinstress.explore.sweep.number import number_at
 from pinstress.study.reading.file import raw_study, with_raw
 from pinstress.study.reading.in_python import changed_raw
 from tests.support.each import each
@@ -139,6 +140,22 @@ def test_changed_content_is_that_of_the_changed_study(name: str, changes: dict[s
     assert changed_raw(study, raw, changes) == raw_study(new)
     assert with_raw(study, changed_raw(study, raw, changes)).table == new.table != study.table
     assert raw == raw_study(study)  # which others still have
+
+
+@each(
+    ("name", "key", "full"),
+    [
+        ("lifting_arm", "case.hold.apply.force[2]", "case.hold.apply[1].force[2]"),
+        ("one_pin", "pin[1].B.fillet", "pin.B.fillet"),
+    ],
+)
+def test_a_key_of_vary_is_one_of_a_changed_study(name: str, key: str, full: str) -> None:
+    """[vary] took the only element of a list without its index, a changed study did not."""
+    study = load_study(shipped_studies()[name])
+    raw, wanted = raw_study(study), changed_study(study, {full: 2.0})
+    assert changed_study(study, {key: 2.0}).table == wanted.table != study.table
+    assert changed_raw(study, raw, {key: 2.0}) == raw_study(wanted)
+    assert number_at(study, key).path == number_at(study, full).path
 
 
 @each("key", ["pin.Z.fillet", "pin.B.profile[9].length", "pin.B.clamp[0]", "", "a["])
