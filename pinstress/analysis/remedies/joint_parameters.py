@@ -33,7 +33,10 @@ class StudyParameter:
 
 
 def joint_parameters(study: Study, task: Task) -> Iterator[StudyParameter]:
-    """Yield the non-zero parameters of a pin in lugs, and its clearances."""
+    """Yield the non-zero parameters of a pin in lugs, and its clearances.
+
+    Those of a lug that both ears of a link have are of both.
+    """
     pin = body_of_revolution(task.pin)
     assert pin is not None
     for d in dimensions_of(study, pin):
@@ -42,6 +45,8 @@ def joint_parameters(study: Study, task: Task) -> Iterator[StudyParameter]:
     table = study.table.pin[pin.name]
     for lug in task.lugs:
         name = lug.connection
+        if name in table.like_the_other:
+            continue
         given = table.lug.get(name)
         bushing = given and given.bushing
         for key, value, scale in (
@@ -83,10 +88,14 @@ def _with_dimension(study: Study, task: Task, dimension: Dimension, value: float
 
 
 def _with_lug(study: Study, task: Task, name: str, key: str, value: float) -> Joint:
-    lug_path = "pin", task.pin.name, "lug", name
-    if name not in study.table.pin[task.pin.name].lug:
-        study = _changed(study, lug_path, LugTable())
-    return _made_anew(_changed(study, (*lug_path, *key.split(".")), value), task)
+    table = study.table.pin[task.pin.name]
+    ears = (ear for ear, link in table.like_the_other.items() if link == name)
+    for one in (name, *ears):
+        lug_path = "pin", task.pin.name, "lug", one
+        if one not in table.lug:
+            study = _changed(study, lug_path, LugTable())
+        study = _changed(study, (*lug_path, *key.split(".")), value)
+    return _made_anew(study, task)
 
 
 def _with_material(study: Study, task: Task, name: str, key: str, value: float) -> Joint:

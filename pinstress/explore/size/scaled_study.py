@@ -213,14 +213,15 @@ def wider_eyes(old: Study, new: Study, name: str) -> dict[str, float]:
     """Return the outer diameters, m, that eyes about a pin need, by connection, for those that are
     given, have become too narrow and may grow.
     """
-    out, allowed = {}, new.table.size
-    for at, lug in new.table.pin[name].lug.items():
+    out, allowed, table = dict[str, float](), new.table.size, new.table.pin[name]
+    for at, lug in table.lug.items():
         if lug.outer_diameter is None or not allowed.scale_lugs:
             continue
         before, after = (hole_in_eye(x, name, at) for x in (old, new))
         least = min(allowed.eye_ratio, lug.outer_diameter / before) * after
         if lug.outer_diameter < least * (1.0 - 1e-9):
-            out[at] = least
+            stated = table.like_the_other.get(at, at)  # of both ears
+            out[stated] = max(least, out.get(stated, 0.0))
     return out
 
 

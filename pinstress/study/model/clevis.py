@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from geometry import PinLike
 from pinbase.arrays import Floats
 
 
@@ -25,6 +26,15 @@ class Ears(NamedTuple):
     name: str
     z: float
     other_z: float
+
+
+def middle_of(connection: str, pin: PinLike, ears: Mapping[str, str]) -> float:
+    """The z of a link on a pin, m: the middle of its band, of a clevis amid its ears.
+
+    ears: the name of the other ear, by connection.
+    """
+    on = [connection, ears[connection]] if connection in ears else [connection]
+    return sum(pin.band(name).middle for name in on) / len(on)
 
 
 def on_ears(

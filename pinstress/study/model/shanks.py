@@ -10,6 +10,7 @@ from pinstress.study.model.cases import CaseLoads
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.lugs import ShankTable
 from pinstress.study.schema.mechanism import MechanismTable
+from pinstress.study.schema.pins import PinTable
 from pinstress.study.schema.shown import listed
 
 
@@ -20,8 +21,9 @@ def shank_angles(study: Study, pin: str, case: CaseLoads) -> dict[str, ShankAngl
     Raises: InputError for a joint that does not exist, or that no linkage in the plane gives, and
     where the other joints of a body lie about the lug.
     """
-    out, mechanism = {}, study.table.mechanism
-    for name, lug in study.table.pin[pin].lug.items():
+    out, mechanism, table = {}, study.table.mechanism, study.table.pin[pin]
+    links = {ear: connection for connection, ear in table.ears.items()}
+    for name, lug in table.lug.items():
         if lug.shank is None:
             continue
         at = f"pin.{pin}.lug.{name}.shank"
@@ -35,21 +37,25 @@ def shank_angles(study: Study, pin: str, case: CaseLoads) -> dict[str, ShankAngl
             )
         elif (
             case.dynamics is not None
-            and _turns(case, name, lug.shank)
-            and (others := _others(study, at, case.dynamics, name, lug.shank.toward))
+            and (link := _link(case, links.get(name, name), lug.shank, table))
+            and (others := _others(study, at, case.dynamics, link, lug.shank.toward))
         ):
-            out[name] = _toward(study, at, name, others, case)
+            out[name] = _toward(study, at, link, others, case)
     return out
 
 
-def _turns(case: CaseLoads, connection: str, shank: ShankTable) -> bool:
-    """Return whether the mechanism gives a shank's direction: not that of a lug of the ground,
-    unless it is stated.
+def _link(case: CaseLoads, connection: str, shank: ShankTable, pin: PinTable) -> str | None:
+    """Return the connection by which the mechanism gives a shank's direction; None for a lug of
+    the ground or of the structure, unless that is stated.
+
+    connection: of the link whose lug it is, which is also that of its other ear.
     """
     r = case.reactions
-    if connection not in r.connections:
-        return False
-    return shank.toward is not None or r.bodies[r.connections.index(connection)] != GROUND
+    if shank.toward is None:
+        known = connection in r.connections
+        return connection if known and r.bodies[r.connections.index(connection)] != GROUND else None
+    at_pin = (connection, *(name for _, name in pin.connections))  # one place, one turn
+    return next((name for name in at_pin if name in r.connections), None)
 
 
 def _toward(

@@ -225,8 +225,16 @@ def key_parts(study: Study, key: str) -> list[str | int]:
         parts.append(match[1] if match[1] is not None else match[2])
         parts += [int(i) - 1 for i in INDEX_PATTERN.findall(match[3])]
         at = match.end()
-    if not parts:
-        raise study.error("'' is not a key", code="not-a-key")
+    match parts:
+        case []:
+            raise study.error("'' is not a key", code="not-a-key")
+        case ["pin", str(pin), "lug", str(ear), _, *_] if pin in study.table.pin:
+            if link := study.table.pin[pin].like_the_other.get(ear):
+                raise study.error(
+                    f"{key}: the lug of this ear is that of {link}, whose keys change both; to "
+                    f"change one, give {ear} a lug of its own",
+                    code="lug-of-both-ears",
+                )
     return parts
 
 

@@ -301,3 +301,9 @@ class PinTable(StrictTable):
     def ears(self) -> dict[str, str]:
         """The name of the other ear, by connection, of links that are clevises."""
         return {s.ear_of: s.name for s in self.profile or () if s.ear_of and s.name}
+
+    @property
+    def like_the_other(self) -> dict[str, str]:
+        """The connection, by the name of the other ear, where one lug is that of both ears."""
+        alike = ((ear, name) for name, ear in self.ears.items() if name in self.lug)
+        return {ear: name for ear, name in alike if self.lug[ear] is self.lug[name]}

@@ -181,3 +181,71 @@ def test_an_impossible_shank_is_refused_before_anything_is_solved(
 ) -> None:
     with pytest.raises(pinstress.InputError, match=part):
         pinstress.run(study(tmp_path, shank=SHANK.replace("{}", shank)))
+
+
+TRUSS = """
+title = "Two bars under a load"
+units = "mm-N-s"
+[mechanism]
+gravity = [0, 0]
+[mechanism.joint.A]
+at = [-300, 0]
+fixed_in = "ground"
+connections = { AC = "left" }
+[mechanism.joint.B]
+at = [400, 0]
+fixed_in = "ground"
+connections = { BC = "right" }
+[mechanism.joint.C]
+at = [0, 400]
+connections = { CA = "left", CB = "right" }
+[mechanism.body.left]
+mass = 0
+inertia = 0
+[mechanism.body.right]
+mass = 0
+inertia = 0
+[case.load]
+kind = "static"
+apply = [{ body = "left", at = "C", force = [0, -20000] }]
+[pin.C]
+material = "AISI 4340"
+profile = [
+  { length = 10, diameter = 20, connection = "CA" },
+  { length = 20, diameter = 20, connection = "CB" },
+  { length = 10, diameter = 20, name = "FAR", ear_of = "CA" },
+]
+lug.CA.shank = {}
+[pin.B]
+material = "AISI 4340"
+profile = [
+  { length = 10, diameter = 20, name = "NEAR" },
+  { length = 20, diameter = 20, connection = "BC" },
+  { length = 10, diameter = 20, name = "OTHER" },
+]
+lug.NEAR.shank.toward = "A"
+lug.OTHER.shank = {}
+"""
+
+
+def directions(pin: str, text: str = TRUSS) -> dict[str, float]:
+    """The directions of its shanks, degrees."""
+    truss = pinstress.study_from(text)
+    angles = shank_angles(truss, pin, all_loads(truss, ["load"])["load"])
+    return {name: np.degrees(found.angle.item()) for name, found in angles.items()}
+
+
+def test_both_ears_of_a_link_have_its_shank() -> None:
+    """Also where the other ear states a lug of its own."""
+    own = TRUSS.replace("lug.CA.shank = {}", "lug.CA.shank = {}\nlug.FAR.shank = { width = 50 }")
+    along = np.degrees(np.arctan2(-400.0, -300.0))
+    for text in (TRUSS, own):
+        found = directions("C", text)
+        assert (found["CA"], found["FAR"]) == pytest.approx((along, along))
+    other = own.replace("{ width = 50 }", '{ toward = "B" }')
+    assert directions("C", other)["FAR"] == pytest.approx(-45.0)
+
+
+def test_the_lug_of_a_structure_points_where_it_says() -> None:
+    """Without a word it lies along the largest force, as nothing gives its direction."""
+    assert directions("B") == pytest.approx({"NEAR": 180.0})

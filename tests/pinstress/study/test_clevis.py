@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 
 import pinstress
+from pinstress.analysis.plan import all_loads
+from pinstress.analysis.remedies.joint_parameters import joint_parameters
+from pinstress.explore.size.scaled_study import wider_eyes
 from pinstress.study.model.clevis import Ears, on_ears
 from pinstress.study.reading.errors import InputError
 from tests.support.each import each
@@ -56,6 +59,65 @@ def test_ears_take_half_the_force_and_a_couple() -> None:
         assert force == pytest.approx(EXACT[surface], abs=1e-6), surface
         across = (-50.0, -90.0, -8.0) if surface == "EYE" else (0.0, 0.0, 4.0)
         assert moment == pytest.approx(across, abs=1e-9), surface
+
+
+def test_keys_change_the_lug_of_both_ears_or_refuse() -> None:
+    """A change of one ear's clearance alone took all else of its lug away, and eyes that sizes
+    widen ended in a traceback.
+    """
+    alike = pinstress.study_from(STUDY.replace("FORK = {}", "FORK = { outer_diameter = 44 }"))
+    clearance = "lug.FAR.clearance"
+    with pytest.raises(InputError, match="that of FORK, whose keys change both") as error:
+        pinstress.changed_study(alike, {f"pin.P.{clearance}": 0.1})
+    assert error.value.code == "lug-of-both-ears"
+    thicker = pinstress.changed_study(alike, {"pin.P.profile[6].diameter": 40})
+    assert wider_eyes(alike, thicker, "P") == pytest.approx({"FORK": 0.060})
+    (task,) = pinstress.prepare(alike).tasks
+    found = {x.of_joint.key: x.of_joint.changed for x in joint_parameters(alike, task)}
+    assert clearance not in found
+    _, _, lugs = found["lug.FORK.clearance"](1e-4)
+    assert {x.connection for x in lugs if x.clearance == 1e-4} == {"FORK", "FAR"}
+    own = pinstress.study_from(f"{STUDY}\n[pin.P.lug.FAR]\nouter_diameter = 50\n")
+    changed = pinstress.changed_study(own, {f"pin.P.{clearance}": 0.1}).table.pin["P"].lug["FAR"]
+    assert (changed.outer_diameter, changed.clearance) == pytest.approx((0.05, 1e-4))
+
+
+TRUSS = """
+[mechanism]
+gravity = [0, 0]
+[mechanism.joint.A]
+at = [-300, 0]
+fixed_in = "ground"
+z = 25
+connections = { AP = "left" }
+[mechanism.joint.B]
+at = [300, 0]
+fixed_in = "ground"
+z = 25
+connections = { BP = "right" }
+[mechanism.joint.P]
+at = [0, 400]
+z = 0
+connections = { FORK = "left", EYE = "right" }
+[mechanism.body.left]
+mass = 0
+inertia = 0
+[mechanism.body.right]
+mass = 0
+inertia = 0
+[case.rest]
+kind = "static"
+apply = [{ body = "right", at = "P", force = [0, -20000] }]
+"""
+
+
+def test_a_clevis_lies_amid_its_ears_in_a_linkage() -> None:
+    """A fork about an eye: nothing acts out of the plane of both, 25 mm from the pin's start."""
+    pin, analysis = STUDY.split("[case.pull]")[0], STUDY[STUDY.index("[analysis]") :]
+    study = pinstress.study_from(pin + TRUSS + analysis)
+    reactions = all_loads(study, ["rest"])["rest"].reactions
+    assert reactions.forces[..., 2] == pytest.approx(np.zeros((1, 4)), abs=1e-9)
+    assert reactions.moments == pytest.approx(np.zeros((1, 4, 3)), abs=1e-9)
 
 
 def test_the_other_ear_is_alike_unless_it_is_stated() -> None:

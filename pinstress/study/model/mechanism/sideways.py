@@ -12,6 +12,7 @@ from loads.space.out_of_plane import Links, Offsets, OutOfPlane, SideLoad, varia
 from loads.space.sharing import STIFFNESS_RATIO
 from loads.space.stiffness import LinkStiffness, flat_link, round_link
 from loads.space.straight import straight
+from pinstress.study.model.clevis import middle_of
 from pinstress.study.model.mechanism.drives import plane_of
 from pinstress.study.model.pins import pin
 from pinstress.study.reading.file import Study
@@ -84,8 +85,8 @@ def sideways(
 def _offsets(study: Study, mechanism: Linkage) -> tuple[Offsets, str]:
     """Return where links lie along z, and in words where nothing states that.
 
-    Links lie at the middles of their bands on the pins, and a body at the clamps of a pin that it
-    carries. Pins lie where their z says, others so that links are straight.
+    Links lie at the middles of their bands on the pins, a clevis amid its ears, and a body at the
+    clamps of a pin that it carries. Pins lie where their z says, others so that links are straight.
     """
     stated, middles, roots = dict[str, float](), dict[str, float](), dict[str, float]()
     for name, joint in plane_of(study).joint.items():
@@ -94,7 +95,7 @@ def _offsets(study: Study, mechanism: Linkage) -> tuple[Offsets, str]:
         if name in study.table.pin:
             shape = pin(study, name)
             on = set(joint.connections) & set(shape.connections)
-            middles |= {c: shape.band(c).middle for c in on}
+            middles |= {c: middle_of(c, shape, study.table.pin[name].ears) for c in on}
             if clamps := _clamps(shape, study.table.pin[name].clamp):
                 roots[name] = sum(clamps) / len(clamps)
     at, askew = straight(mechanism, middles, stated, roots)

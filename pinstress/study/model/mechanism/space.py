@@ -27,6 +27,7 @@ from loads.space.linkage import (
     Vector,
 )
 from pinbase.arrays import Floats
+from pinstress.study.model.clevis import middle_of
 from pinstress.study.model.mechanism.drives import mechanism_of
 from pinstress.study.model.mechanism.masses import STANDARD_GRAVITY, friction_circle, pin_mass
 from pinstress.study.model.pins import pin
@@ -180,8 +181,9 @@ def _bands(study: Study, name: str, table: SpaceJointTable) -> dict[str, float]:
             f"mechanism.joint.{name}.z: may be the start of any of the pins {which}",
             code="ambiguous-pin",
         )
+    ears = {c: ear for x in shapes for c, ear in study.table.pin[x.name].ears.items()}
     return {
-        c: table.z + sum(x.band(c).middle for x in shapes if c in x.connections)
+        c: table.z + sum(middle_of(c, x, ears) for x in shapes if c in x.connections)
         for c in table.connections
     }
 

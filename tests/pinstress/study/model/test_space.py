@@ -274,20 +274,27 @@ def test_mistakes_are_told_at_their_keys(
     assert re.search(rf"study\.toml:\d+: {re.escape(key)}", told)
 
 
-def test_moments_of_links_are_about_the_middles_of_their_bands(tmp_path: Path) -> None:
-    """The wrench at D with the band 40 mm out on the pin is that at the joint's point, moved."""
-    pin = """
+@each(
+    "bands",
+    [
+        '{ length = 0.01, diameter = 0.02 }, { length = 0.02, diameter = 0.02, connection = "D1" }',
+        '{ length = 0.01, diameter = 0.02, connection = "D1" }, { length = 0.02, diameter = 0.02 },'
+        ' { length = 0.01, diameter = 0.02, name = "FAR", ear_of = "D1" }',
+    ],
+)
+def test_moments_of_links_are_about_the_middles_of_their_bands(tmp_path: Path, bands: str) -> None:
+    """The wrench at D with the band 40 mm out on the pin is that at the joint's point, moved; so
+    is that of a clevis with its ears about this place.
+    """
+    pin = f"""
 [material.steel]
 youngs_modulus = "210 GPa"
 poisson_ratio = 0.3
 [pin.D]
 material = "steel"
 clamp = ["start"]
-profile = [
-  { length = 0.03, diameter = 0.02 },
-  { length = 0.02, diameter = 0.02, connection = "D1" },
-]
-"""  # fmt: skip
+profile = [{{ length = 0.02, diameter = 0.02 }}, {bands}]
+"""
     here = solved(tmp_path, RSSR + pin)["rest"].reactions
     there = solved(tmp_path, edited(("axis = [1, 0, 0]", "axis = [1, 0, 0]\nz = 0.01")) + pin)
     moved = there["rest"].reactions
