@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
 from assess.work import Work, WorkQuantity
 from pinbase.dimensions import Length, Time
+from pinbase.keys import key_part
 
 Kind = Literal["hand", "clause", "model", "collapse", "fatigue", "contact"]
 Level = Literal["limit", "ultimate"]
@@ -20,7 +20,6 @@ COMPARISON_SUFFIX = "for comparison"
 FORMULA_CHECKS, CLAMPED_LUG_PREFIX = "checks by formula", "lug of "
 OMITS_CUTS = "Not covered: the cuts of the pin."  # by a check by formula
 CUTS_NEEDED = "the stress of sections and bands with the cuts of the pin, by hand"  # instead of it
-BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")  # of TOML
 
 
 @dataclass(frozen=True)
@@ -168,5 +167,4 @@ def strength_key(material: str, which: str) -> str:
 
 def material_key(material: str, key: str) -> str:
     """Return a key of a material as a study writes it, quoted where the name needs that."""
-    name = material if BARE_KEY.fullmatch(material) else f'"{material}"'
-    return f"material.{name}.{key}"
+    return f"material.{key_part(material)}.{key}"

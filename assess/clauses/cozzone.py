@@ -22,6 +22,7 @@ from assess.work import Work, work
 from fea.beam.round_section import Circle
 from fea.core.material import Material
 from geometry import ArgumentError
+from pinbase.keys import key_part
 
 YIELD_OFFSET = 0.002  # plastic strain at the yield strength
 
@@ -82,7 +83,7 @@ def bending_strength(s: Situation, section: Circle) -> Work | list[str]:
         )  # fmt: skip
     if m.ultimate_strain is None:
         instead = material_key(m.name, "ultimate_strain")
-        return [f"pin.{s.pin.name}.bending_factor (or {instead}, for Cozzone's)"]
+        return [f"pin.{key_part(s.pin.name)}.bending_factor (or {instead}, for Cozzone's)"]
     if m.yield_strength is None:
         return [strength_key(m.name, "yield")]
     return cozzone_strength(m, section, m.ultimate_strain)

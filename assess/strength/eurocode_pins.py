@@ -34,6 +34,7 @@ from assess.situation import SectionForces, Situation
 from assess.work import Work, scaled, wider, work
 from fea.beam.round_section import Circle
 from pinbase.arrays import Floats
+from pinbase.keys import key_part
 
 GAMMA_M0, GAMMA_M2, GAMMA_M6_SER = 1.0, 1.25, 1.0  # recommended partial factors; 2.2 of the same
 
@@ -170,7 +171,7 @@ def eurocode_contact_replaceable(text: CheckText, s: Situation) -> list[Margin]:
     lugs = [s.lug(name) for name in s.loads.surfaces]
     loose = [k for k, lug in enumerate(lugs) if lug is not None and lug.loosest > 0.0]
     if not loose:
-        return [text.lacks(s, f"a clearance in pin.{s.pin.name}.lug")]
+        return [text.lacks(s, f"a clearance in pin.{key_part(s.pin.name)}.lug")]
     holes = [_hole(s, s.loads.surfaces[k]) for k in loose]
     at = PinInHole(*(np.array(sizes) for sizes in zip(*holes, strict=True)))
     stress = contact_stress(s.across[:, loose], at)

@@ -25,6 +25,7 @@ import numpy as np
 from fea.core.pin_loads import PinLoads
 from geometry import PinLike
 from pinbase.arrays import Floats
+from pinbase.keys import key_part
 
 # Both limits are chosen by judgement, as parts of the largest force or torque.
 MIN_WARNED_IMBALANCE = 0.01  # less is round-off of numbers that were typed
@@ -147,7 +148,7 @@ def _over(left: Floats, scale: float, least: float) -> Floats:
 def _refusal(pin: PinLike, shares: tuple[float, ...], carried: Carried) -> tuple[str | None, str]:
     """Why a pin with these relative imbalances is not solved, and the code of the refusal."""
     force, couple, torque = shares
-    name = f"pin.{pin.name}"
+    name = f"pin.{key_part(pin.name)}"
     loose, react = "the pin is not clamped and its loads are not in equilibrium: ", "bands react"
     clamp = f"name its clamped surfaces in {name}.clamp"
     if carried.lugs:
@@ -183,10 +184,13 @@ def _structure(pin: PinLike) -> str:
     """The advice to let a structure hold a pin, by its named segments on which no link bears."""
     segments = () if pin.profile is None else pin.profile.segments
     idle = [s.name for s in segments if s.name and s.name not in pin.connections]
-    lugs = ", ".join(f"pin.{pin.name}.lug.{name}" for name in idle)
+    lugs = ", ".join(f"pin.{key_part(pin.name)}.lug.{key_part(name)}" for name in idle)
     if lugs:
         return f"add a lug for each segment that a structure holds: {lugs}"
-    return f"name a segment that a structure holds, and give it a lug (pin.{pin.name}.lug.NAME)"
+    return (
+        f"name a segment that a structure holds, and give it a lug "
+        f"(pin.{key_part(pin.name)}.lug.NAME)"
+    )
 
 
 def balancing_forces(pin: PinLike, loads: PinLoads, instant: int) -> dict[str, Floats] | None:

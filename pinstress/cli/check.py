@@ -284,7 +284,7 @@ def _words(study: Study, name: str, loads: CaseLoads) -> str:
     case, reactions = study.table.case[name], loads.reactions
     if isinstance(case, GivenCase):
         many = "one instant"
-        if reactions.times is not None:
+        if reactions.times is not None and len(reactions) > 1:
             jumps = ", ".join(f"{t:g} s" for t in jump_times(reactions.times)[:MAX_SHOWN_JUMPS])
             many = f"{len(reactions)} instants" + f", jump at t = {jumps}" * bool(jumps)
         return f"given, {many}, connections {', '.join(reactions.connections)}"

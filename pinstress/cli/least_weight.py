@@ -9,6 +9,7 @@ from pathlib import Path
 
 import click
 
+from pinbase.keys import key_part
 from pinbase.processes.pool import processes
 from pinstress.cli.new_file import write_new
 from pinstress.cli.run import console, progress_bar
@@ -26,7 +27,6 @@ from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.pins import weight
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
-from pinstress.study.reading.in_python import key_part
 from reports.data.decision import low_factor
 from reports.format.numbers import DASH, short
 from reports.format.ranges import factor_range

@@ -13,10 +13,10 @@ NEAR_STEP = 0.1  # of the diameter: what is nearer to a change of diameter lies 
 
 def action(row: PinResult) -> str:
     """Return the internal force that makes most of the stress of the governing section; empty for a
-    pin without sections.
+    pin without sections, or in which no load acts.
     """
     section = row.places.section if row.places else None
-    if section is None:
+    if section is None or not section.max_von_mises:
         return ""
     if section.torque > max(section.bending_moment, 0.0) and section.torque > 0.0:
         return "torsion"

@@ -14,7 +14,14 @@ from reports.data.dependence import (
 from reports.data.overview import GOOD, PinLine
 from reports.data.results import Results
 from reports.data.row import Dependence, PinResult, Units
-from reports.data.unknowns import NO_SPREAD, Unknown, decided_by, factor_spread, without_range
+from reports.data.unknowns import (
+    NO_SPREAD,
+    Owner,
+    Unknown,
+    decided_by,
+    factor_spread,
+    without_range,
+)
 from reports.format.numbers import DASH, engineering, short, threshold
 from reports.format.ranges import factor_text
 from reports.format.units import unit_name
@@ -117,7 +124,7 @@ def measure_first(unknown: Sequence[Unknown], lines: Sequence[PinLine] = ()) -> 
         return []
     if deciding := decided_by(unknown):
         owner, pins = next(iter(deciding.items()))
-        return [f"Measure first: {MEASURED[owner]} ({names(pins)})."]
+        return [f"Measure first: {_measured(owner, pins, unknown)} ({names(pins)})."]
     first = matters[0]
     row, value = first.largest
     low, high = (factor_text(end, row.required or 1.0) for end in (value.low, value.high))
@@ -127,6 +134,17 @@ def measure_first(unknown: Sequence[Unknown], lines: Sequence[PinLine] = ()) -> 
     if others:
         nothing = f"Checks besides yield depend on what is open ({names(others)})"
     return [f"{nothing}; {first.what} matters most (factor of {row.pin} {low} to {high})."]
+
+
+def _measured(owner: Owner, pins: Sequence[str], unknown: Sequence[Unknown]) -> str:
+    """Return what to measure of an owner: of a joint the values that alone decide all of its pins,
+    if they do, since it is not one measurement.
+    """
+    of_joint = [x for x in unknown if owner == "joint" and x.rows[0][1].owner == owner]
+    deciding = {x.what: {row.pin for row, _ in x.flipped} for x in of_joint if x.flipped}
+    if set(pins) <= set[str]().union(*deciding.values()):
+        return names(list(deciding))
+    return MEASURED[owner]
 
 
 def flips_words(unknown: Unknown, units: Units, lines: Sequence[PinLine] = ()) -> str:

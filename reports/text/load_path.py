@@ -84,6 +84,8 @@ def _instant(skeleton: Skeleton, row: PinResult) -> int:
 
 def _on_one_pin(row: PinResult, units: Units) -> str:
     load = max(row.loads, key=_size)
+    if not _size(load):
+        return ""  # as on an idle press fit
     return (
         f"The largest force on pin {row.pin} is {engineering(_size(load), 3)} {units.force}, at "
         f"{load.connection} ({row.case})."

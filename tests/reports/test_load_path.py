@@ -7,12 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fea.core.places import Places, SectionPlace, SurfacePlace
 from reports.data.motion import AppliedForce
 from reports.data.results import Results
 from reports.data.row import GoverningLoad, PinResult
 from reports.data.skeleton import Skeleton
+from reports.format.place_words import action
 from reports.text.load_path import load_path
-from tests.support.results.rows import row_with
+from tests.support.results.rows import row_with, with_values
 
 # Connections: name, body, joint. The load on the wheel goes J–E–A; the side link EF takes little.
 CONNECTIONS = (
@@ -75,3 +77,13 @@ def test_a_path_that_does_not_reach_the_frame_is_none(landing: Results) -> None:
 def test_a_single_pin_has_its_largest_force(landing: Results) -> None:
     text = load_path(landing, rows()[:1])
     assert text == f"The largest force on pin E is 196 {landing.units.force}, at E3 (landing)."
+
+
+def test_a_pin_on_which_nothing_acts_has_no_largest_force(landing: Results) -> None:
+    """An idle press fit had one of 0 N, and bending that dominates it."""
+    row = rows()[0]
+    idle = replace(row, loads=tuple(replace(x, force=np.zeros(3)) for x in row.loads))
+    assert load_path(landing, [idle]) == ""
+    section = SectionPlace(0.0, 0.0, "converged", 0.0, None, 0.0, 0.0, 0.0, 0.0)
+    surface = SurfacePlace(1e6, 1e4, "converged", (0.0, 0.0, 0.0), None)
+    assert action(with_values(idle, places=Places("surface", surface, section))) == ""

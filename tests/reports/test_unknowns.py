@@ -153,6 +153,17 @@ def test_what_flips_most_pins_comes_first_then_what_matters_most() -> None:
     assert nothing.startswith("Nothing open changes an outcome alone; velocity change matters most")
 
 
+def test_what_alone_decides_of_a_joint_is_to_be_measured() -> None:
+    """All of a joint was, where its tilt decides."""
+    tilts = unknowns([pin(1.7, (0.9, 1.3))])
+    assert measure_first(tilts) == ["Measure first: tilt (A)."]
+    (over,) = pin(2.6, (0.9, 1.3), ("rectangular",)).depends_on
+    together = replace(pin(1.7, (0.9, 1.1)), depends_on=(replace(over, over="joint"),))
+    assert measure_first(unknowns([together])) == [
+        "Measure first: clearance and stiffness of the lugs (A)."
+    ]
+
+
 def test_a_row_that_may_lose_all_its_stress_hides_no_other() -> None:
     """As an idle press fit without interference does: its factor has no upper end."""
     rows = [pin(9.0, (0.9, 1.3)), with_values(pin(8.0, (0.0, 1.0)), pin="idle")]

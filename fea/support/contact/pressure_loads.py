@@ -22,6 +22,8 @@ from geometry import Pin
 
 MODE_TOLERANCE = 2e-3  # of the largest amplitude: what a pattern must add to any instant's
 ROUGH_MODE_TOLERANCE = 3e-2  # the same for instants that cannot govern
+# Of the largest even pressure: a smaller uneven part is round-off of a press fit without load.
+EVEN_PRESSURE_ROUND_OFF = 1e-13
 
 
 @dataclass(frozen=True)
@@ -160,12 +162,14 @@ class PressureModes:
 
 def resultants(pin: Pin, rings: tuple[str, ...], waves: Floats, links: PinLoads) -> PinLoads:
     """The resultants of pressures with harmonics (N + 1, T, R, 2) Pa, and the axial loads of the
-    links.
+    links; without their round-off where only fits press.
     """
     axial = others_along(pin, rings, links)
     area = np.array([pin.band(name).area for name in rings])
     if len(waves) > 1:
-        axial.forces[:, : len(rings), :2] = -0.5 * waves[1] * area[:, None]
+        even, across = (np.abs(x).max(axis=(1, 2), initial=0.0) for x in waves[:2])
+        loaded = (across > EVEN_PRESSURE_ROUND_OFF * even)[:, None, None]
+        axial.forces[:, : len(rings), :2] = np.where(loaded, -0.5 * waves[1] * area[:, None], 0.0)
     return axial
 
 

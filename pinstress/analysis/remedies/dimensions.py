@@ -8,9 +8,9 @@ from itertools import groupby
 
 from geometry import Pin, PinLike, body_of_revolution
 from geometry.shape.dimensions import KEY_JOINT, Dimension, dimensions
+from pinbase.keys import key_part
 from pinstress.study.model.pins import by_corners
 from pinstress.study.reading.file import Study
-from pinstress.study.reading.in_python import key_part
 from pinstress.study.schema.pins import PinTable
 
 TableChange = Callable[[PinTable, float], PinTable]

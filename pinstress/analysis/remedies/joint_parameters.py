@@ -12,12 +12,12 @@ from typing import Any
 from assess.derivatives.in_lugs import Joint, JointParameter
 from geometry import body_of_revolution
 from geometry.shape.dimensions import Dimension
+from pinbase.keys import key_part
 from pinstress.analysis.remedies.dimensions import dimensions_of
 from pinstress.study.model.lugs import known_lugs
 from pinstress.study.model.pins import material
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
-from pinstress.study.reading.in_python import key_part
 from pinstress.study.schema.lugs import LugTable
 
 # Of the pin's radius: what steps of a clearance are parts of, as it may be none

@@ -33,10 +33,10 @@ from geometry import body_of_revolution
 from geometry.mesh.gmsh_session import MeshError
 from geometry.shape.dimensions import Dimension
 from pinbase.arrays import Floats
+from pinbase.keys import key_part
 from pinstress.analysis.remedies.dimensions import dimensions_of
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
-from pinstress.study.reading.in_python import key_part
 from reports.data.sensitivities import PinSensitivities, Sensitivity
 
 if TYPE_CHECKING:

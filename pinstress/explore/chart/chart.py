@@ -16,6 +16,7 @@ from fea.solve.solve import solve_in_lugs, solve_pin
 from fea.support.support import PinProblem, Solution
 from geometry import body_of_revolution
 from geometry.mesh.elements import Element
+from pinbase.keys import key_part
 from pinbase.processes.pool import Progress
 from pinstress.analysis.plan import all_loads
 from pinstress.explore.chart.in_lugs import chosen_in_lugs, climb_in_lugs, contact_reference
@@ -111,7 +112,7 @@ def _require_stress(study: Study, peak: Maximum) -> None:
     if not peak.max_von_mises:
         why = "its loads cause no stress" if peak.verdict == "converged" else peak.note
         text = f"pin {peak.pin}, case {peak.case}: there is nothing to chart: {why}"
-        raise study.error(text, at=f"pin.{peak.pin}", code="nothing-to-chart")
+        raise study.error(text, at=f"pin.{key_part(peak.pin)}", code="nothing-to-chart")
 
 
 def _plan_in_lugs(study: Study, task: Task, requirement: Requirement) -> ChartPlan:
@@ -121,7 +122,7 @@ def _plan_in_lugs(study: Study, task: Task, requirement: Requirement) -> ChartPl
         raise study.error(
             f"pin {task.pin.name} has cuts and is held by lugs; charts of contact are of pins "
             'without cuts: remove them, or set analysis.joints = "prescribed"',
-            at=f"pin.{task.pin.name}",
+            at=f"pin.{key_part(task.pin.name)}",
             code="not-axisymmetric",
         )
     given = PinProblem(pin, task.material, task.lugs, task.loads, task.between)

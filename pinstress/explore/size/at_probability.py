@@ -16,6 +16,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import ndtri
 
+from pinbase.keys import key_part
 from pinbase.processes.pool import Progress
 from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE
 from pinstress.explore.reliability.designs import SolvedDesigns, random_numbers
@@ -55,10 +56,11 @@ def require_laws(study: Study, aim: WeightGoal, pins: Iterable[str] | None) -> N
         table, *inner = parameter.number.path
         if table != "pin" or inner[0] not in chosen:
             continue
-        kind = kind_of(parameter.key.partition(f"pin.{inner[0]}.")[2])
+        kind = kind_of(parameter.key.partition(f"pin.{key_part(inner[0])}.")[2])
         if kind in aim.vary and vary.parameters[parameter.key].tolerance is None:
             raise study.error(
-                f"vary.parameters.{parameter.key}: its law stays where it is when the dimension "
+                f"vary.parameters.{key_part(parameter.key)}: its law stays where it is "
+                "when the dimension "
                 "changes; give it a tolerance, which moves with it, or leave its kind out of "
                 "--vary",
                 code="law-of-a-dimension",

@@ -10,6 +10,7 @@ from fea.core.places import Place
 from fea.support.support import Solution
 from geometry.shape.dimensions import Dimension
 from pinbase.arrays import Floats
+from pinbase.keys import key_part
 from pinstress.analysis.remedies.joint_parameters import joint_parameters
 from pinstress.analysis.remedies.sensitivities import differentiated_in_lugs
 from pinstress.explore.size.scaled_study import hole_in_eye
@@ -43,7 +44,7 @@ def by_contact(
     keys, name = [d.key for d in dimensions], task.pin.name
     old, now = (x.table.pin[name].lug for x in (before, study))
     grown = {at for at in now if now[at].outer_diameter != old[at].outer_diameter}
-    eyes = {at: f"lug.{at}.outer_diameter" for at in grown}
+    eyes = {at: f"lug.{key_part(at)}.outer_diameter" for at in grown}
     wanted = {*keys, *eyes.values()}
     lengths = [x.of_joint for x in joint_parameters(study, task) if x.of_joint.key in wanted]
     derivatives = differentiated_in_lugs(joined, task, lengths, alone=True, place=place)

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from pinbase.errors import ArgumentError
+from pinbase.keys import key_part
 from pinstress.study.model.lugs import known_lugs
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import Study, raw_study, with_value
@@ -243,7 +244,9 @@ def _path(study: Study, raw: Any, key: str) -> Path:
             said = f"[{part + 1}]" if isinstance(part, int) else as_text(part)
             meant = nearest(part, here) if isinstance(here, Mapping) else None
             pins = raw.get("pin", {}).items() if not path and isinstance(part, str) else ()
-            meant = next((f"pin.{name}.{key}" for name, pin in pins if _has(pin, part)), meant)
+            meant = next(
+                (f"pin.{key_part(name)}.{key}" for name, pin in pins if _has(pin, part)), meant
+            )
             hint = f"did you mean {meant!r}?" if meant else "write it in the study"
             raise _no_number(f"the study has no {said} there; {hint}")
         path.append(part)

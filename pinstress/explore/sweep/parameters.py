@@ -8,6 +8,7 @@ from functools import partial
 from typing import Any
 
 from pinbase.errors import ArgumentError
+from pinbase.keys import key_part
 from pinstress.explore.sweep.fits import limits_of
 from pinstress.explore.sweep.laws import (
     Floats,
@@ -110,7 +111,8 @@ def require_laws(study: Study) -> None:
     for key, table in study.table.vary.parameters.items() if study.table.vary else ():
         if table.from_ is not None:
             raise study.error(
-                f"vary.parameters.{key}: from and to say between what the number lies, not how "
+                f"vary.parameters.{key_part(key)}: from and to say between what the "
+                "number lies, not how "
                 "likely its values are; reliability needs a law, such as normal = [mean, "
                 "deviation], or uniform = [least, largest] if all are equally likely",
                 code="no-law",
@@ -123,7 +125,8 @@ def _require_different(study: Study, parameters: Iterable[Parameter]) -> None:
         other = known.setdefault(path, parameter.key)
         if other != parameter.key:
             raise study.error(
-                f"vary.parameters.{parameter.key}: names the same number as {as_text(other)}; "
+                f"vary.parameters.{key_part(parameter.key)}: names the same number as "
+                f"{as_text(other)}; "
                 "give one of them",
                 code="duplicate-parameter",
             )
@@ -140,7 +143,8 @@ def _require_grid(study: Study, parameters: Iterable[Parameter]) -> None:
     for parameter in parameters:
         if parameter.steps is None:
             raise study.error(
-                f"vary.parameters.{parameter.key}: a grid needs steps, the number of values; or "
+                f"vary.parameters.{key_part(parameter.key)}: a grid needs steps, the "
+                "number of values; or "
                 'choose another sample, such as sample = "sobol"',
                 code="missing-steps",
             )
@@ -156,7 +160,7 @@ def _require_grid(study: Study, parameters: Iterable[Parameter]) -> None:
 def _example(study: Study) -> str:
     for name, pin in study.table.pin.items():
         if pin.profile:
-            return f'"pin.{name}.profile[1].diameter"'
+            return key_part(f"pin.{key_part(name)}.profile[1].diameter")
     return '"analysis.tolerance"'
 
 
@@ -165,7 +169,7 @@ def _parameter(study: Study, key: str, table: ParameterTable) -> Parameter:
         number = number_at(study, key)
         law = _law(study.system, number, table)
     except ArgumentError as error:
-        raise study.error(f"vary.parameters.{key}: {error}", code=error.code) from None
+        raise study.error(f"vary.parameters.{key_part(key)}: {error}", code=error.code) from None
     return Parameter(number, law, table.steps, table.tolerance or "")
 
 

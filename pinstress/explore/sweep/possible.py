@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from pinbase.keys import key_part
 from pinstress.explore.sweep.correlations import correlations_of, root_of
 from pinstress.explore.sweep.evaluate import Evaluator
 from pinstress.explore.sweep.laws import Floats, Triangular, Uniform
@@ -69,11 +70,11 @@ def impossible_designs(
 def _warning(cause: Cause, count: int, parameters: Sequence[Parameter]) -> str:
     many = f"{cause.designs} of {count} designs tried"
     if not cause.ends:
-        only = f".parameters.{parameters[0].key}" if len(parameters) == 1 else ""
+        only = f".parameters.{key_part(parameters[0].key)}" if len(parameters) == 1 else ""
         return f"vary{only}: {many} cannot be built: {cause.reason}"
     (first, *others), values = cause.ends, cause.ends
-    where = f"vary.parameters.{first}: impossible at {' and '.join(values[first])}"
-    where += "".join(f", {key} at {' and '.join(values[key])}" for key in others)
+    where = f"vary.parameters.{key_part(first)}: impossible at {' and '.join(values[first])}"
+    where += "".join(f", {key_part(key)} at {' and '.join(values[key])}" for key in others)
     also = f" and in {many}" if cause.designs else ""
     return f"{where}{also}: {cause.reason}"
 
@@ -105,7 +106,8 @@ def tried(study: Study, evaluator: Evaluator, values: Floats, causes: Causes) ->
             raise study.error(
                 f"vary: in {len(reasons)} of {len(rows)} designs tried the given forces on pin "
                 f"{pin} in case {case} are out of equilibrium, since they vary one by one: "
-                f"{reasons[0]}; name the link that balances the others, as pin.{pin}.balance = "
+                f"{reasons[0]}; name the link that balances the others, as "
+                f"pin.{key_part(pin)}.balance = "
                 f'"{_closing(study, pin, case, evaluator)}", and remove its forces from the cases',
                 at="vary",
                 code="unbalanced-designs",

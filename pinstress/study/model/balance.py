@@ -10,6 +10,7 @@ from fea.core.pin_loads import PinLoads
 from fea.support.lugs.fit import balance_in_lugs
 from geometry import ArgumentError, GeometryError, PinLike
 from loads import TableError
+from pinbase.keys import key_part
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.given import given_forces
 from pinstress.study.model.pins import pin as pin_of
@@ -115,7 +116,7 @@ def _shared(study: Study, task: Task, case: PinLoads, balance: Balance) -> str:
     parts = [text for share, text in residuals if share > MIN_REPORTED_SHARE]
     where, left = "links" if task.lugs else "bands", " and ".join(parts)
     return (
-        f"case.{case.case}: the loads on pin {task.pin.name} are not quite in equilibrium"
+        f"case.{key_part(case.case)}: the loads on pin {task.pin.name} are not quite in equilibrium"
         f"{_when(case, balance)}: {left} {'are' if len(parts) > 1 else 'is'} left over, "
         f"which its {where} share{_closed_by(study, task.pin, case, balance)}"
     )

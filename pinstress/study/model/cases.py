@@ -32,6 +32,7 @@ from loads.landing import Landing, pushes
 from loads.landing import laws as landing_laws
 from loads.space.linkage import SpaceLinkage
 from pinbase.arrays import Floats
+from pinbase.keys import key_part
 from pinstress.study.model.given import given_forces
 from pinstress.study.model.ground import Grounded, grounded
 from pinstress.study.model.impulses import (
@@ -155,12 +156,12 @@ def case_loads(
             return _on_ground(study, name, case, mechanism, extremes)
         return _at_instant(study, name, case, mechanism)
     except TableError as error:
-        raise study.table_error(f"case.{name}.table", error) from None
+        raise study.table_error(f"case.{key_part(name)}.table", error) from None
     except MotionBlocked as error:
-        message = f"case.{name}: {error.message(_shown(study))}{fit_offer(study, error)}"
+        message = f"case.{key_part(name)}: {error.message(_shown(study))}{fit_offer(study, error)}"
         raise study.error(message, code=error.code) from None
     except LinkageError as error:
-        where = "" if str(error).startswith("case.") else f"case.{name}: "
+        where = "" if str(error).startswith("case.") else f"case.{key_part(name)}: "
         raise study.error(f"{where}{error}{fit_offer(study, error)}", code=error.code) from None
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from loads import Reactions, TableError, given_reactions, tabled_reactions
 from pinbase.errors import ArgumentError
+from pinbase.keys import key_part
 from pinstress.study.reading.case_tables import layout_of
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.references import closed_message
@@ -33,7 +34,7 @@ def _closed(study: Study, name: str, stated: Reactions) -> Reactions:
             continue
         if table.balance in others:
             raise TableError(
-                closed_message(f"case.{name}: connection {table.balance}", pin),
+                closed_message(f"case.{key_part(name)}: connection {table.balance}", pin),
                 "balances-the-others",
             )
         columns = [stated.connections.index(c) for c in others]

@@ -9,6 +9,7 @@ from itertools import groupby
 from fea.core.hardened import Hardened
 from fea.core.material import Material
 from geometry import Pin, PinLike
+from pinbase.keys import key_part
 from pinstress.study.model.pins import material
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.materials import HardenedTable
@@ -31,7 +32,7 @@ def pin_material(study: Study, pin: PinLike) -> Material:
             f"{key}: pin {pin.name} is not a body of revolution without holes, flats, slots or "
             "passages, whose stress by depth is known; give yield_strength, that of the core to "
             "be safe",
-            at=f"pin.{pin.name}",
+            at=f"pin.{key_part(pin.name)}",
             code="hardened-model",
         )
     hardened, bare = [], False
@@ -45,15 +46,16 @@ def pin_material(study: Study, pin: PinLike) -> Material:
     if bare and unhardened is None:
         raise study.error(
             f"{key}: the rest of pin {pin.name} has no yield strength; give "
-            f"material.{name}.yield_strength",
-            at=f"pin.{pin.name}",
+            f"material.{key_part(name)}.yield_strength",
+            at=f"pin.{key_part(pin.name)}",
             code="hardened-in-part",
         )
     if bare and made_of.strength_range is not None:
         raise study.error(
-            f"material.{name}.range.yield_strength: pin {pin.name} is hardened in part, and a "
+            f"material.{key_part(name)}.range.yield_strength: pin {pin.name} is hardened "
+            "in part, and a "
             "range is of the yield strength of a whole pin; give the lower end as yield_strength",
-            at=f"material.{name}.range",
+            at=f"material.{key_part(name)}.range",
             code="hardened-in-part",
         )
     weakest = min([case.core for case in hardened] + ([unhardened] if bare and unhardened else []))
@@ -69,11 +71,11 @@ def hardened_key(study: Study, pin: str) -> str | None:
     table = study.table.pin[pin]
     for i, segment in enumerate(table.profile or (), 1):
         if segment.hardened is not None:
-            return f"pin.{pin}.profile[{i}].hardened"
+            return f"pin.{key_part(pin)}.profile[{i}].hardened"
     if table.hardened is not None:
-        return f"pin.{pin}.hardened"
+        return f"pin.{key_part(pin)}.hardened"
     if study.table.material[table.material].hardened is not None:
-        return f"material.{table.material}.hardened"
+        return f"material.{key_part(table.material)}.hardened"
     return None
 
 
@@ -97,7 +99,8 @@ def require_strengths(study: Study, pins: Iterable[str]) -> None:
         require_no_hardened(study, name, "reliability")
         if study.table.material[material].yield_strength is None:
             raise study.error(
-                f"material.{material}: reliability needs its yield_strength, for the factors of "
+                f"material.{key_part(material)}: reliability needs its yield_strength, "
+                "for the factors of "
                 f"pin {name}",
                 code="no-strength",
             )
@@ -111,15 +114,15 @@ def hardened_reason(key: str) -> str:
 def _stretches(study: Study, pin: Pin) -> list[Stretch]:
     """Return the stretches of a pin from its start on, those that are hardened alike as one."""
     table = study.table.pin[pin.name]
-    everywhere, key = table.hardened, f"pin.{pin.name}.hardened"
+    everywhere, key = table.hardened, f"pin.{key_part(pin.name)}.hardened"
     if everywhere is None:
         everywhere, key = study.table.material[table.material].hardened, ""
-        key = f"material.{table.material}.hardened"
+        key = f"material.{key_part(table.material)}.hardened"
     if table.profile is None:
         return [(0.0, pin.length, everywhere, key)]
     ends = list(zip(pin.stations, pin.stations[1:], strict=False))
     of_each = [
-        (*at, segment.hardened or everywhere, f"pin.{pin.name}.profile[{i}].hardened"
+        (*at, segment.hardened or everywhere, f"pin.{key_part(pin.name)}.profile[{i}].hardened"
          if segment.hardened else key)
         for i, (at, segment) in enumerate(zip(ends, table.profile, strict=True), 1)
     ]  # fmt: skip

@@ -12,6 +12,7 @@ from loads import Linkage, Load, Motion, Reactions, impulse_force, motion_reacti
 from loads.forces.reactions import joined
 from loads.space.out_of_plane import SideLoad
 from pinbase.arrays import Floats
+from pinbase.keys import key_part
 from pinstress.study.model.mechanism.forces import load, springs
 from pinstress.study.model.mechanism.sideways import sideways
 from pinstress.study.reading.file import Study
@@ -106,7 +107,7 @@ def _load(
         force = _directed(impulse.direction, nominal if size is None else size)
     elif table.direction is not None:
         force = _directed(table.direction, 1.0)
-    return load(study, f"case.{name}.apply[{which + 1}]", table, force, mechanism)
+    return load(study, f"case.{key_part(name)}.apply[{which + 1}]", table, force, mechanism)
 
 
 def nominal_size(impulse: ImpulseTable) -> float:
@@ -154,7 +155,8 @@ def over_range(
         return None
     if len(ranged) > 1:
         raise study.error(
-            f"case.{name}: only one impulse of a case may have a range", code="several-ranges"
+            f"case.{key_part(name)}: only one impulse of a case may have a range",
+            code="several-ranges",
         )
     impulse = case.apply[ranged[0]].impulse
     assert impulse is not None

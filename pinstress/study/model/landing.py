@@ -25,6 +25,7 @@ from loads.landing import (
     travel,
 )
 from pinbase.errors import ArgumentError
+from pinbase.keys import key_part
 from pinstress.study.model.mechanism.drives import state
 from pinstress.study.model.mechanism.linkage import linkage
 from pinstress.study.model.mechanism.masses import STANDARD_GRAVITY
@@ -44,7 +45,7 @@ def place(study: Study, name: str, case: AtWheel, mechanism: Linkage) -> Touchdo
     try:
         up, aft = axes(mechanism, case.forward)
     except ArgumentError as error:
-        raise study.error(f"case.{name}: {error}", code=error.code) from None
+        raise study.error(f"case.{key_part(name)}: {error}", code=error.code) from None
     strut = getattr(case, "strut", None)
     number = None if strut is None else mechanism.driven.index(strut.drive)
     extended = tuple(value for value, _, _ in state(study, name, case, mechanism))
@@ -59,14 +60,14 @@ def drop(study: Study, name: str, case: DropCase, mechanism: Linkage) -> tuple[D
     where = place(study, name, case, mechanism)
     key = "case." + name
     try:
-        key = f"case.{name}.strut"
+        key = f"case.{key_part(name)}.strut"
         strut = None if case.strut is None else _strut(case.strut)
         rises: Telescopic | Levered = Telescopic()
         if case.strut is not None:
             rises = travel(mechanism, where, case.strut.stroke)
-        key = f"case.{name}.tyre"
+        key = f"case.{key_part(name)}.tyre"
         tyre = _tyre(case.tyre)
-        key = f"case.{name}"
+        key = f"case.{key_part(name)}"
         unsprung = case.unsprung or _unsprung(case, mechanism, where)
         return _drop(case, mechanism, strut, rises, tyre, unsprung), where
     except ArgumentError as error:
@@ -107,7 +108,8 @@ def unsprung_warnings(study: Study) -> list[str]:
             continue  # whoever needs the case says what is wrong with it
         if abs(case.unsprung - mass) > UNSPRUNG_MASS_TOLERANCE * mass:
             text = (
-                f"case.{name}.unsprung: {case.unsprung:.4g} kg is stated, but the mechanism's "
+                f"case.{key_part(name)}.unsprung: {case.unsprung:.4g} kg is stated, but "
+                "the mechanism's "
                 f"bodies move with the axle like {mass:.4g} kg; the stated mass is used for the "
                 "fall, the bodies' for the forces in the leg. Remove it to use that of the "
                 "mechanism, or correct the masses"
@@ -186,7 +188,7 @@ def fallen(study: Study, name: str, leg: Drop) -> Landing:
     try:
         return land(leg)
     except LandingError as error:
-        raise study.error(f"case.{name}: {error}", code=error.code) from None
+        raise study.error(f"case.{key_part(name)}: {error}", code=error.code) from None
 
 
 def drop_note(case: DropCase, leg: Drop) -> str:

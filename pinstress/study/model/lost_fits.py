@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from fea.support.records import LostFit
+from pinbase.keys import key_part
 from pinbase.rounding import rounded_up
 from pinstress.study.model.tasks import Task
 from pinstress.study.model.temperature import rise_of, temperature_words
@@ -37,7 +38,8 @@ def lost_fit_warnings(study: Study, todo: Iterable[Task]) -> list[str]:
     return [
         str(
             study.error(
-                f"case.{case.case}.temperature: pin {task.pin.name} is no longer pressed in at "
+                f"case.{key_part(case.case)}.temperature: pin {task.pin.name} is no "
+                "longer pressed in at "
                 f"{temperature_words(study, rise_of(study, case.case))}: its press fit is lost in "
                 f"{', '.join(x.where for x in lost)}; use an interference of more than "
                 f"{_longest(study, lost)}, or say what else retains the pin"

@@ -14,6 +14,7 @@ from fea.support.lugs.fit import beyond_foundations, fitted, on_structure, press
 from fea.support.lugs.lug import Bushing, Lug, LugRange, Shank
 from fea.support.lugs.thermal import at_temperature
 from geometry import ArgumentError, Band, Cut, Hole, Pin, PinLike, body_of_revolution
+from pinbase.keys import key_part
 from pinstress.study.model.pins import material
 from pinstress.study.model.temperature import at_case, band_radius, rise_of, temperature_words
 from pinstress.study.reading.file import Study
@@ -40,13 +41,13 @@ def lugs(
     table, joints = study.table.pin[pin.name], study.table.analysis.joints
     if joints == "prescribed" or (not table.lug and (joints == "auto" or clamps)):
         return ()
-    at = f"pin.{pin.name}" + ".lug" * bool(table.lug)
+    at = f"pin.{key_part(pin.name)}" + ".lug" * bool(table.lug)
     instead = 'or set analysis.joints = "prescribed"'
     if pin.cuts and (stated := [name for name, lug in table.lug.items() if lug.axial is not None]):
         raise study.error(
             f"pin {pin.name} has cuts, and its forces along the axis act evenly on the bands of "
             "its links: remove axial",
-            f"{at}.{stated[0]}.axial",
+            f"{at}.{key_part(stated[0])}.axial",
             "axial-of-cut-pin",
         )
     pin = _in_contact(study, pin, f"remove its lugs, {instead}")
@@ -81,7 +82,9 @@ def given_lugs(
     profile = pin.profile
     if not given or profile is None:
         return ()
-    every = holding or _fitting(study, profile, f"pin.{pin.name}.lug", case, in_contact=False)
+    every = holding or _fitting(
+        study, profile, f"pin.{key_part(pin.name)}.lug", case, in_contact=False
+    )
     return tuple(lug for lug in every if lug.connection in given)
 
 
@@ -101,14 +104,14 @@ def _fitting(
         try:
             out.append(_lug(study, pin, connection, _given(table, connection), made_of))
         except ArgumentError as error:
-            raise study.error(str(error), f"{at}.{connection}", error.code) from None
+            raise study.error(str(error), f"{at}.{key_part(connection)}", error.code) from None
     check = partial(_require_fit, study, pin, in_contact=in_contact)
     check(out, at)
     if not (rise := rise_of(study, case)):
         return tuple(out)
     hot = at_case(study, pin, out, str(case))
     shown = temperature_words(study, rise)
-    at = f"case.{case}.temperature"
+    at = f"case.{key_part(str(case))}.temperature"
     check(hot, at, f"{at}: pin {pin.name} at {shown}: ")
     return tuple(hot)
 
@@ -163,7 +166,7 @@ def _in_contact(study: Study, pin: PinLike, instead: str) -> Pin:
     Raises: InputError for another pin.
     """
     table, joints = study.table.pin[pin.name], study.table.analysis.joints
-    at = f"pin.{pin.name}" + ".lug" * bool(table.lug)
+    at = f"pin.{key_part(pin.name)}" + ".lug" * bool(table.lug)
     if pin.cuts and joints == "foundation":
         raise study.error(
             f"pin {pin.name} has cuts, which a beam on foundations leaves out; use "
@@ -312,7 +315,8 @@ def _bushing(
         if ends is None:
             return None, None
         raise ArgumentError(
-            f"{what}: range.interference is of a bushing; give lug.{connection}.bushing, or a "
+            f"{what}: range.interference is of a bushing; give "
+            f"lug.{key_part(connection)}.bushing, or a "
             "negative clearance where the pin itself is pressed in",
             "no-bushing",
         )

@@ -21,10 +21,10 @@ from geometry import (
 from geometry.imported.body_file import BodyFile
 from geometry.imported.recognise import NotTurnedError, RecognisedProfile
 from geometry.shape.drill import FLAT_TIP_ANGLE
+from pinbase.keys import key_part
 from pinstress.study.model.imported_pin import plain_vector, require_readable, turned_apart
 from pinstress.study.model.pins import METRES_PER_UNIT
 from pinstress.study.reading.errors import InputError
-from pinstress.study.reading.in_python import key_part
 from pinstress.study.schema.types import usable_name
 
 

@@ -21,6 +21,7 @@ from geometry.shape.drill import FLAT_TIP_ANGLE
 from geometry.shape.polyline import Bend, Stripe, pin_of_polyline, with_stripes
 from loads import on_disk
 from pinbase.errors import Place
+from pinbase.keys import key_part
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.pins import BottomTable, HoleTable, PassageTable, PinTable
@@ -71,9 +72,9 @@ def pin(study: Study, name: str) -> PinLike:
 
 def _clamps(study: Study, name: str) -> Iterator[tuple[str, str]]:
     """Yield all clamped surfaces of a pin, each after its key."""
-    clamps = {f"pin.{name}.clamp": study.table.pin[name].clamp}
+    clamps = {f"pin.{key_part(name)}.clamp": study.table.pin[name].clamp}
     for case, table in study.table.case.items():
-        clamps[f"case.{case}.clamp.{name}"] = table.clamp.get(name, [])
+        clamps[f"case.{key_part(case)}.clamp.{key_part(name)}"] = table.clamp.get(name, [])
     for key, surfaces in clamps.items():
         for i, surface in enumerate(surfaces, 1):
             yield f"{key}[{i}]", surface
@@ -83,14 +84,18 @@ def _key(name: str, p: PinTable, at: Place) -> str:
     """Return the key of the part of a pin that geometry names."""
     match at:
         case ("segment", int(i)):
-            return f"pin.{name}.profile[{i}]" if p.profile is not None else f"pin.{name}.meridian"
+            return (
+                f"pin.{key_part(name)}.profile[{i}]"
+                if p.profile is not None
+                else f"pin.{key_part(name)}.meridian"
+            )
         case ("key", str(key)):
-            return f"pin.{name}.{key}"
+            return f"pin.{key_part(name)}.{key}"
         case (str(kind), int(i)):
-            return f"pin.{name}.{kind}[{i}]"
+            return f"pin.{key_part(name)}.{kind}[{i}]"
         case ("band", str(band)):
-            return f"pin.{name}.band.{band}"
-    return f"pin.{name}" + ".geometry" * (p.geometry is not None)
+            return f"pin.{key_part(name)}.band.{key_part(band)}"
+    return f"pin.{key_part(name)}" + ".geometry" * (p.geometry is not None)
 
 
 def shape_notes(pin: PinLike) -> str:

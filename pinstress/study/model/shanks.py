@@ -6,6 +6,7 @@ import numpy as np
 
 from fea.lug.in_joint import ShankAngle
 from loads import GROUND, Dynamics, Joint
+from pinbase.keys import key_part
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.lugs import ShankTable
@@ -26,7 +27,7 @@ def shank_angles(study: Study, pin: str, case: CaseLoads) -> dict[str, ShankAngl
     for name, lug in table.lug.items():
         if lug.shank is None:
             continue
-        at = f"pin.{pin}.lug.{name}.shank"
+        at = f"pin.{key_part(pin)}.lug.{key_part(name)}.shank"
         if lug.shank.angle is not None:
             out[name] = ShankAngle(np.array([lug.shank.angle]))
         elif lug.shank.toward is not None and not isinstance(mechanism, MechanismTable):

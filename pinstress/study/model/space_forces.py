@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from loads.space.acting import MeasuredFactor, SpaceForce, SpaceSpring
 from loads.space.ground import GroundInertia, TurningGround
 from loads.space.linkage import SpaceLinkage, Vector
+from pinbase.keys import key_part
 from pinstress.study.model.impulses import nominal_size
 from pinstress.study.model.mechanism.forces import (
     angle_column,
@@ -104,7 +105,7 @@ def load_in_space(
     for key, value, direction in laws:
         law: ForceLawTable | None = getattr(table, key)
         if law is not None and direction is not None:
-            where = f"case.{case}.apply[{number + 1}].{key}"
+            where = f"case.{key_part(case)}.apply[{number + 1}].{key}"
             factor = _factor(study, where, law, value, (begin, end))
             one = along(direction, 1.0)
             force, couple = (one, NOTHING) if value == "force" else (NOTHING, one)

@@ -15,6 +15,7 @@ from fea.core.pin_loads import Distribution, Floats, PinLoads
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, PinLike
 from loads import Reactions
+from pinbase.keys import key_part
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.clevis import Ears, on_ears
 from pinstress.study.model.hardened import pin_material
@@ -161,7 +162,7 @@ def _task(
         applied = [c for c in here if c not in constrained]
         if not applied:
             raise study.error(
-                f"case.{case}: every load on pin {pin.name} is at a clamped band "
+                f"case.{key_part(case)}: every load on pin {pin.name} is at a clamped band "
                 f"({', '.join(here)}), so no load acts on it; clamp another surface",
                 code="not-loaded",
             )
@@ -284,7 +285,7 @@ def _require_model(study: Study, model: str, task: Task) -> None:
         raise study.error(
             f"pin {pin} is not a body of revolution, which the {model} model needs: use auto or "
             "solid",
-            at=f"pin.{pin}",
+            at=f"pin.{key_part(pin)}",
             code="not-of-revolution",
         )
     if not task.lugs:
@@ -295,7 +296,7 @@ def _require_model(study: Study, model: str, task: Task) -> None:
         raise study.error(
             f"pin {pin} is {how} its lugs, which requires the {fits} model: use auto or {fits}, "
             f'or analysis.joints = "prescribed" for the {model} model',
-            at=f"pin.{pin}",
+            at=f"pin.{key_part(pin)}",
             code="model-without-contact",
         )
 

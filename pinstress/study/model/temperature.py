@@ -8,6 +8,7 @@ from fea.support.lugs.fit import on_structure
 from fea.support.lugs.lug import Lug
 from fea.support.lugs.thermal import at_temperature, bushing_opening_rise
 from geometry import ArgumentError, Pin
+from pinbase.keys import key_part
 from pinstress.study.model.pins import material
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.shown import listed
@@ -43,7 +44,7 @@ def at_case(study: Study, pin: Pin, lugs: Iterable[Lug], case: str) -> list[Lug]
     loose at this temperature.
     """
     rise, made_of = rise_of(study, case), material(study, study.table.pin[pin.name].material)
-    at, out = f"case.{case}.temperature", []
+    at, out = f"case.{key_part(case)}.temperature", []
     for lug in lugs:
         try:
             hot = at_temperature(lug, made_of, band_radius(pin, lug), rise)
@@ -66,7 +67,8 @@ def _require_bushing(study: Study, pin: Pin, lug: Lug, case: str) -> None:
         return
     needed, unit = -bushing.outgrown / study.system.factor("length"), study.system.length
     raise study.error(
-        f"case.{case}.temperature: the bushing in lug {lug.connection} of pin {pin.name} is loose "
+        f"case.{key_part(case)}.temperature: the bushing in lug {lug.connection} of pin "
+        f"{pin.name} is loose "
         f"at {temperature_words(study, rise)}: its interference is used up at "
         f"{temperature_words(study, opens)}; it needs more than {needed:.3g} {unit}, or a material "
         "whose thermal_expansion is nearer to that of the lug",

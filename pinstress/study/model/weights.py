@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from pinbase.keys import key_part
 from pinstress.study.model.mechanism.masses import STANDARD_GRAVITY
 from pinstress.study.model.pins import pin, weight
 from pinstress.study.reading.errors import InputError
@@ -26,7 +27,11 @@ def weight_warnings(study: Study) -> list[str]:
     for name, joint in mechanism.joint.items():
         if joint.weight is not None:
             said = _idle(name, joint.fixed_in) or _differs(study, name, joint.weight, gravity)
-            warnings += [str(study.error(f"mechanism.joint.{name}.weight: {said}"))] if said else []
+            warnings += (
+                [str(study.error(f"mechanism.joint.{key_part(name)}.weight: {said}"))]
+                if said
+                else []
+            )
     return warnings
 
 

@@ -12,6 +12,7 @@ from pydantic import ValidationError
 
 from loads import TableError, table_cases
 from loads.landing import GROUND_RULES
+from pinbase.keys import key_part
 from pinstress.study.reading.case_tables import layout_of
 from pinstress.study.reading.damage import Damage, place_of
 from pinstress.study.reading.errors import InputError, Wrong
@@ -119,7 +120,7 @@ def _expanded(
     for section, case in table.case.items():
         if ANY_CASE not in section:
             continue
-        key = f"case.{section}"
+        key = f"case.{key_part(section)}"
         if section.count(ANY_CASE) > 1:
             wrong.append(Wrong(f"{key}: a name needs no second *", code="unusable-name"))
             continue
@@ -168,9 +169,9 @@ def _of_sections(references: Iterable[Wrong], sections: Mapping[str, str]) -> li
     named: dict[str, Wrong] = {}
     for wrong in references:
         for name, section in sections.items():
-            here = f"case.{name}"
+            here = f"case.{key_part(name)}"
             if wrong.message.startswith((f"{here}.", f"{here}:")):
-                message = f"case.{section}{wrong.message.removeprefix(here)}"
+                message = f"case.{key_part(section)}{wrong.message.removeprefix(here)}"
                 wrong = replace(wrong, message=message)
                 break
         named.setdefault(wrong.message, wrong)

@@ -13,6 +13,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
+from pinbase.keys import key_part
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.toml_lines import Place, said
 
@@ -197,11 +198,12 @@ def place_of(tree: Any, message: str) -> Place:
         if isinstance(node, dict):
             rest = rest.removeprefix(".")
             ends = (*".[: ", "")
-            names = [k for k in node if rest.startswith(k) and rest[len(k) :][:1] in ends]
+            said_names = {key_part(k): k for k in node}
+            names = [s for s in said_names if rest.startswith(s) and rest[len(s) :][:1] in ends]
             if not names:
                 return place
-            key = name = max(names, key=len)
-            rest = rest[len(name) :]
+            spelled = max(names, key=len)
+            key, rest = said_names[spelled], rest[len(spelled) :]
         elif isinstance(node, list) and (index := re.match(r"\[(\d+)\]", rest)):
             key, rest = int(index[1]) - 1, rest[index.end() :]
         elif isinstance(node, list) and len(node) == 1 and rest.startswith("."):

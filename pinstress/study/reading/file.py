@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from loads import MB, FileError, TableError, read_regular
+from pinbase.keys import key_part
 from pinstress.study.reading.content import system_of, table_of
 from pinstress.study.reading.counted_twice import counted_twice
 from pinstress.study.reading.damage import Damage
@@ -324,5 +325,7 @@ def unwrapped(node: Any, key: str, sourced: list[Sourced], long: list[Wrong]) ->
               f"is {MAX_KEY_LENGTH}", code="too-long")
         for k in node if len(k) > MAX_KEY_LENGTH
     ]  # fmt: skip
-    inner = {k: f"{key}.{k}" if key else k for k in node if len(k) <= MAX_KEY_LENGTH}
+    inner = {
+        k: f"{key}.{key_part(k)}" if key else key_part(k) for k in node if len(k) <= MAX_KEY_LENGTH
+    }
     return {k: unwrapped(node[k], place, sourced, long) for k, place in inner.items()}

@@ -5,6 +5,8 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Iterable
 
+from pinbase.keys import key_part
+
 
 def field_name(pin: str, case: str) -> str:
     """Return the name, without suffix, of the files written for a pin in a case."""
@@ -23,7 +25,7 @@ def same_files(pins: Iterable[str], cases: Iterable[str]) -> Iterable[str]:
                 yield f"{kind}.{name}: its files would replace those of {kind}.{other}; rename one"
     for pin in pins:
         for case in cases:
-            owner = f"pin.{pin} in case.{case}"
+            owner = f"pin.{key_part(pin)} in case.{key_part(case)}"
             other = owners.setdefault(_folded(field_name(pin, case)), owner)
             if other != owner:
                 yield f"{owner}: its files would replace those of {other}; rename one"

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from pinbase.errors import ArgumentError
+from pinbase.keys import key_part
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, parse_study, replaces_fit, unwrapped, with_value
 from pinstress.study.reading.materials import looked_up, with_materials
@@ -18,7 +19,6 @@ from pinstress.study.schema.shown import as_text
 KEY_PART_PATTERN = re.compile(r'(?:"([^"]*)"|([^.\["]+))((?:\[\d+\])*)(?:\.|$)')
 INDEX_PATTERN = re.compile(r"\[(\d+)\]")
 INDEX_RANGE_PATTERN = re.compile(r"\[(\d+)-(\d+)\]")  # neighbours that have a number in common
-PLAIN_NAME_PATTERN = re.compile(r"[A-Za-z0-9_-]+")  # that TOML needs no quotes for
 # Between keys of one dimension (geometry.shape.dimensions.KEY_JOINT), not within a name
 JOINT_PATTERN = re.compile(r" & (?=profile\[|meridian\[|bore_meridian\[|band\.)")
 PIN_PATTERN = re.compile(r'pin\.(?:"[^"]*"|[^.\["]+)\.')
@@ -92,11 +92,6 @@ def single_keys(key: str) -> Iterator[str]:
         )
     for index in range(first, last + 1):
         yield from single_keys(f"{key[: match.start()]}[{index}]{key[match.end() :]}")
-
-
-def key_part(name: str) -> str:
-    """Return a name as a key has it: in quotes where TOML needs them."""
-    return name if PLAIN_NAME_PATTERN.fullmatch(name) else f'"{name}"'
 
 
 def _singles(study: Study, key: str) -> Iterator[str]:
@@ -280,7 +275,11 @@ def _plain(value: Any, key: str) -> Any:
     Raises: InputError for others.
     """
     if isinstance(value, Mapping):
-        return {str(k): _plain(v, f"{key}.{k}") for k, v in value.items() if v is not None}
+        return {
+            str(k): _plain(v, f"{key}.{key_part(str(k))}")
+            for k, v in value.items()
+            if v is not None
+        }
     if isinstance(value, bool | int | float | str):
         return value
     if hasattr(value, "tolist"):  # of numpy

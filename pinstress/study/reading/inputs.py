@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from loads import MB, FileError, read_regular
+from pinbase.keys import key_part
 from pinstress.study.reading.file import MAX_PATH_LENGTH, Study, raw_study
-from pinstress.study.reading.in_python import key_part
 from pinstress.study.schema.shown import in_toml
 
 MAX_TABLE_SIZE = 256 * MB

@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterable, Iterator, Sized
 from typing import Any
 
+from pinbase.keys import key_part
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.schema.tables import StudyTable
 
@@ -34,7 +35,7 @@ def texts(node: Any, key: str = "") -> Iterator[tuple[str, str]]:
             yield from texts(item, f"{key}[{i}]")
     elif isinstance(node, dict):
         for name, item in node.items():
-            yield from texts(item, f"{key}.{name}" if key else name)
+            yield from texts(item, f"{key}.{key_part(name)}" if key else key_part(name))
 
 
 def control_characters(named_texts: Iterable[tuple[str, str]]) -> Iterator[Wrong]:
@@ -56,7 +57,7 @@ def too_many(table: StudyTable) -> Iterator[str]:
         diameters = [d for d in pin.diameters if d]
         if not diameters:
             continue
-        key = f"pin.{name}.{'meridian' if pin.profile is None else 'profile'}"
+        key = f"pin.{key_part(name)}.{'meridian' if pin.profile is None else 'profile'}"
         length = pin.meridian[-1][0] if pin.meridian else sum(s.length for s in pin.profile or ())
         slender = length / max(diameters)
         if slender > MAX_SLENDERNESS:
@@ -75,9 +76,9 @@ def _counted(table: StudyTable) -> Iterator[tuple[str, str, Sized, int]]:
     yield "case", "cases", table.case, MAX_CASES
     for name, pin in table.pin.items():
         for key, what in PIN_PARTS.items():
-            yield f"pin.{name}.{key}", what, getattr(pin, key) or (), MAX_PIN_PARTS
+            yield f"pin.{key_part(name)}.{key}", what, getattr(pin, key) or (), MAX_PIN_PARTS
     for name, case in table.case.items():
-        yield f"case.{name}.apply", "loads", getattr(case, "apply", ()), MAX_CASE_LOADS
+        yield f"case.{key_part(name)}.apply", "loads", getattr(case, "apply", ()), MAX_CASE_LOADS
     if (mechanism := table.mechanism) is not None:
         yield "mechanism.joint", "joints", mechanism.joint, MAX_BODIES
         yield "mechanism.body", "bodies", mechanism.body, MAX_BODIES

@@ -15,6 +15,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from loads import MB, FileError, read_regular
+from pinbase.keys import key_part
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.toml_text import read_toml
 from pinstress.study.reading.validation import explain
@@ -69,13 +70,16 @@ class StoredMaterial:
             except ValidationError as error:
                 first = explain(error)[0]
                 dot = "." if error.errors()[0]["loc"] else ": "
-                text = f"{self.file}: material.{self.name}{dot}{first.message}{first.hint()}"
+                text = (
+                    f"{self.file}: material.{key_part(self.name)}{dot}{first.message}{first.hint()}"
+                )
                 raise InputError(text, code=first.code) from None
         one, other = tables
         bare = [key for key in self.values if getattr(one, key) != getattr(other, key)]
         if bare:
             raise InputError(
-                f"{self.file}: material.{self.name}.{bare[0]}: a quantity has no unit; write for "
+                f"{self.file}: material.{key_part(self.name)}.{bare[0]}: a quantity has "
+                "no unit; write for "
                 'instance "210 GPa", as a file of materials has no unit system',
                 code="no-unit",
             )
@@ -107,7 +111,9 @@ def _materials(path: Path, text: str, file: str) -> dict[str, StoredMaterial]:
         )
     for name, table in tables.items():
         if not isinstance(table, dict):
-            raise InputError(f"{path}: material.{name}: must be a table", code="not-a-table")
+            raise InputError(
+                f"{path}: material.{key_part(name)}: must be a table", code="not-a-table"
+            )
     return {name: StoredMaterial(name, table, file) for name, table in tables.items()}
 
 

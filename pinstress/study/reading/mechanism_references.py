@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
+from pinbase.keys import key_part
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.names import known_name, known_names, two_bodies
 from pinstress.study.reading.space_references import cases_in_space
@@ -23,7 +24,9 @@ def of_pins(table: StudyTable, mechanism: AnyMechanism, bears: dict[str, str]) -
         return
     for connection, pin in bears.items():
         if connection not in have:
-            text = f"pin.{pin}: connection {as_text(connection)} is not in the mechanism; "
+            text = (
+                f"pin.{key_part(pin)}: connection {as_text(connection)} is not in the mechanism; "
+            )
             hint = partial(near, connection, have)
             yield Wrong(text, hint, code="unknown-connection", name=connection)
 
@@ -48,9 +51,13 @@ def of_plane(mechanism: MechanismTable) -> Iterator[Wrong]:
     bodies = dict.fromkeys(["ground", *mechanism.body])
     for name, joint in mechanism.joint.items():
         for origin in joint.origins:
-            yield from known_name(f"mechanism.joint.{name}.at", "joint", origin, mechanism.joint)
+            yield from known_name(
+                f"mechanism.joint.{key_part(name)}.at", "joint", origin, mechanism.joint
+            )
     for name in mechanism.link_stiffness:
-        yield from known_name(f"mechanism.link_stiffness.{name}", "body", name, mechanism.body)
+        yield from known_name(
+            f"mechanism.link_stiffness.{key_part(name)}", "body", name, mechanism.body
+        )
     known = partial(known_names, mechanism, "mechanism")
     yield from known(BODY_PATHS, "body", bodies)
     yield from known("point.body", "body", mechanism.body)
@@ -58,7 +65,7 @@ def of_plane(mechanism: MechanismTable) -> Iterator[Wrong]:
     yield from known(SLIDER_PATHS, "slider", mechanism.slider)
     for part in ("spring", "stop", "gear", "torsion_spring"):
         for name, table in getattr(mechanism, part).items():
-            yield from two_bodies(f"mechanism.{part}.{name}", table.bodies, bodies)
+            yield from two_bodies(f"mechanism.{part}.{key_part(name)}", table.bodies, bodies)
 
 
 def of_its_cases(table: StudyTable, mechanism: AnyMechanism) -> Iterator[Wrong]:
@@ -81,21 +88,23 @@ def of_its_cases(table: StudyTable, mechanism: AnyMechanism) -> Iterator[Wrong]:
     for name, case in table.case.items():
         if isinstance(case, MotionCase) and not moves:
             yield Wrong(
-                f"case.{name}: a motion needs start, end and duration in [mechanism.drive]",
+                f"case.{key_part(name)}: a motion needs start, end and duration in "
+                "[mechanism.drive]",
                 code="drive-without-motion",
             )
         for i, load in enumerate(getattr(case, "apply", ()), 1):
-            where = f"case.{name}.apply[{i}]"
+            where = f"case.{key_part(name)}.apply[{i}]"
             yield from _of_height(where, load, mechanism)
             yield from _of_dimension(where, load, mechanism.dimension)
             yield from _of_time(where, load, isinstance(case, MotionCase))
         if mechanism.dimension == 2 and getattr(case, "ground_motion", None) is not None:
             text = (
-                f"case.{name}.ground_motion: it is of linkages in space (dimension = 3); remove it"
+                f"case.{key_part(name)}.ground_motion: it is of linkages in space "
+                "(dimension = 3); remove it"
             )
             yield Wrong(text, code="wrong-dimension")
         if isinstance(case, AtWheel) and isinstance(mechanism, MechanismTable):
-            yield from _of_wheel(f"case.{name}", case, table, mechanism)
+            yield from _of_wheel(f"case.{key_part(name)}", case, table, mechanism)
 
 
 def _of_dimension(where: str, load: ApplyTable, dimension: int) -> Iterator[Wrong]:

@@ -7,6 +7,7 @@ from functools import partial
 
 from pydantic import BaseModel
 
+from pinbase.keys import key_part
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.materials import library
 from pinstress.study.schema.shown import as_text, near
@@ -44,7 +45,7 @@ def _named(node: object, path: str, key: str) -> Iterator[tuple[str, str]]:
         yield from _named(getattr(node, first, None), rest, f"{key}.{first}".lstrip("."))
     elif isinstance(node, dict):
         for name, inner in node.items():
-            yield from _named(inner, path, f"{key}.{name}")
+            yield from _named(inner, path, f"{key}.{key_part(name)}")
     elif isinstance(node, list | tuple):
         for i, inner in enumerate(node, 1):
             # An only drive may be written without a list, and only tables have numbers.

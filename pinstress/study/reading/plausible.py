@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from pinbase.keys import key_part
 from pinstress.study.schema.materials import MaterialTable
 from pinstress.study.schema.pins import PinTable
 from pinstress.study.schema.shown import as_text
@@ -96,9 +97,9 @@ def questions(table: StudyTable, raw: dict[str, Any], system: UnitSystem) -> tup
 def _numbers(table: StudyTable, raw: Any) -> Iterator[StatedValue]:
     """Yield all numbers that have a usual range."""
     for name, material in table.material.items():
-        yield from _of_material(f"material.{name}", material, raw["material"][name])
+        yield from _of_material(f"material.{key_part(name)}", material, raw["material"][name])
     for name, pin in table.pin.items():
-        yield from _of_pin(f"pin.{name}", pin, raw["pin"][name])
+        yield from _of_pin(f"pin.{key_part(name)}", pin, raw["pin"][name])
     if table.mechanism is not None:
         if gravity := raw["mechanism"].get("gravity"):
             components = table.mechanism.gravity
@@ -107,7 +108,7 @@ def _numbers(table: StudyTable, raw: Any) -> Iterator[StatedValue]:
         for name, body in table.mechanism.body.items():
             if body.bar is not None:
                 written = raw["mechanism"]["body"][name]["bar"]["density"]
-                key = f"mechanism.body.{name}.bar.density"
+                key = f"mechanism.body.{key_part(name)}.bar.density"
                 yield StatedValue("density", key, body.bar.density, written)
 
 

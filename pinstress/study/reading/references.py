@@ -10,6 +10,7 @@ from assess.fatigue.flight import flight
 from assess.requirement import LEVELS_OF_CHECK
 from geometry.shape.pin import END_FACES
 from pinbase.errors import ArgumentError
+from pinbase.keys import key_part
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.mechanism_references import of_its_cases, of_pins, of_plane
 from pinstress.study.reading.names import known_name, known_names
@@ -50,7 +51,7 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
         surfaces |= dict.fromkeys(s.name for s in pin.profile or () if s.name)
         surfaces |= dict.fromkeys(pin.band)
         for connection, lug in pin.lug.items():
-            key = f"pin.{name}.lug.{connection}"
+            key = f"pin.{key_part(name)}.lug.{key_part(connection)}"
             yield from known_name(key, "connection or segment", connection, surfaces)
             for at, made_of in _materials(lug).items():
                 if made_of not in common.values():
@@ -60,7 +61,8 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
         for key, connection in pin.connections:
             if connection in bears:
                 yield Wrong(
-                    f"pin.{name}.{key}: connection {as_text(connection)} already bears on pin "
+                    f"pin.{key_part(name)}.{key}: connection {as_text(connection)} "
+                    "already bears on pin "
                     f"{bears[connection]}; a connection bears on one pin only",
                     code="duplicate-connection",
                 )
@@ -68,7 +70,9 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
         yield from _of_ears(name, pin)
         if pin.balance is not None:
             own = [connection for _, connection in pin.connections]
-            yield from known_name(f"pin.{name}.balance", "connection of the pin", pin.balance, own)
+            yield from known_name(
+                f"pin.{key_part(name)}.balance", "connection of the pin", pin.balance, own
+            )
     yield from _of_bearing(table)
     if isinstance(table.analysis.limit_load, list):
         yield from known("analysis.limit_load", "pin", table.pin)
@@ -98,9 +102,9 @@ def _of_clamps(table: StudyTable, pin: str, surfaces: Iterable[str]) -> Iterator
     Those that the program names itself ("segment 2", "hole 1") are known with the shape only.
     surfaces: the names that the study gives.
     """
-    clamps = {f"pin.{pin}.clamp": table.pin[pin].clamp}
+    clamps = {f"pin.{key_part(pin)}.clamp": table.pin[pin].clamp}
     for case, given in table.case.items():
-        clamps[f"case.{case}.clamp.{pin}"] = given.clamp.get(pin, [])
+        clamps[f"case.{key_part(case)}.clamp.{key_part(pin)}"] = given.clamp.get(pin, [])
     known = [*END_FACES, *surfaces]
     for key, named in clamps.items():
         for i, surface in enumerate(named, 1):
@@ -114,7 +118,7 @@ def _of_ears(name: str, pin: PinTable) -> Iterator[Wrong]:
     for i, segment in enumerate(pin.profile or (), 1):
         if segment.ear_of is None:
             continue
-        at = f"pin.{name}.profile[{i}].ear_of"
+        at = f"pin.{key_part(name)}.profile[{i}].ear_of"
         yield from known_name(at, "connection", segment.ear_of, known)
         if segment.ear_of in ears:
             yield Wrong(
@@ -139,7 +143,8 @@ def _of_bearing(table: StudyTable) -> Iterator[Wrong]:
     for name, material in table.material.items():
         if material.bearing_strength is not None and name not in bears:
             yield Wrong(
-                f"material.{name}.bearing_strength: no lug bears on a pin of this material, and no "
+                f"material.{key_part(name)}.bearing_strength: no lug bears on a pin of "
+                "this material, and no "
                 "lug or bushing is made of it; give pin.NAME.lug.CONNECTION.material, or remove "
                 "this",
                 code="bearing-strength-without-lug",
@@ -149,27 +154,33 @@ def _of_bearing(table: StudyTable) -> Iterator[Wrong]:
 def _of_cases(table: StudyTable, bears: dict[str, str]) -> Iterator[Wrong]:
     for name, case in table.case.items():
         for pin in case.clamp:
-            yield from known_name(f"case.{name}.clamp", "pin", pin, table.pin)
+            yield from known_name(f"case.{key_part(name)}.clamp", "pin", pin, table.pin)
         if isinstance(case, GivenCase):
             for key, given in (("forces", case.forces), ("moments", case.moments)):
                 for connection in given or ():
-                    what = "pin has a connection"
-                    yield from known_name(f"case.{name}.{key}", what, connection, bears)
+                    what, where = "pin has a connection", f"case.{key_part(name)}.{key}"
+                    yield from known_name(where, what, connection, bears)
                     borne = bears.get(connection)
                     if borne is not None and connection == table.pin[borne].balance:
-                        yield Wrong(closed_message(f"case.{name}.{key}.{connection}", borne),
-                                    code="balances-the-others")  # fmt: skip
+                        where = f"{where}.{key_part(connection)}"
+                        yield Wrong(closed_message(where, borne), code="balances-the-others")
             for file in case.tables:
                 for connection in file.connections:
                     what = "pin has a connection"
-                    yield from known_name(f"case.{name}.table", what, connection, bears)
+                    yield from known_name(f"case.{key_part(name)}.table", what, connection, bears)
         elif table.mechanism is None:
-            yield Wrong(f"case.{name}: kind {case.kind!r} needs a [mechanism]", code="no-mechanism")
+            yield Wrong(
+                f"case.{key_part(name)}: kind {case.kind!r} needs a [mechanism]",
+                code="no-mechanism",
+            )
 
 
 def closed_message(where: str, pin: str) -> str:
     """Return the message for a force that the study gives although it follows from others."""
-    return f"{where}: follows from the other forces on pin {pin}, by pin.{pin}.balance; remove it"
+    return (
+        f"{where}: follows from the other forces on pin {pin}, by "
+        f"pin.{key_part(pin)}.balance; remove it"
+    )
 
 
 def _of_sequences(table: StudyTable) -> Iterator[Wrong]:
@@ -247,7 +258,7 @@ def _of_fatigue(table: StudyTable, fatigue: FatigueTable) -> Iterator[Wrong]:
     for name in sorted(given):
         for key, value in _parameters(table.material[name], fatigue).items():
             if value is None:
-                yield Wrong(f"material.{name}.{key} is missing", code="missing-key")
+                yield Wrong(f"material.{key_part(name)}.{key} is missing", code="missing-key")
 
 
 def _parameters(material: MaterialTable, fatigue: FatigueTable) -> dict[str, float | None]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
+from pinbase.keys import key_part
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.names import known_name, known_names, two_bodies
 from pinstress.study.schema.cases import StaticCase
@@ -26,9 +27,9 @@ def of_space(mechanism: SpaceMechanismTable) -> Iterator[Wrong]:
     bodies = dict.fromkeys(["ground", *mechanism.body])
     names: dict[str, str] = {}
     for name, joint in mechanism.joint.items():
-        where = f"mechanism.joint.{name}"
+        where = f"mechanism.joint.{key_part(name)}"
         for connection, body in joint.connections.items():
-            key = f"{where}.connections.{connection}"
+            key = f"{where}.connections.{key_part(connection)}"
             if body == joint.fixed_in:
                 text = f"{key}: {as_text(body)} carries the pin; name the body that moves on it"
                 yield Wrong(text, code="fixed-and-turning")
@@ -50,7 +51,7 @@ def of_space(mechanism: SpaceMechanismTable) -> Iterator[Wrong]:
             case LengthDrive():
                 yield from two_bodies(where, drive.bodies, bodies)
     for name, spring in mechanism.spring.items():
-        where = f"mechanism.spring.{name}"
+        where = f"mechanism.spring.{key_part(name)}"
         yield from two_bodies(where, spring.bodies, bodies)
         if spring.slide is not None:
             yield from _moved(f"{where}.slide", mechanism, spring.slide, None, True)
@@ -87,12 +88,16 @@ def cases_in_space(table: StudyTable) -> Iterator[Wrong]:
     for name, case in table.case.items():
         if isinstance(case, AtWheel):
             text = (
-                f"case.{name}: kind {case.kind!r} needs a linkage in a plane; in space apply the "
+                f"case.{key_part(name)}: kind {case.kind!r} needs a linkage in a plane; "
+                "in space apply the "
                 'forces in a case of kind "static"'
             )
             yield Wrong(text, code="wrong-dimension")
         if isinstance(case, StaticCase) and case.hold is not None:
-            text = f"case.{name}.hold: in space all drives hold; remove it, or drive what holds"
+            text = (
+                f"case.{key_part(name)}.hold: in space all drives hold; remove it, or "
+                "drive what holds"
+            )
             yield Wrong(text, code="wrong-dimension")
     if table.motion_check is not None:
         text = "motion_check: it needs a linkage in a plane; remove it"

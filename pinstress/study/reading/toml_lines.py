@@ -11,6 +11,8 @@ import tomllib
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import count
 
+from pinbase.keys import key_part
+
 # A string that does not end goes on to the end of its line or of the text: were it no token, every
 # quote in it would be looked at anew.
 TOKEN_PATTERN = re.compile(
@@ -94,7 +96,7 @@ def _line(known: dict[str, int], longest: int, message: str) -> int | None:
     keys = (next(_keys(known, m[: longest + MAX_KEY_END_LENGTH]), "") for m in spellings)
     key = max(keys, key=len)
     quoted = QUOTED_PATTERN.search(message)
-    inner = f"{key}.{quoted[1]}".lstrip(".") if quoted else key
+    inner = f"{key}.{key_part(quoted[1])}".lstrip(".") if quoted else key
     return known.get(inner, known.get(key))
 
 
@@ -111,7 +113,7 @@ def _keys(known: dict[str, int], message: str) -> Iterator[str]:
 
 def said(place: Sequence[str | int]) -> str:
     """Return a place as messages spell it, which count from 1."""
-    return "".join(f"[{p + 1}]" if isinstance(p, int) else f".{p}" for p in place)[1:]
+    return "".join(f"[{p + 1}]" if isinstance(p, int) else f".{key_part(p)}" for p in place)[1:]
 
 
 def _tokens(text: str) -> Iterator[tuple[str, int]]:

@@ -9,6 +9,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from pinbase.keys import key_part
 from pinstress.study.reading.damage import Damage, stand_in
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.toml_lines import Place
@@ -136,7 +137,9 @@ def _key(loc: tuple[int | str, ...], kind: str) -> str:
         if str(part).startswith(("<", "[key]")) or (i == 2 and loc[0] == "case"):
             continue
         key += (
-            f"[{part + 1}]" if isinstance(part, int) else f"{'.' if key else ''}{printable(part)}"
+            f"[{part + 1}]"
+            if isinstance(part, int)
+            else f"{'.' if key else ''}{key_part(printable(part))}"
         )
     return f"{key}.kind" if kind.startswith("union_tag") else key
 

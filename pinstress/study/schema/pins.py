@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from pinbase.errors import ArgumentError
+from pinbase.keys import key_part
 from pinstress.study.schema.lugs import LugTable
 from pinstress.study.schema.materials import HardenedTable
 from pinstress.study.schema.types import (
@@ -288,7 +289,9 @@ class PinTable(StrictTable):
         if self.profile is not None:
             named = enumerate(self.profile, 1)
             return [(f"profile[{i}].connection", s.connection) for i, s in named if s.connection]
-        return [(f"band.{name}", name) for name, band in self.band.items() if band.connection]
+        return [
+            (f"band.{key_part(name)}", name) for name, band in self.band.items() if band.connection
+        ]
 
     @model_validator(mode="after")
     def _ears_alike(self) -> "PinTable":

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 import pinstress
@@ -111,6 +113,16 @@ def test_cases_that_no_model_solves(clamp: str, model: str, code: str) -> None:
 def test_requirements_of_what_does_not_exist(key: str, what: str) -> None:
     with pytest.raises(InputError, match=what):
         study(model=f'[[require]]\n{key}\ncheck = "yield"\nfactor = 2')
+
+
+def test_a_table_with_one_time_has_one_instant(tmp_path: Path) -> None:
+    """It had "1 instants"."""
+    (tmp_path / "one.csv").write_text(
+        "time,left.fx,left.fy,middle.fx,middle.fy,right.fx,right.fy\n0,0,1000,0,-2000,0,1000\n"
+    )
+    text = PIN.replace("CLAMP", FREE).replace("FORCES", 'table = "one.csv"').replace("MODEL", "")
+    summary, _, _ = describe(pinstress.study_from(text, tmp_path))
+    assert "given, one instant, " in summary
 
 
 def test_a_case_without_loads_is_noted() -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import pinstress
+from pinbase.keys import key_part
 from pinstress.analysis.engine import Engine
 from pinstress.analysis.plan import prepare
 from pinstress.analysis.remedies.dimensions import dimensions_of
@@ -16,7 +17,7 @@ from pinstress.cli.commands import run_command_line
 from pinstress.explore.curve import curve
 from pinstress.explore.sweep.number import number_at
 from pinstress.study.reading.errors import InputError
-from pinstress.study.reading.in_python import changed_study, key_part
+from pinstress.study.reading.in_python import changed_study
 from tests.support.each import each, sampled
 from tests.support.pins.studies import BY_SEGMENTS_AND_CORNERS
 from tests.support.programs.command_line import ONE_PIN

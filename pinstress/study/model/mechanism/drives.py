@@ -17,6 +17,7 @@ from loads import (
     TableError,
     read_table,
 )
+from pinbase.keys import key_part
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import Coordinates, InstantCase, StaticCase
@@ -145,7 +146,7 @@ def state(
     rates = (case.velocity, case.acceleration) if isinstance(case, InstantCase) else (0.0, 0.0)
     for key, stated in zip(DRIVE_DIMENSIONS, (case.position, *rates), strict=True):
         if stated and not drives:
-            text = f"case.{name}.{key}: there is no drive that has one; remove it"
+            text = f"case.{key_part(name)}.{key}: there is no drive that has one; remove it"
             raise study.error(text, code="unknown-drive")
     return [
         (
@@ -172,7 +173,7 @@ def _coordinate(
     drive: AnyDriveTable,
     default: float,
 ) -> float:
-    where = f"case.{case}.{key}"
+    where = f"case.{key_part(case)}.{key}"
     names = [drive_name(d) for d in drive_tables(study)]
     if isinstance(value, dict):
         unknown = [n for n in value if n not in names]

@@ -26,6 +26,7 @@ from loads import (
 )
 from loads.linkage.parts import Point
 from loads.space.out_of_plane import SideLoad
+from pinbase.keys import key_part
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import ApplyTable
 from pinstress.study.schema.forces import (
@@ -139,7 +140,7 @@ def _torsion(study: Study, name: str, table: TorsionSpringTable) -> Spring:
 
 def line_law(study: Study, name: str, table: LineLawTable, drawn: float) -> ForceLaw:
     """Return the law of a spring of a length. drawn: its length as drawn, m."""
-    where, value = f"mechanism.spring.{name}", ("force", "force")
+    where, value = f"mechanism.spring.{key_part(name)}", ("force", "force")
     length, velocity = column(study, "length", "length"), column(study, "velocity", "velocity")
     return ForceLaw(
         table.preload,
@@ -153,7 +154,7 @@ def line_law(study: Study, name: str, table: LineLawTable, drawn: float) -> Forc
 
 def torsion_law(study: Study, name: str, table: TorsionLawTable) -> ForceLaw:
     """Return the law of a spring of an angle, which is zero as drawn."""
-    where, value = f"mechanism.torsion_spring.{name}", ("moment", "moment")
+    where, value = f"mechanism.torsion_spring.{key_part(name)}", ("moment", "moment")
     rate = TableColumn("angular_velocity", "angular velocity", 1.0, "rad/s")
     return ForceLaw(
         table.preload,

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 
 from loads import CodedError
+from pinbase.keys import key_part
 from pinstress.study.schema.mechanism import Dyad, JointTable, MechanismTable, Place, Polar
 
 Point = tuple[float, float]
@@ -38,7 +39,7 @@ def places(mechanism: MechanismTable, show: Show) -> tuple[dict[str, Point], lis
         waiting = {name: j for name, j in waiting.items() if name not in behind}
     if waiting:
         circle = f"the positions of {', '.join(waiting)} depend on each other"
-        key = f"mechanism.joint.{next(iter(waiting))}.at"
+        key = f"mechanism.joint.{key_part(next(iter(waiting)))}.at"
         text = f"{key}: {circle}; give one of them as [x, y]"
         errors.append(LayoutError(text, "circular-positions"))
     return {name: positions[name] for name in mechanism.joint if name in positions}, errors
@@ -56,7 +57,8 @@ def _placed(name: str, joint: JointTable, positions: Mapping[str, Point], show: 
     base = math.hypot(x2 - x1, y2 - y1)
     if not abs(a - b) <= base <= a + b or base == 0.0:
         raise LayoutError(
-            f"mechanism.joint.{name}.at: no point has these distances, {show(a)} and {show(b)}, "
+            f"mechanism.joint.{key_part(name)}.at: no point has these distances, "
+            f"{show(a)} and {show(b)}, "
             f"from {at.origins[0]} and {at.origins[1]}, which are {show(base)} apart",
             "unreachable-point",
         )

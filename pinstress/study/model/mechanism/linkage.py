@@ -27,6 +27,7 @@ from loads import (
 from loads.linkage.mass_properties import flat_bar, round_bar
 from loads.motion.mobility import Mobility, mobility, require_determined
 from loads.space.linkage import SpaceLinkage
+from pinbase.keys import key_part
 from pinstress.study.model.mechanism.drawing import Drawing, joints_on
 from pinstress.study.model.mechanism.drives import drive_table, mechanism_of
 from pinstress.study.model.mechanism.fit import Fitting, reach
@@ -189,7 +190,7 @@ def _wrong(errors: Iterable[LinkageError]) -> list[Wrong]:
     return [
         Wrong(
             f"mechanism: {problem}",
-            at=".".join(map(str, ("mechanism", *problem.at))),
+            at=".".join(key_part(str(part)) for part in ("mechanism", *problem.at)),
             code=problem.code,
         )
         for problem in errors

@@ -27,6 +27,7 @@ from loads.space.linkage import (
     Vector,
 )
 from pinbase.arrays import Floats
+from pinbase.keys import key_part
 from pinstress.study.model.clevis import middle_of
 from pinstress.study.model.mechanism.drives import mechanism_of
 from pinstress.study.model.mechanism.masses import STANDARD_GRAVITY, friction_circle, pin_mass
@@ -178,7 +179,7 @@ def _bands(study: Study, name: str, table: SpaceJointTable) -> dict[str, float]:
     if len(shapes) > 1:
         which = listed(x.name for x in shapes)
         raise study.error(
-            f"mechanism.joint.{name}.z: may be the start of any of the pins {which}",
+            f"mechanism.joint.{key_part(name)}.z: may be the start of any of the pins {which}",
             code="ambiguous-pin",
         )
     ears = {c: ear for x in shapes for c, ear in study.table.pin[x.name].ears.items()}
@@ -358,6 +359,6 @@ def _located(mechanism: SpaceMechanismTable, errors: Sequence[LinkageError]) -> 
             kind, names = "joint", [of[names[0]]]
         if kind == "drive" and len(mechanism.drive) < 2:
             names = []
-        at = ".".join(filter(None, ("mechanism", kind, *names)))
+        at = ".".join(key_part(part) for part in ("mechanism", kind, *names) if part)
         out.append(Wrong(f"mechanism: {error}", at=at, code=error.code))
     return out

@@ -78,7 +78,8 @@ def test_a_clevis_beside_contact_in_three_dimensions(sharp: Solution) -> None:
 @pytest.mark.parametrize("force", [0.0, 1e-9])
 def test_a_press_fit_without_load_has_the_stress_of_the_fit(force: float) -> None:
     """In proportion to the interference; the round-off of its pressures is no load out of balance,
-    for which such a pin was said not to be held. Nor is it beside that of a linkage's forces.
+    for which such a pin was said not to be held. Nor is it beside that of a linkage's forces. None
+    is a force of a band.
     """
     idle, most = pull(np.array([[force, 0.0]])), []
     for size in (1e-5, 2e-5):
@@ -86,6 +87,12 @@ def test_a_press_fit_without_load_has_the_stress_of_the_fit(force: float) -> Non
         (found,) = solve_in_lugs(problem(PIN, STEEL, lugs, (idle,)), QUICK)
         assert found.peak.verdict == "converged"
         most.append(found.peak.max_von_mises)
+        assert found.joint is not None
+        assert [band.force for band in found.joint.bands] == [0.0] * 3
+        assert found.joint.bending_moment == 0.0
+        assert found.peak.places is not None
+        assert found.peak.places.section is not None
+        assert found.peak.places.section.max_von_mises == 0.0
     assert most[0]
     assert most[1] == pytest.approx(2.0 * most[0], rel=1e-3)
     assert most[1] == pytest.approx(STEEL.youngs_modulus * 0.5e-3 * (1.0 - 0.4**2), rel=0.3)

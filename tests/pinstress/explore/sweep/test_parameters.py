@@ -210,7 +210,7 @@ def test_only_normal_laws_are_correlated() -> None:
 def test_errors_name_the_line() -> None:
     text = varied(f'"{DIAMETER}" = {{ from = 2, to = 1 }}')
     line = text[: text.index(f'"{DIAMETER}"')].count("\n") + 1
-    with pytest.raises(InputError, match=rf"study:{line}: vary\.parameters\.pin\.B"):
+    with pytest.raises(InputError, match=rf"study:{line}: vary\.parameters\.\"pin\.B"):
         parameters_of(study_from(text))
 
 

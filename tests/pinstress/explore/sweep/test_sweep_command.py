@@ -202,7 +202,7 @@ def test_run_ignores_vary_and_check_reads_it(tmp_path: Path) -> None:
     _study(tmp_path, '"pin.B.nothing" = { from = 1, to = 2 }')
     checked = run_here("check", "study.toml", cwd=tmp_path)
     assert checked.returncode == 2
-    assert "vary.parameters.pin.B.nothing: the study has no 'nothing' there" in checked.stderr
+    assert "vary.parameters.\"pin.B.nothing\": the study has no 'nothing' there" in checked.stderr
     _study(tmp_path, '"pin.b.fillet" = { from = 0.1, to = 0.2 }')
     checked = run_here("check", "study.toml", cwd=tmp_path)
     assert "the study has no 'b' there; did you mean 'B'?" in checked.stderr

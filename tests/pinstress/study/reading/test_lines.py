@@ -15,7 +15,9 @@ import tomlkit
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from pinbase.keys import key_part
 from pinstress import InputError, load_study
+from pinstress.study.reading.file import parse_study
 from pinstress.study.reading.toml_lines import Place, lines_of, places
 from tests.conftest import ROOT
 from tests.support.each import each
@@ -112,7 +114,7 @@ def test_every_key_of_a_study_is_found_as_messages_spell_it(study: Path) -> None
     found = places(text)
     assert set(found) == {place for place, _ in everything(tomllib.loads(text))}
     spelled = [
-        "".join(f"[{p + 1}]" if isinstance(p, int) else f".{p}" for p in place)[1:]
+        "".join(f"[{p + 1}]" if isinstance(p, int) else f".{key_part(p)}" for p in place)[1:]
         for place in found
     ]
     assert lines_of(text, [f"{key}: is wrong" for key in spelled]) == list(found.values())
@@ -159,9 +161,9 @@ law = 1
     ("message", "line"),
     [
         ("title: is wrong", 1),
-        ("quoted.key: is wrong", 2),
+        ('"quoted.key": is wrong', 2),
         ("dotted: is wrong", 3),
-        ("dotted.x y.z: is wrong", 3),
+        ('dotted."x y".z: is wrong', 3),
         ("list: is wrong", 6),
         ("list[1]: is wrong", 7),
         ("list[2].it[1]: is wrong", 9),
@@ -249,4 +251,21 @@ def test_a_mistake_is_told_without_any_heavy_library(tmp_path: Path) -> None:
         [sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, env=environment
     )
     assert done.stdout == "2 []\n"
-    assert done.stderr.startswith("Error: study.toml:10: material.AISI 4340.poisson_ratio: ")
+    assert done.stderr.startswith('Error: study.toml:10: material."AISI 4340".poisson_ratio: ')
+
+
+@each(
+    ("old", "new", "key"),
+    [
+        ('"given"', '"givn"', 'case."3. wind".kind'),
+        ("{ B = [", "{ C = [", 'case."3. wind".forces'),
+        ("{ B = [", '{ "B.1" = 3.0, B = [', 'case."3. wind".forces."B.1"'),
+    ],
+)
+def test_messages_quote_the_keys_that_toml_needs_quoted(old: str, new: str, key: str) -> None:
+    """The dots of unquoted names read as tables."""
+    text = ONE_PIN.replace("[case.landing]", '[case."3. wind"]').replace(old, new)
+    line = next(i for i, x in enumerate(text.splitlines(), 1) if new in x)
+    with pytest.raises(InputError) as caught:
+        parse_study(Path("study.toml"), text)
+    assert any(told.startswith(f"study.toml:{line}: {key}") for told in caught.value.lines)

@@ -101,7 +101,7 @@ def test_values_carry_their_provenance() -> None:
     assert by_key["mechanism.joint.F.at"].kind == "derived"
     assert by_key["pin.B.profile[1]"].kind == "given"
     assert by_key["mechanism.joint.F.at"].value == "[1.28734, -13.6896]"
-    assert by_key["material.AISI 4340.yield_strength"].value == "225 ksi"
+    assert by_key['material."AISI 4340".yield_strength'].value == "225 ksi"
     assert by_key["pin.B.profile[1]"].value.startswith("length ")
     # every dimension of linkage and pins says where it is from
     mechanism = gear.table.mechanism

@@ -1,0 +1,14 @@
+"""Keys of a study file as TOML, commands and messages spell them."""
+
+from __future__ import annotations
+
+import re
+
+PLAIN_NAME_PATTERN = re.compile(r"[A-Za-z0-9_-]+")  # that TOML needs no quotes for
+
+
+def key_part(name: str) -> str:
+    """Return a name as a key has it: in quotes where TOML needs them, single ones around double."""
+    if PLAIN_NAME_PATTERN.fullmatch(name):
+        return name
+    return f"'{name}'" if '"' in name else f'"{name}"'
