@@ -24,6 +24,17 @@ TENSOR_TO_VOIGT = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])  # component of th
 VOIGT_TO_TENSOR = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))  # and the reverse
 
 
+def rotation(axes: Floats) -> Floats:
+    """The matrices (..., 6, 6) that give a stress's components along other axes.
+
+    axes: (..., 3, 3), a row for each axis.
+    """
+    i, j = np.array(VOIGT_TO_TENSOR).T
+    a, b = axes[..., i, :], axes[..., j, :]
+    once = a[..., i] * b[..., j]
+    return np.asarray(once + (i != j) * (a[..., j] * b[..., i]))
+
+
 def von_mises(stress: Floats) -> Floats:
     """Von Mises' equivalent stress (...) of stresses (..., 6)."""
     square = np.einsum("...a,...a->...", stress @ VON_MISES, stress)

@@ -13,10 +13,10 @@ from scipy.spatial import cKDTree
 
 from fea.core.pin_loads import PinLoads
 from fea.core.solution import Picture
+from fea.core.voigt import rotation
 from fea.cut.clip import EIGHT_TETRAHEDRA, clipped, gaps, halved, upright
 from fea.cut.frames import cartesian, turn_of
 from fea.cut.local_fields import LocalFields
-from fea.cut.local_model import rotated
 from fea.cut.movement import of_units, rigid
 from fea.cut.region import zone
 from fea.cut.shown import moved_by, support_motion
@@ -159,8 +159,7 @@ def _piece(
     """A piece between two z, m, displaced by the loads and its own cuts."""
     turn, inner = turn_of(piece.piece.angle), piece.inner.whole(amounts)
     points = inner.points @ turn.T + [0.0, 0.0, piece.piece.origin]
-    along = np.broadcast_to(turn, (len(points), 3, 3))
-    changed = rotated(inner.changed[..., None], along)[..., 0]
+    changed = inner.changed @ rotation(turn).T
     displaced = inner.displaced @ turn.T
     long = MAX_EDGE * piece.piece.profile.largest_diameter
     cells = inner.cells

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fea.core.few_columns import combinations
 from fea.core.local_fit import continuation
 from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
@@ -68,9 +69,9 @@ class _Reliefs:
         squares = np.einsum("cl,cd,dl->l", shares, forces.T @ forces, shares, optimize=True)
         self.largest = max(self.largest, math.sqrt(max(0.0, squares.max(initial=0.0))))
         left = forces - self.basis @ (self.basis.T @ forces)
-        more, size, _ = np.linalg.svd(left, full_matrices=False)
+        size, right = combinations(left)
         needed = size > RELIEF_TOLERANCE * self.largest
-        more = more[:, needed]
+        more = left @ right[needed].T / size[needed]
         self.basis = np.concatenate([self.basis, more], axis=1)
         self.sizes = np.concatenate([self.sizes, size[needed]])
         before = np.pad(self.amounts, ((0, more.shape[1]), (0, 0)))
@@ -151,7 +152,8 @@ def _of_piece(
         for c, relief in enumerate(reliefs):
             basis = relief.basis.reshape(len(model.space.nodes), 3, len(relief.sizes))
             basis = basis[model.nodes_once]
-            done = np.einsum("pab,pal->bl", basis, moved_by_class[c], optimize=True)
+            moved = moved_by_class[c].reshape(-1, displaced.shape[3])
+            done = basis.reshape(len(moved), -1).T @ moved
             on_uncut[c] = np.concatenate([on_uncut[c], done], axis=1)
     out = []
     for c, relief in enumerate(reliefs):
@@ -179,12 +181,13 @@ def _on_cuts(
         loads, first = tuple(dict.fromkeys(load for load, _ in units)), len(fields.displacement)
         columns = [fields.loads.index(load) for load in loads]
         at = fields.stress[first + here.start : first + here.stop][..., columns]
-        combined.append(np.linalg.svd(at.reshape(-1, len(loads)), full_matrices=False))
+        at = at.reshape(-1, len(loads))
+        combined.append((at, *combinations(at)))
     largest = max(size.max(initial=0.0) for _, size, _ in combined)
-    for (_, units), (on_points, size, of_loads) in zip(parts, combined, strict=True):
+    for (_, units), (at, size, of_loads) in zip(parts, combined, strict=True):
         some = size > STRESS_TOLERANCE * largest
         amplitude = np.zeros((*x.shape[:2], 6, some.sum()))
-        at_cut = on_points[:, some] * size[some]
+        at_cut = at @ of_loads[some].T
         amplitude[:, model.cut] = at_cut.reshape(len(x), model.cut.sum(), 6, some.sum())
         load = units[0][0]
         every = tuple((load, phase) for _ in range(some.sum()) for phase in load.phases)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from fea.core.voigt import TENSOR_TO_VOIGT, VOIGT_TO_TENSOR
+from fea.core.voigt import rotation
 from fea.harmonic.fields import MeridianFields
 from fea.solid.nodal_loads import Unit
 from geometry.mesh.cut_piece import Piece
@@ -63,13 +63,11 @@ def cartesian(amplitude: Floats, angle: Floats, turned: float, units: tuple[Unit
     """
     n, phase = (np.array(x) for x in ([load.n for load, _ in units], [p for _, p in units]))
     psi = n * (angle[..., None] + turned) - phase * np.pi / 2.0
-    polar = amplitude * np.cos(psi)[..., None, :]
-    polar[..., [3, 5], :] = amplitude[..., [3, 5], :] * np.sin(psi)[..., None, :]
+    shears = np.array([False, False, False, True, False, True])[:, None]
+    polar = amplitude * np.where(shears, np.sin(psi)[..., None, :], np.cos(psi)[..., None, :])
     turn = np.zeros((*angle.shape, 3, 3))
     turn[..., 0, 0] = turn[..., 1, 1] = np.cos(angle)
     turn[..., 1, 0] = np.sin(angle)
     turn[..., 0, 1] = -np.sin(angle)
     turn[..., 2, 2] = 1.0
-    tensor = polar[..., TENSOR_TO_VOIGT, :]
-    stress = np.einsum("...ai,...ijl,...bj->...abl", turn, tensor, turn, optimize=True)
-    return np.stack([stress[..., a, b, :] for a, b in VOIGT_TO_TENSOR], axis=-2)
+    return np.asarray(rotation(turn) @ polar)

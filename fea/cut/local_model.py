@@ -24,10 +24,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from fea.core.material import Material
-from fea.core.voigt import TENSOR_TO_VOIGT
+from fea.core.voigt import TENSOR_TO_VOIGT, rotation
 from fea.cut.interior import InnerFields
 from fea.cut.lost_loads import Bearing, trial_forces, trials
 from fea.cut.parity import Parities
@@ -165,37 +166,39 @@ class LocalModel:
         """
         by_kind = np.ones(uncut.shape[3], dtype=bool)
         by_kind[: len(shears)] = shears
-        # Step 1: split by parity, and scale the loads so that each weighs by its accuracy.
+        # Step 1: split by parity, and scale the loads so that each weighs by its accuracy. (These
+        # arrays are the largest of all, so that there are as few of them as can be.)
         by_class = self.parities.split(uncut)
         largest = np.maximum(
             np.abs(by_class[:, self.cut]).max(axis=(0, 1, 2)), MIN_READ_STRESS * most
         )
         scale = np.where(largest > 0.0, largest, 1.0) / weight
+        by_class /= scale
         difference = np.zeros_like(by_class)
         moved = np.zeros((2, 6, uncut.shape[3]))
         displaced = np.zeros((*by_class.shape[:2], 3, uncut.shape[3]))
         inside: dict[int, NDArray[np.float32]] = {}
         # Step 2: nodal forces of the tractions that relieve the cuts, and their size in all
         # classes.
-        forces, acting, whole = self._relieving(by_class / scale)
+        forces, acting, whole = self._relieving(by_class)
         # Step 3: solve each class that acts.
         for c, parity in enumerate(self.parities.classes):
             if acting[c]:
-                more, spread = self._spread(by_class[c] / scale, parity, by_kind)
+                more, spread = self._spread(by_class[c], parity, by_kind)
                 u = self.system.displace(forces[c] + more, parity, whole)
                 moved += self._moved(u, parity) * scale
                 inside[c] = (u.reshape(-1, 3, u.shape[1]) * scale).astype(np.float32)
                 displaced[c] = u.reshape(-1, 3, u.shape[1])[self.nodes] * scale
-                difference[c] = self._stress(u, by_class[c] / scale, spread, c) * scale
-        # Step 4: add the uncut stress. Cuts are free of traction: along their faces' directions the
-        # components zz, yz and xz, normal ones, vanish.
-        total = self._in_faces(by_class) + difference
-        total[:, self.cut, 2:5] = 0.0
-        whole, changed = (self._everywhere(x) for x in (total, difference))
-        cut = np.tile(self.cut, len(by_class))
+                difference[c] = self._stress(u, by_class[c], spread, c) * scale
+        # Step 4: add the uncut stress. Cuts are free of traction.
+        del by_class
+        changed = self._everywhere(difference)
+        total = uncut.reshape(changed.shape) + changed
+        cut = np.tile(self.cut, len(uncut))
+        total[cut] = self._without_traction(total[cut])
         displaced = self.parities.everywhere(displaced)
         inner = InnerFields(self.space.mesh, self.parities, self.material, inside)
-        return Read(self.images.reshape(-1, 3), whole, changed, cut, displaced, moved, inner)
+        return Read(self.images.reshape(-1, 3), total, changed, cut, displaced, moved, inner)
 
     @cached_property
     def nodes_once(self) -> Ints:
@@ -268,11 +271,28 @@ class LocalModel:
 
         by_class: (C, P, 6, L).
         """
-        back = np.concatenate([r.directions for r in self.readings]).swapaxes(1, 2)
+        back = rotation(np.swapaxes(self.directions, 1, 2))
         summed = np.tensordot(self.parities.characters.T, by_class, axes=1)
-        stress = np.stack([rotated(part, back) for part in summed])
-        stress *= self.parities.stress_signs[:, None, :, None]
-        return np.asarray(stress.reshape(-1, *stress.shape[2:]))
+        for image, signs in zip(summed, self.parities.stress_signs, strict=True):
+            image[:] = back @ image
+            image *= signs[:, None]
+        return np.asarray(summed.reshape(-1, *summed.shape[2:]))
+
+    def _without_traction(self, stress: Floats) -> Floats:
+        """Stress (G C, 6, L) along x, y, z at all images of the C points on cuts, without the
+        components zz, yz and xz along the faces' directions, whose z is normal to the face.
+        """
+        to_faces = rotation(self.directions[self.cut])
+        to_faces[:, 2:5] = 0.0
+        free = rotation(np.swapaxes(self.directions[self.cut], 1, 2)) @ to_faces
+        signs = self.parities.stress_signs[:, None, :, None]
+        images = stress.reshape(len(signs), -1, *stress.shape[1:])
+        return np.asarray((free @ (images * signs) * signs).reshape(stress.shape))
+
+    @cached_property
+    def directions(self) -> Floats:
+        """Two directions (P, 3, 3) along the face at each point, and its outward normal."""
+        return np.concatenate([r.directions for r in self.readings])
 
     @cached_property
     def triangles(self) -> Ints:
@@ -317,32 +337,47 @@ class LocalModel:
     @cached_property
     def normals(self) -> Floats:
         """Outward normals (P, 3) at the points."""
-        return np.concatenate([r.directions[:, 2] for r in self.readings])
+        return self.directions[:, 2]
 
     def _forces(self, stress: Floats, only: tuple[str, ...] = ()) -> Floats:
         """Nodal forces (3 N, L) of the tractions -s . n that relieve cuts of a stress (P, 6, L).
 
         only: names of cuts, all by default.
         """
-        out = np.zeros((len(self.space.nodes), 3, stress.shape[2]))
+        out = np.zeros((self.unknowns, stress.shape[2]))
+        for cut, points, matrix in self._relief_of_faces:
+            if not only or cut in only:
+                out += matrix @ stress[points].reshape(-1, stress.shape[2])
+        return out
+
+    @cached_property
+    def _relief_of_faces(self) -> list[tuple[str | None, slice, sp.csr_matrix]]:
+        """For each face of a cut the cut, the points on the face, and the matrix that makes nodal
+        forces (3 N,) of the stress (6 P,) at these.
+        """
         (x, y), weight = quadrature()
         shapes, _ = slopes_at(x, y)
-        first = 0
+        first, out = 0, []
         for r in self.readings:
-            here = stress[first : first + len(r.nodes)]
-            first += len(r.nodes)
-            if not r.face.cut or (only and self.piece.cut_at(r.face.name) not in only):
+            here = slice(first, first + len(r.nodes))
+            first = here.stop
+            if not r.face.cut:
                 continue
             corners = self.surface.corners[r.face.rows]
             area = area_vectors(self.space.nodes[corners], x, y)
             normals = self.surface.normals[r.face.rows].mean(axis=1)
             area *= np.sign(np.sum(area * normals[:, None], axis=2))[..., None]
-            # (F, 6, 3, 3, L)
-            local = here[np.searchsorted(r.nodes, corners)][:, :, TENSOR_TO_VOIGT]
-            at = np.einsum("qi,fiabl->fqabl", shapes, local)
-            t = np.einsum("q,fqabl,fqb->fqal", weight, at, area)
-            np.add.at(out, corners, -np.einsum("qi,fqal->fial", shapes, t))
-        return out.reshape(-1, stress.shape[2])
+            # Component a of the force at a facet's node i by component ab of the stress at node j.
+            each = -np.einsum("q,qi,qj,fqb->fijb", weight, shapes, shapes, area, optimize=True)
+            each = np.broadcast_to(each[..., None, :], (*each.shape[:3], 3, 3))
+            forces = 3 * corners[:, :, None, None, None] + np.arange(3)[:, None]
+            at = np.searchsorted(r.nodes, corners)[:, None, :, None, None]
+            rows: Ints = np.broadcast_to(forces, each.shape).ravel()
+            columns: Ints = np.broadcast_to(6 * at + TENSOR_TO_VOIGT, each.shape).ravel()
+            shape = self.unknowns, 6 * len(r.nodes)
+            matrix = sp.coo_matrix((each.ravel(), (rows, columns)), shape=shape).tocsr()
+            out.append((self.piece.cut_at(r.face.name), here, matrix))
+        return out
 
     def _stress(self, u: Floats, uncut: Floats, spread: Floats, c: int) -> Floats:
         """The stress (P, 6, L) that displacements (3 N, L) add, along faces' directions.
@@ -362,7 +397,7 @@ class LocalModel:
             out[here, [4, 3, 2]] = np.einsum("pia,pal->pil", r.directions, spread[here])
             normal = out[here, 2]
             if r.face.cut:
-                normal = -rotated(uncut[here], r.directions)[:, 2]
+                normal = -(rotation(r.directions)[:, 2:3] @ uncut[here])[:, 0]
             # The others follow from the strains in the surface by Hooke's law with a known normal
             # stress.
             plane = E / (1.0 - nu**2)
@@ -370,18 +405,6 @@ class LocalModel:
             out[here, 1] = plane * (e[:, 1] + nu * e[:, 0]) + nu / (1.0 - nu) * normal
             out[here, 5] = 2.0 * mu * e[:, 2]
         return out
-
-    def _in_faces(self, stress: Floats) -> Floats:
-        """Stress (C, P, 6, L) along the faces' directions from that along x, y, z."""
-        directions = np.concatenate([r.directions for r in self.readings])
-        return np.stack([rotated(part, directions) for part in stress])
-
-
-def rotated(stress: Floats, directions: Floats) -> Floats:
-    """Components of stress (P, 6, L) along directions (P, 3, 3)."""
-    s = stress[:, TENSOR_TO_VOIGT]  # (P, 3, 3, L)
-    t = np.einsum("pia,pabl,pjb->pijl", directions, s, directions, optimize=True)
-    return np.stack([t[:, 0, 0], t[:, 1, 1], t[:, 2, 2], t[:, 1, 2], t[:, 0, 2], t[:, 0, 1]], 1)
 
 
 def _pressure(count: int) -> Floats:

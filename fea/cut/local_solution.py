@@ -9,11 +9,12 @@ import numpy as np
 
 from fea.core.material import Material
 from fea.core.mesh_result import Point
+from fea.core.voigt import rotation
 from fea.core.zone import Zone
 from fea.cut.frames import cartesian, in_pin, on_skin, turn_of
 from fea.cut.inner_corners import inner_corners
 from fea.cut.local_fields import LocalFields, point_of, unmirrored
-from fea.cut.local_model import LocalModel, rotated
+from fea.cut.local_model import LocalModel
 from fea.cut.lost_loads import bearings
 from fea.cut.movement import displacement, rigid
 from fea.harmonic.fields import MeridianFields
@@ -125,8 +126,10 @@ def local_fields(
     r, z = np.hypot(x[..., 0], x[..., 1]), x[..., 2] + piece.origin
     columns = [fields.loads.index(load) for load, _ in units]
     # Step 1: the uncut pin's stress at nodes of the faces, by phase, along x, y, z of the piece.
-    amplitude = _uncut_stress(model, fields, at_points, r, z)[..., columns]
-    stress = cartesian(amplitude, np.arctan2(x[..., 1], x[..., 0]), piece.angle, units)
+    angle = np.arctan2(x[..., 1], x[..., 0])
+    stress = cartesian(
+        _uncut_stress(model, fields, at_points, r, z)[..., columns], angle, piece.angle, units
+    )
     # Step 2: the piece is solved under it.
     largest = np.abs(fields.stress[..., columns]).max(axis=(0, 1))
     read = model.solve(stress, largest, [load.shears for load, _ in units], weight)
@@ -140,7 +143,7 @@ def local_fields(
         units,
         points,
         model.triangles,
-        rotated(read.stress, np.broadcast_to(turn, (len(points), 3, 3))),
+        rotation(turn) @ read.stress,
         displacement(fields, flat_r, flat_z, np.arctan2(points[:, 1], points[:, 0]), units),
         displaced - rigid(moved[0], points),
         outside(singularities, flat_r, flat_z),

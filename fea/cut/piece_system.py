@@ -9,6 +9,7 @@ import numpy as np
 import scipy.linalg
 import scipy.sparse as sp
 
+from fea.core.few_columns import combinations
 from fea.core.linear_solver import ConstrainedSystem, SolveError
 from fea.core.material import Material
 from fea.cut.parity import Parities
@@ -68,9 +69,10 @@ class PieceSystem:
                 held = at[pivot[:count]]
         # Many loads stress the cuts in few ways: solve for the singular vectors of the forces
         # alone.
-        left, size, right = scipy.linalg.svd(free[:, None] * forces, full_matrices=False)
+        forces = free[:, None] * forces
+        size, right = combinations(forces)
         rank = int(np.sum(size > TRACTION_RANK_TOLERANCE * size[0]))
-        some = left[:, :rank] * size[:rank]
+        some = forces @ right[:rank].T
         u = (
             self._two_level.solve(free, held, some, tolerance)
             if self.unknowns > MAX_FACTORED_UNKNOWNS

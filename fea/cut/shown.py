@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial import cKDTree
 
-from fea.core.voigt import TENSOR_TO_VOIGT, VOIGT_TO_TENSOR
+from fea.core.voigt import rotation
 from fea.cut.local_fields import LocalFields
 from fea.cut.movement import axis_kept, rigid
 from fea.cut.supports import ClampReaction, reached
@@ -171,10 +171,6 @@ def _revolved(
     turn[:, 1, 0] = np.sin(angle)
     turn[:, 0, 1] = -np.sin(angle)
     turn[:, 2, 2] = 1.0
-    # Unit stresses at each angle, rotated to Cartesian axes.
-    tensor = np.einsum(
-        "sai,psijl,sbj->psabl", turn, stress[:, :, TENSOR_TO_VOIGT], turn, optimize=True
-    )
     heights = np.broadcast_to(z[:, None], (len(z), CUT_VIEW_SECTORS))
     points = np.stack([r[:, None] * np.cos(angle), r[:, None] * np.sin(angle), heights], axis=2)
     i = CUT_VIEW_SECTORS * 2 * np.arange(len(keep_rows))[:, None] + np.arange(CUT_VIEW_SECTORS)
@@ -187,7 +183,7 @@ def _revolved(
     return ShownCut(
         points.reshape(-1, 3),
         quads[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3),
-        np.stack([tensor[:, :, a, b] for a, b in VOIGT_TO_TENSOR], axis=2).reshape(-1, 6, count),
+        (rotation(turn) @ stress).reshape(-1, 6, count),
         np.einsum("sai,psil->psal", turn, moved).reshape(-1, 3, count),
         everywhere,
         everywhere,
