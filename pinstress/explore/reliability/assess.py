@@ -102,7 +102,7 @@ def assess(
     designs = SolvedDesigns(evaluator, space, jobs, progress, elsewhere)
     plain = plain_draws(settings.samples, space.size, settings.seed)
     sampled = Sample(plain, designs.at(plain.u, "plain sampling"))
-    forms = _first_orders(study, parameters, designs, sampled, cases)
+    forms = _first_orders(described, parameters, designs, sampled, cases)
     centres = [c for form in forms for c in form.centres]
     weighted = weighted_sample(designs, centres, settings)
     shares = _indices(designs, settings) if space.lower is None else None
