@@ -29,7 +29,12 @@ from pinstress.explore.reliability.form import (
     distinct,
     form_quantile,
 )
-from pinstress.explore.reliability.open_ranges import growth, left_out, with_open_ranges
+from pinstress.explore.reliability.open_ranges import (
+    growth,
+    left_out,
+    with_open_ranges,
+    without_strength_ranges,
+)
 from pinstress.explore.reliability.risk import AssessedRow, RiskColumn, Sample, risk_of
 from pinstress.explore.reliability.sampling import importance_draws, plain_draws
 from pinstress.explore.sweep.batches import DesignProblem, evaluator_of, shapes
@@ -84,7 +89,9 @@ def assess(
     """
     settings = study.table.reliability
     parameters, space = random_numbers(study)
-    problem = DesignProblem.of(study, [p.number for p in parameters], pins, cases)
+    laws = {path for p in parameters for path in p.number.paths}
+    described = without_strength_ranges(study, laws)
+    problem = DesignProblem.of(described, [p.number for p in parameters], pins, cases)
     evaluator, elsewhere = evaluator_of(problem), None
     require_strengths(study, (pin for pin, _ in evaluator.table))
     require_balance(study, evaluator, drawn(study, parameters))
@@ -95,11 +102,10 @@ def assess(
     designs = SolvedDesigns(evaluator, space, jobs, progress, elsewhere)
     plain = plain_draws(settings.samples, space.size, settings.seed)
     sampled = Sample(plain, designs.at(plain.u, "plain sampling"))
-    forms = _first_orders(study, parameters, designs, sampled, cases)
+    forms = _first_orders(described, parameters, designs, sampled, cases)
     centres = [c for form in forms for c in form.centres]
     weighted = weighted_sample(designs, centres, settings)
     shares = _indices(designs, settings) if space.lower is None else None
-    laws = {path for p in parameters for path in p.number.paths}
     materials = {name: pin.material for name, pin in study.table.pin.items()}
     open_rows = replace(
         nominal, pins=tuple(with_open_ranges(p, laws, materials[p.pin]) for p in nominal.pins)

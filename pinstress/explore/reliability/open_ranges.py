@@ -8,6 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from pinstress.explore.sweep.number import Path
+from pinstress.study.reading.file import Study
+from pinstress.study.reading.in_python import changed_study, key_part
 from reports.data.row import LandingRange, PinResult
 from reports.data.unknowns import factor_spread
 
@@ -34,6 +36,19 @@ def with_open_ranges(row: PinResult, laws: Collection[Path], material: str) -> P
         landing=None if "landing" in by_law else row.landing,
         strength_range=None if "strength" in by_law else row.strength_range,
     )
+
+
+def without_strength_ranges(study: Study, laws: Collection[Path]) -> Study:
+    """Return the study without the ranges of the yield strengths that a law describes, outside of
+    which a strength is refused.
+    """
+    by_law = [
+        name
+        for name, material in study.table.material.items()
+        if material.range.yield_strength and ("material", name, "yield_strength") in laws
+    ]
+    keys = [f"material.{key_part(name)}.range" for name in by_law]
+    return changed_study(study, {key: {} for key in keys}) if keys else study
 
 
 def growth(row: PinResult | None) -> float:

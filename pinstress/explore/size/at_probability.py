@@ -27,6 +27,7 @@ from pinstress.explore.reliability.form import (
     Closeness,
     form_quantile,
 )
+from pinstress.explore.reliability.open_ranges import without_strength_ranges
 from pinstress.explore.size.least_weight import LightStudy, lighten
 from pinstress.explore.size.pin_shape import kind_of
 from pinstress.explore.size.weight_search import WeightGoal
@@ -75,10 +76,12 @@ def factors_at(
     Raises: InputError.
     """
     parameters, space = random_numbers(study)
+    laws = {path for p in parameters for path in p.number.paths}
+    described = without_strength_ranges(study, laws)
     out: dict[Row, float] = {}
     for pin in pins:
         progress(f"pin {pin}, factor at {probability:g}", 0.95)
-        evaluator = Evaluator(study, parameters, [pin])
+        evaluator = Evaluator(described, parameters, [pin])
         designs = SolvedDesigns(evaluator, space, 1, progress)
         close = NOISY_CLOSENESS if any(map(shapes, evaluator.numbers)) else SMOOTH_CLOSENESS
         for k, row in enumerate(evaluator.table):

@@ -110,6 +110,8 @@ def test_a_range_with_a_law_is_left_out(tmp_path: Path) -> None:
     assert _run(tmp_path, _with_range(150)) in (0, 1)
     found = json.loads((tmp_path / "out" / "reliability.json").read_text())
     assert found["risks"][0]["over_open"] is None
+    assert found["risks"][0]["unknown"] == 0  # half the strengths lie above the range
+    assert found["reasons"] == {}  # of the designs of FORM either
     (told,) = (note for note in found["notes"] if "range" in note)
     assert told.startswith("The range of a yield strength is left out, since a law takes its place")
 

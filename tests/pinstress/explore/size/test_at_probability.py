@@ -9,9 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+import pinstress
 from pinstress.explore.reliability.designs import Answers
 from pinstress.explore.reliability.form import SMOOTH_CLOSENESS
-from pinstress.explore.size.at_probability import factor_at
+from pinstress.explore.size.at_probability import factor_at, factors_at
+from pinstress.study.reading.in_python import study_from
+from tests.conftest import ROOT
 
 LINEAR, CONSTANT, IDLE, SYMMETRIC, SINGULAR = range(5)
 PROBABILITY, DEVIATIONS = 1e-3, 3.0902323
@@ -49,3 +52,18 @@ def test_it_is_not_known_without_a_slope_or_where_stress_is_unbounded() -> None:
     """Unbounded stress had the factor outside of its zones, and was said to reach the other."""
     assert math.isnan(factor(SYMMETRIC))
     assert math.isnan(factor(SINGULAR))
+
+
+def test_a_strength_may_lie_beyond_its_range_by_its_law() -> None:
+    """Such designs were refused, so that no factor was found. A strength alone is exact."""
+    text = (ROOT / "studies" / "one_pin.toml").read_text(encoding="utf-8")
+    given = 'yield_strength = "225 ksi"'
+    assert given in text
+    ranged = text.replace(given, f'{given}\nrange = {{ yield_strength = ["220 ksi", "230 ksi"] }}')
+    law = '"material.AISI 4340.yield_strength" = { lognormal = ["225 ksi", "20 ksi"] }'
+    study = study_from(f"{ranged}\n[vary.parameters]\n{law}\n")
+    (found,) = factors_at(study, ["B"], PROBABILITY, lambda *_: None).values()
+    (row,) = pinstress.run(study).pins
+    variance = math.log(1.0 + (20.0 / 225.0) ** 2)
+    quantile = math.exp(-0.5 * variance - DEVIATIONS * math.sqrt(variance))
+    assert found == pytest.approx((row.safety_factor or 0.0) * quantile, rel=1e-4)
