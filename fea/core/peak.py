@@ -26,6 +26,7 @@ class Reason:
 
 
 NO_REASON = Reason()
+NO_BOUND = frozenset({"no-error-known", "no-notch-factor"})  # reasons: the error may be any
 
 
 @dataclass(frozen=True)
@@ -162,6 +163,11 @@ class Maximum:
             return self.interval[0]
         return (self.max_von_mises or 0.0) - (self.error_estimate or 0.0)
 
+    @property
+    def bounded(self) -> bool:
+        """Whether the error bounds the maximum: not that of a model which knows none."""
+        return NO_BOUND.isdisjoint(self.reasons)
+
     def yield_strength(self, of_material: float | None) -> float | None:
         """The yield strength where the maximum is, by default that of the material, Pa."""
         return of_material if self.strength is None else self.strength
@@ -195,15 +201,17 @@ def meets_limit(peak: Maximum, limit: float) -> bool | None:
     """Return whether the maximum stays below a limit, Pa; None if not decided.
 
     A maximum is compared with its error, whatever its verdict: one that straddles the limit decides
-    nothing. A singular one exceeds the limit if its whole interval does; it never stays below,
-    since stress at the singularity itself is unbounded.
+    nothing, nor does one whose error is not known stay below. A singular one exceeds the limit if
+    its whole interval does; it never stays below, since stress at the singularity itself is
+    unbounded.
     """
     stress, error = peak.max_von_mises, peak.error_estimate
     if stress is None or error is None:
         return None
     if peak.lower_end > limit:
         return False
-    return True if peak.upper_end <= limit and peak.verdict != "singular" else None
+    below = peak.upper_end <= limit and peak.verdict != "singular" and peak.bounded
+    return True if below else None
 
 
 def discretisation_error(

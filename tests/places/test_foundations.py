@@ -41,9 +41,9 @@ def clevis(fillet: float, apart: float) -> Pin:
     )
 
 
-def solved(pin: Pin, joints: str, requirement: Requirement) -> Solution:
+def solved(pin: Pin, joints: str, requirement: Requirement, loads: PinLoads = PULL) -> Solution:
     lugs = tuple(Lug(n, 0.06, STEEL, edge_radius=2e-4, tilt=2e5) for n in "LMR")
-    return solve(PinProblem(pin, STEEL, lugs, (PULL,)), replace(requirement, joints=joints))[0]  # type: ignore[arg-type]
+    return solve(PinProblem(pin, STEEL, lugs, (loads,)), replace(requirement, joints=joints))[0]  # type: ignore[arg-type]
 
 
 def test_places_of_a_row() -> None:
@@ -90,6 +90,18 @@ def test_no_bounds_for_a_fillet_beside_the_edge_of_a_lug(apart: float, known: bo
     peak = solved(clevis(0.001, apart), "foundation", Requirement()).peak
     assert ("no-error-known" not in peak.reasons) == known
     assert ("nearer than 0.15 diameters to the edge of a lug" in peak.note) != known
+
+
+@pytest.mark.parametrize(("share", "known"), [(1e-5, True), (0.2, False)])
+def test_no_bounds_for_a_shoulder_pressed_along_the_axis(share: float, known: bool) -> None:
+    """Contact has twice the stress at the fillet of a pressed head, whose factor is no shaft's: a
+    pin was safe at a factor of 1.86 that fails at 0.90.
+    """
+    along = share * F * np.outer([1.0, -1.0, 0.0], np.eye(3)[2])
+    loads = replace(PULL, forces=PULL.forces + along)
+    peak = solved(clevis(0.001, 0.0035), "foundation", Requirement(), loads).peak
+    assert ("no-error-known" not in peak.reasons) == known
+    assert ("a shoulder whose face a force along the axis presses" in peak.note) != known
 
 
 @pytest.mark.slow

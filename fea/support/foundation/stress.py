@@ -32,6 +32,9 @@ SHOULDER_REACH = 0.5  # of the diameter: so far a sharp shoulder is felt
 # at the edge, 1 in 9 beyond it at 0.1, none of 30 from 0.2 on)
 MIN_FILLET_EDGE_DISTANCE = 0.15
 NEGLIGIBLE_STRESS_SHARE = 1e-6  # of the largest
+PRESSED_SHOULDER = "a shoulder whose face a force along the axis presses"
+# Force over area, of the largest stress: a pressed head has some ten times as much at its fillet
+PRESSED_SHOULDER_SHARE = 1e-3
 POINTS_PER_RADIUS = 17  # points of a segment at a radius, besides the ends of rings
 
 
@@ -102,7 +105,11 @@ class FoundationStress:
         turned = torque > NEGLIGIBLE_STRESS_SHARE * np.abs(joint.loads.moments).max(initial=0.0)
         reached = von_mises[first:].max(axis=1) > NEGLIGIBLE_STRESS_SHARE * von_mises.max()
         pin, edges = self.model.whole, _edges(self.model)
-        return [
+        seats = [k for k, name in enumerate(joint.loads.surfaces) if joint.pin.shoulder(name)]
+        push = np.abs(joint.loads.forces[:, seats, 2]).max(initial=0.0)
+        area = min(circle(segment).area for segment in pin.segments)
+        pressed = push > PRESSED_SHOULDER_SHARE * von_mises.max() * area
+        return [PRESSED_SHOULDER] * bool(pressed) + [
             f"{n.why}, nearer than {MIN_FILLET_EDGE_DISTANCE:g} diameters to the edge of a lug"
             if beside
             else n.why

@@ -14,6 +14,7 @@ from benchmarks.joints.random_joints import joint_trials
 from fea.beam.model import BeamField
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
+from fea.core.peak import meets_limit
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.requirement import Requirement
 from fea.solve.solve import solve
@@ -212,6 +213,8 @@ def test_a_row_without_a_known_error_has_one_as_large_as_itself() -> None:
     assert peak.verdict == "unconverged"
     assert peak.error_estimate == peak.max_von_mises
     assert "no-error-known" in peak.reasons
+    assert peak.max_von_mises is not None
+    assert meets_limit(peak, 100.0 * peak.max_von_mises) is None  # nothing bounds it
 
 
 def test_a_motion_governs_between_its_samples() -> None:
