@@ -176,7 +176,7 @@ def _recognised(
         tuple(_rounded(bend, start, digits, file.unit) for bend in outside),
         tuple(_rounded(bend, start, digits, file.unit) for bend in bore),
         tuple(cut.rounded(digits).scaled(file.unit) for cut in cuts),
-        round(start, digits),
+        round(start, digits) + 0.0,  # never -0
         _plain(frame[2]),
         _plain(frame[0]),
         surfaces,

@@ -147,16 +147,18 @@ def _joined(left: Segment, right: Segment, one: Bend, other: Bend) -> list[Segme
     ]
 
 
-def with_stripes(pin: Pin, stripes: Iterable[Stripe]) -> Pin:
+def with_stripes(pin: Pin, stripes: Iterable[Stripe], origin: float = 0.0) -> Pin:
     """The pin with parts of its cylinders named.
 
     An end of a stripe within a rounding is moved to the end of the cylinder.
+
+    origin: what messages give as z of the start face, m.
 
     Raises: GeometryError where a stripe is not on one cylinder; as Pin.
     """
     on: dict[int, list[Stripe]] = {}
     for stripe in sorted(stripes, key=lambda stripe: stripe.z0):
-        i, whole = _on_cylinder(pin, stripe)
+        i, whole = _on_cylinder(pin, stripe, origin)
         before = on.setdefault(i, [])
         if before and whole.z0 < before[-1].z1 - pin.tolerance:
             raise GeometryError(
@@ -171,7 +173,7 @@ def with_stripes(pin: Pin, stripes: Iterable[Stripe]) -> Pin:
     return replace(pin, segments=tuple(segments))
 
 
-def _on_cylinder(pin: Pin, stripe: Stripe) -> tuple[int, Stripe]:
+def _on_cylinder(pin: Pin, stripe: Stripe, origin: float) -> tuple[int, Stripe]:
     """Number of the segment on which a stripe lies, and the stripe with its ends there.
 
     An end within a rounding or the tolerance is that of the segment.
@@ -182,7 +184,8 @@ def _on_cylinder(pin: Pin, stripe: Stripe) -> tuple[int, Stripe]:
     middle, near = 0.5 * (stripe.z0 + stripe.z1), pin.tolerance
     if stripe.z0 < -near or stripe.z1 > pin.length + near:
         raise GeometryError(
-            f"{what} is not on the pin, which extends from z = 0 to {pin.length:.6g} m",
+            f"{what} is not on the pin, which extends from z = {origin:.6g} to "
+            f"{origin + pin.length:.6g} m",
             "band-not-found",
             at,
         )
@@ -197,7 +200,8 @@ def _on_cylinder(pin: Pin, stripe: Stripe) -> tuple[int, Stripe]:
     straight = pin.bands[i]
     if stripe.z0 < low - near or stripe.z1 > high + near or straight.length <= near:
         raise GeometryError(
-            f"{what} is not on one cylinder, which here extends from z = {low:.6g} to {high:.6g} m",
+            f"{what} is not on one cylinder, which here extends from z = {origin + low:.6g} to "
+            f"{origin + high:.6g} m",
             "band-on-step",
             at,
         )

@@ -208,6 +208,12 @@ def unique_names(grid: TableGrid) -> None:
     names = [name for k, name in enumerate(grid.names) if k not in unused]
     for k, name in enumerate(names):
         if name in names[:k]:
+            if not name:
+                raise TableError(
+                    f"{grid.source.file}: several columns have no header; where a title is above "
+                    "the header, state the header's line or row: header_line = 2",
+                    "duplicate-column",
+                )
             raise TableError(
                 f"{grid.source.file}: column {name[:MAX_SHOWN_CHARACTERS]!r} occurs twice; keep "
                 "one",

@@ -191,7 +191,7 @@ def reference_line(chart: Chart) -> str:
     """Return the line on the reference solution."""
     r = chart.reference
     charted = [p.dofs for p in chart.points if p.model == r.model and p.dofs]
-    more = f", {r.dofs / max(charted):.0f} times the finest charted" if charted else ""
+    more = f", {engineering(r.dofs / max(charted), 2)} times the finest charted" if charted else ""
     return (
         f"Reference: {r.model} model, {r.element}, {r.dofs:,} unknowns{more}: "
         f"{engineering(r.max_von_mises, 5)} {chart.stress_unit}, with an error of "

@@ -10,6 +10,7 @@ from reports.data.decision import common_factor, largest_factor
 from reports.data.governing import governing
 from reports.data.headline import JudgedCheck, pins_with, worst_checks
 from reports.data.results import Results
+from reports.data.row import PinResult
 from reports.data.unknowns import without_range
 from reports.format.numbers import short
 from reports.format.words import BEYOND_YIELD, but_words, over_words, undecided_because
@@ -152,21 +153,30 @@ def _unknown(results: Results) -> str:
     verdicts = [p.verdict for p in results.pins]
     singular = verdicts.count("singular")
     wide = [p for p in results.pins if p.verdict == "unconverged"]
-    loose = sum(p.outcome == NOT_DECIDED for p in wide)
+    # Too few meshes leave a row unconverged also within the tolerance.
+    decided = [p for p in wide if p.outcome != NOT_DECIDED and not _within(p, results.tolerance)]
+    loose = len(wide) - len(decided)
     unsolved = verdicts.count("rigid") + verdicts.count("failed")
     text = ""
     if singular:
         text = f"{_of(singular, total)} {_is(singular)} singular: no maximum exists."
     if loose:
         text += f" {_of(loose, total)} did not converge."
-    if decided := len(wide) - loose:
+    if decided:
         tolerance = f"{short(100.0 * results.tolerance)} %"
-        text += f" {_of(decided, total)} {_is(decided)} decided with an error above {tolerance}"
-        minor = sum(p.minor and p.outcome != NOT_DECIDED for p in wide)
+        many = len(decided)
+        text += f" {_of(many, total)} {_is(many)} decided with an error above {tolerance}"
+        minor = sum(p.minor for p in decided)
         text += f", {minor} far below another case of the pin." if minor else "."
     if unsolved:
         text += f" {_of(unsolved, total)} could not be solved."
     return text.strip() or f"{ALL_CONVERGED} to {short(100.0 * results.tolerance)} %."
+
+
+def _within(row: PinResult, tolerance: float) -> bool:
+    """Return whether the error of a row is within the tolerance."""
+    error = row.error_estimate
+    return error is not None and error <= tolerance * (row.max_von_mises or 0.0)
 
 
 def _count(number: int, noun: str) -> str:

@@ -266,6 +266,16 @@ def test_where_it_starts_and_what_its_cylinders_are_called(tmp_path: Path) -> No
     assert (*first, *second) == pytest.approx((0.0, 0.02, 0.02, 0.06))
 
 
+def test_a_start_at_the_origin_has_no_minus(tmp_path: Path) -> None:
+    """`import` wrote "z = 0 is -0 mm along it"."""
+
+    def sink(gmsh: Any, solid: int) -> None:
+        gmsh.model.occ.translate([(3, solid)], 0, 0, -1e-12)
+
+    found = recognised_profile(step(PROFILES["sharp"], tmp_path / "pin.step", sink))
+    assert str(found.start) == "0.0"
+
+
 def _box(gmsh: Any, solid: int) -> None:
     box = gmsh.model.occ.addBox(5, 5, 5, 10, 10, 10)
     gmsh.model.occ.fuse([(3, solid)], [(3, box)])

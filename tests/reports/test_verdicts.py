@@ -52,6 +52,15 @@ def test_outcome(verdict: str, factor: float, meets: bool | None, expected: str)
     assert found.outcome == expected
 
 
+def test_a_row_of_few_meshes_has_no_error_above_the_tolerance(found: Results) -> None:
+    """Its error was said to be above 2 % where it is 0.5 %."""
+    results = replace(found, pins=(row("few", "unconverged", 2.0, True),))
+    assert results.tolerance == pytest.approx(0.02)
+    text = summary(results)
+    assert "1 of 1 row did not converge." in text
+    assert "with an error above" not in text
+
+
 @each(("decided", "expected"), [
     (True, "below yield"), (None, "not decided"), (False, "yields"),
 ])  # fmt: skip

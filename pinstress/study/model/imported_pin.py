@@ -55,7 +55,7 @@ def read_body(file: BodyFile, clamps: Iterable[str] = ()) -> PinLike:
         return _profiled(file, recognised, set(clamps))
     except NotTurnedError as error:
         if recognised is not None and not recognised.upright:  # a solid is about the file's z-axis
-            why = f"{error.why}{_axes(recognised)}"
+            why = f"{error.why}{_axes(recognised, of_bands=True)}"
             raise NotTurnedError(file.name, file.path.name, why) from None
         return SolidBody(file, apart, f"{file.path.name} is taken as a solid, since {error.why}")
 
@@ -104,7 +104,7 @@ def _profiled(file: BodyFile, recognised: RecognisedProfile, clamps: set[str]) -
         if c in recognised.surfaces
     ]
     try:
-        profile = with_stripes(recognised.pin(file.name), stripes)
+        profile = with_stripes(recognised.pin(file.name), stripes, start)
         pin = CutPin.of(profile, recognised.cuts)
         for clamp in clamps:
             pin.surface(clamp)
@@ -121,12 +121,17 @@ def _profiled(file: BodyFile, recognised: RecognisedProfile, clamps: set[str]) -
     return replace(pin, profile=profile) if recognised.cuts else profile
 
 
-def _axes(recognised: RecognisedProfile) -> str:
-    """Return how its axes lie in the file, or nothing where they are the file's."""
+def _axes(recognised: RecognisedProfile, of_bands: bool = False) -> str:
+    """Return how its axes lie in the file, or nothing where they are the file's.
+
+    of_bands: whether z is that of bands, which is the file's.
+    """
     axes, start = "", recognised.start
     if not recognised.upright:
         z, x = plain_vector(recognised.along), plain_vector(recognised.x)
         axes = f"; z is along {z} of the file, and x along {x}"
+    if of_bands:
+        return f"{axes}; z of bands counts from the file's origin"
     return axes + f"; z counts from its start face, at z = {start:g} of the file" * bool(start)
 
 

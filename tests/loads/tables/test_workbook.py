@@ -60,6 +60,13 @@ def test_the_table_may_stand_anywhere_on_a_sheet(tmp_path: Path) -> None:
         read(path, sheet="Run 1")
 
 
+def test_a_title_above_the_header_is_named(tmp_path: Path) -> None:
+    """Column '' was said to occur twice."""
+    path = written(tmp_path / "t.xlsx", rows=[["Run 12"], ["time", "B.fx", "B.fy"], [0, 1, 2]])
+    with raises(TableError, "duplicate-column", "no header", "header_line = 2"):
+        read_reactions(path, Layout("case", {}), lambda text, dimension: 1.0, {"B"})
+
+
 def number_format(code: str, cell: str = "B3") -> Callable[[Any, Any], object]:
     return lambda book, sheet: sheet.write_number(cell, 1.5, book.add_format({"num_format": code}))
 

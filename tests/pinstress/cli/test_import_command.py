@@ -173,7 +173,8 @@ def test_a_run_takes_a_lying_body_in_its_own_axes(tmp_path: Path) -> None:
     assert found.holes[0].angle == pytest.approx(0.4)
     assert "z is along (1, 0, 0) of the file, and x along (0, 1, 0)" in shape_notes(found)
     (tmp_path / "study.toml").write_text(HEAD + USED.replace("[45, 60]", "[17, 37]"))
-    with raises(InputError, "not-turned", "band B is not on one cylinder", "at z = 7 of the file"):
+    own = "z of bands counts from the file's origin"
+    with raises(InputError, "not-turned", "here extends from z = 0.027 to 0.067 m", own):
         pin_of(load_study(tmp_path / "study.toml"), "P")
 
 

@@ -92,6 +92,13 @@ def test_the_reference_is_an_order_finer_and_its_error_is_stated(made_up: Chart)
     assert "Reference: harmonic model" in reference_line(made_up)
 
 
+def test_a_reference_only_somewhat_finer_is_told_as_that(made_up: Chart) -> None:
+    """One of a pin with cuts, 1.5 times as fine, was "1 times the finest charted"."""
+    finest = max(p.dofs or 0 for p in made_up.points if p.model == "harmonic")
+    near = replace(made_up.reference, model="harmonic", dofs=round(1.475 * finest))
+    assert ", 1.5 times the finest charted: " in reference_line(replace(made_up, reference=near))
+
+
 def test_the_mesh_on_which_auto_ends_is_marked(plan: ChartPlan) -> None:
     """Errors of second order on meshes finer by the root of 2 are known to 1.25 times themselves
     from the third on, where that is 0.63 %, so auto ends there for 5 %; for 0.2 % on the fifth, to
