@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -158,8 +158,11 @@ class CutField:
 
     def points(self, loads: PinLoads) -> StressPoints:
         """Stress at points of the surface, for fatigue."""
-        solution, amounts = self.solution, self.coefficients(loads)
-        return stress_points(solution.shown, self.read, amounts, loads.pressed, solution.section.nu)
+        surface, amounts = self.solution.shown, self.coefficients(loads)
+        if len(amounts) < amounts.shape[1]:  # the stress at the instants takes less memory
+            surface = replace(surface, stress=surface.stress @ amounts.T)
+            amounts = np.eye(len(amounts))
+        return stress_points(surface, self.read, amounts, loads.pressed, self.solution.section.nu)
 
     def surface(self) -> SpaceSurface:
         """The whole surface for views."""

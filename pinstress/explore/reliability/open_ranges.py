@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from pinbase.keys import key_part
 from pinstress.explore.sweep.number import Path
 from pinstress.study.reading.file import Study
-from pinstress.study.reading.in_python import changed_study, key_part
+from pinstress.study.reading.in_python import changed_study
 from reports.data.row import LandingRange, PinResult
 from reports.data.unknowns import factor_spread
 
