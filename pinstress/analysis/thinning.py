@@ -99,6 +99,27 @@ def fewer_loads(
     ]
 
 
+def by_instants(
+    surface: UnitSurface, cases: Sequence[SurfaceCase]
+) -> tuple[UnitSurface, list[SurfaceCase]]:
+    """Return the surface of a body that is not of revolution with the fields at all instants of its
+    cases instead of those of unit loads, where these are more.
+    """
+    amounts = np.concatenate([case.amounts[:, :, 0] for case in cases])
+    if len(amounts) >= len(surface.n):
+        return surface, list(cases)
+    fields = replace(
+        surface,
+        n=np.zeros(len(amounts), dtype=np.int64),
+        stress=surface.stress @ amounts.T,
+        displacement=surface.displacement @ amounts.T,
+    )
+    each = np.stack([np.eye(len(amounts)), np.zeros((len(amounts),) * 2)], axis=2)
+    ends = np.cumsum([len(case.amounts) for case in cases])
+    own = np.split(each, ends[:-1])
+    return fields, [replace(c, amounts=a) for c, a in zip(cases, own, strict=True)]
+
+
 def _weighed(case: SurfaceCase) -> Floats:
     """Return amounts for a largest stress of one, the governing instant weighted more."""
     weight = np.ones(len(case.amounts))

@@ -15,7 +15,7 @@ from fea.support.support import Solution
 from pinbase.arrays import Ints
 from pinstress.analysis.gather.gather_section import half_section
 from pinstress.analysis.gather_fields import at_samples
-from pinstress.analysis.thinning import fewer_loads, meridian_points
+from pinstress.analysis.thinning import by_instants, fewer_loads, meridian_points
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.tasks import Task
 from reports.data.surface import SURFACE_SECTORS, LoadCourse, Mask, Surface, SurfaceCase
@@ -62,6 +62,8 @@ def _surface(task: Task, solved: Sequence[_Shown]) -> Surface:
             replace(c, unread=_unread(s, np.flatnonzero(keep), c.location))
             for c, s in zip(cases, solved, strict=True)
         ]
+    else:
+        surface, cases = by_instants(surface, cases)
     return Surface(
         pin=task.pin.name,
         points=surface.points[keep],

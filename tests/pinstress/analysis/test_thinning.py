@@ -8,11 +8,12 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.requirement import Requirement
+from fea.core.unit_surface import UnitSurface
 from fea.solve.solve import solve_pin
 from geometry import Pin
 from geometry.shape.chords import needed
 from pinstress import load_study, run
-from pinstress.analysis.thinning import STRESS_TOLERANCE, meridian_points
+from pinstress.analysis.thinning import STRESS_TOLERANCE, by_instants, meridian_points
 from reports.data.surface import SurfaceCase
 from tests.conftest import ROOT
 
@@ -68,6 +69,25 @@ def test_a_thinned_meridian_has_the_same_stresses(cantilever_pin: Pin, steel: Ma
     assert np.quantile(error, 0.98) < 2.0 * STRESS_TOLERANCE  # where it jumps there are two values
     r = np.interp(along, along[keep], x[keep, 0])
     assert np.abs(r - x[:, 0]).max() < 1e-3 * x[:, 0].max()
+
+
+def test_a_solid_under_more_loads_than_instants_has_the_fields_of_these() -> None:
+    """A pin with a hole in lugs has hundreds of unit loads, also in one case at rest: its report
+    had 32 MB.
+    """
+    rng = np.random.default_rng(3)
+    stress, moved = rng.normal(size=(7, 6, 40)), rng.normal(size=(7, 3, 40))
+    points, triangles = rng.normal(size=(7, 3)), np.array([[0, 1, 2], [4, 5, 6]])
+    unit = UnitSurface.in_space(points, triangles, stress, moved)
+    none = np.zeros(7, dtype=bool)
+    amounts = [np.stack([a, 0.0 * a], axis=2) for a in (rng.normal(size=(t, 40)) for t in (1, 3))]
+    cases = [SurfaceCase("c", None, 0, a, np.ones(len(a)), none, np.ones(7)) for a in amounts]
+    fewer, now = by_instants(unit, cases)
+    assert fewer.stress.shape == (7, 5, 4)
+    for case, was in zip(now, amounts, strict=True):
+        assert fewer.stress @ case.amounts[:, :, 0].T == pytest.approx(unit.stress @ was[..., 0].T)
+        assert fewer.displacement @ case.amounts[:, :, 0].T == pytest.approx(moved @ was[..., 0].T)
+    assert by_instants(unit, cases * 10)[0] is unit
 
 
 def test_a_run_has_sections_through_its_maxima_and_its_loads() -> None:
