@@ -9,7 +9,7 @@ whole ones, by the force on what is left.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -22,6 +22,8 @@ from fea.support.bands import Bands
 from fea.support.contact.pressure_loads import waves_of_sectors
 from geometry import CutPin, Pin
 from pinbase.arrays import Floats, Mask
+from pinbase.memo import Memo
+from pinbase.records import digest
 
 CELL_POINTS = 8  # along each side of a cell, at which it is seen whether a cut takes it
 MIN_CELL_LEFT = 0.15  # of a cell's area: a cell with less presses no more; chosen by judgement
@@ -33,11 +35,13 @@ class SeenCuts:
 
     compliance: under unit pressures, by harmonic, ring and phase.
     of: (K, 3) harmonic, ring and phase of each.
+    known: what is added on cells, since many variations of a joint have the same ones.
     """
 
     cut: CutPin
     compliance: AddedCompliance
     of: Floats
+    known: Memo = field(default_factory=Memo, compare=False, repr=False)
 
     @cached_property
     def angle(self) -> float:
@@ -68,6 +72,10 @@ class SeenCuts:
 
         groups: (R, C) 1 where a ring of the pin belongs to a ring of the cells.
         """
+        key = digest((bands.z, bands.length, bands.radius, sectors, groups))
+        return self.known.get(key, lambda: self._added(bands, sectors, groups))
+
+    def _added(self, bands: Bands, sectors: int, groups: Floats) -> Floats:
         waves = waves_of_sectors(sectors, int(self.of[:, 0].max()), self.angle)
         n, ring, phase = self.of.T
         on_cells = groups[ring][:, :, None] * waves[n, :, phase][:, None, :]
