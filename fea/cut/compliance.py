@@ -51,7 +51,7 @@ WORK_TOLERANCE = 1e-4  # of the response to relieving forces, of the largest (fe
 class _Reliefs:
     """The forces that relieve the cuts of loads, of one class, as sums of a few.
 
-    basis: (3 N, B) orthonormal.
+    basis: (3 S, B) orthonormal, at the unknowns on which forces act (LocalModel.loaded).
     amounts: (B, K) of each for every load so far.
     sizes: (B,) N, of the forces for which each was needed.
     largest: of all forces so far, N.
@@ -63,7 +63,7 @@ class _Reliefs:
     largest: float = 0.0
 
     def add(self, forces: Floats, shares: Floats) -> None:
-        """Add further loads, by the forces (3 N, C) of combinations of them, and the shares (C, L)
+        """Add further loads, by the forces (3 S, C) of combinations of them, and the shares (C, L)
         of these in each load.
         """
         squares = np.einsum("cl,cd,dl->l", shares, forces.T @ forces, shares, optimize=True)
@@ -140,7 +140,7 @@ def _of_piece(
     parts: fields and unit loads, harmonic by harmonic.
     """
     classes = model.parities.classes
-    none = np.zeros((model.unknowns, 0))
+    none = np.zeros((len(model.loaded), 0))
     reliefs = [_Reliefs(none, np.zeros((0, 0)), np.zeros(0)) for _ in classes]
     for stress, shares in _on_cuts(model, here, parts):
         by_class = model.reliefs(stress) if len(shares) else [none] * len(classes)
@@ -150,10 +150,7 @@ def _of_piece(
     for displaced in _displaced(model, parts):
         moved_by_class = model.parities.split_vectors(displaced)
         for c, relief in enumerate(reliefs):
-            basis = relief.basis.reshape(len(model.space.nodes), 3, len(relief.sizes))
-            basis = basis[model.nodes_once]
-            moved = moved_by_class[c].reshape(-1, displaced.shape[3])
-            done = basis.reshape(len(moved), -1).T @ moved
+            done = relief.basis.T @ moved_by_class[c].reshape(-1, displaced.shape[3])
             on_uncut[c] = np.concatenate([on_uncut[c], done], axis=1)
     out = []
     for c, relief in enumerate(reliefs):

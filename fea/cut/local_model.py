@@ -185,7 +185,7 @@ class LocalModel:
         for c, parity in enumerate(self.parities.classes):
             if acting[c]:
                 more, spread = self._spread(by_class[c], parity, by_kind)
-                u = self.system.displace(forces[c] + more, parity, whole)
+                u = self.system.displace(self.loaded, forces[c] + more, parity, whole)
                 moved += self._moved(u, parity) * scale
                 inside[c] = (u.reshape(-1, 3, u.shape[1]) * scale).astype(np.float32)
                 displaced[c] = u.reshape(-1, 3, u.shape[1])[self.nodes] * scale
@@ -202,11 +202,21 @@ class LocalModel:
 
     @cached_property
     def nodes_once(self) -> Ints:
-        """Node numbers of its faces, each once."""
+        """Node numbers (S,) of its faces, each once."""
         return np.unique(self.nodes)
 
+    @cached_property
+    def loaded(self) -> Ints:
+        """The numbers (3 S,) of the unknowns at these nodes, the only ones on which forces act."""
+        return np.asarray((3 * self.nodes_once[:, None] + np.arange(3)).ravel())
+
+    @cached_property
+    def _rigid(self) -> Floats:
+        """Rigid motions (3 S, 6) at these unknowns."""
+        return rigid_modes(self.space.nodes)[self.loaded]
+
     def reliefs(self, uncut: Floats) -> list[Floats]:
-        """The balanced nodal forces (3 N, L) that relieve the cuts of a stress of the uncut pin, by
+        """The balanced nodal forces (3 S, L) that relieve the cuts of a stress of the uncut pin, by
         class; none are zero.
 
         uncut: as for `solve`, under loads that do not shear the bands they act on.
@@ -221,13 +231,13 @@ class LocalModel:
             if not acting[c]:
                 out.append(np.zeros_like(f))
                 continue
-            modes = rigid_modes(self.space.nodes)[:, self.parities.rigid(parity)]
+            modes = self._rigid[:, self.parities.rigid(parity)]
             every = f + self._spread(part, parity, shears)[0]
             out.append(self.system.balanced(every, modes, whole))
         return out
 
     def _relieving(self, by_class: Floats) -> tuple[list[Floats], list[bool], Floats]:
-        """The nodal forces (3 N, L) of the tractions that relieve the cuts, by class; which classes
+        """The nodal forces (3 S, L) of the tractions that relieve the cuts, by class; which classes
         act, as the smaller ones are noise of the section's mesh; and the size (L,) of all of them.
         """
         forces = [self._forces(part) for part in by_class]
@@ -238,11 +248,12 @@ class LocalModel:
         return forces, [size > MIN_CLASS_TRACTION * most for size in sizes], whole
 
     def displaced(self, forces: Floats, parity: tuple[int, ...], tolerance: float) -> Floats:
-        """Displacements (3 N, L) of a class under balanced nodal forces (3 N, L).
+        """Displacements (3 S, L) of a class under balanced nodal forces (3 S, L).
 
         tolerance: of iterations, as of fea.cut.two_level.
         """
-        return self.system.displace(forces, parity, _size(forces), tolerance)
+        u = self.system.displace(self.loaded, forces, parity, _size(forces), tolerance)
+        return np.asarray(u[self.loaded])
 
     def _moved(self, u: Floats, parity: tuple[int, ...]) -> Floats:
         """The rigid motions (2, 6, L) of both ends by displacements (3 N, L) of a class.
@@ -311,14 +322,14 @@ class LocalModel:
     ) -> tuple[Floats, Floats]:
         """The loads on removed areas, moved to the rest of their bands (lost_loads).
 
-        Returns nodal forces (3 N, L), and tractions (P, 3, L) at the points.
+        Returns nodal forces (3 S, L), and tractions (P, 3, L) at the points.
         stress: (P, 6, L) Pa, the uncut pin's.
         shears: (L,).
         """
-        forces = np.zeros((self.unknowns, stress.shape[2]))
+        forces = np.zeros((len(self.loaded), stress.shape[2]))
         at_points = np.zeros((len(self.points), 3, stress.shape[2]))
         allowed = self.parities.rigid(parity)
-        modes = rigid_modes(self.space.nodes)[:, allowed]
+        modes = self._rigid[:, allowed]
         for bearing in self.bearings if allowed.any() else ():
             # The resultants that the cuts' tractions take from the band, in the motions of the
             # class.
@@ -326,7 +337,8 @@ class LocalModel:
             on = bearing.on(self.points, self.normals) & ~self.cut
             for shear in np.unique(shears).tolist():
                 here = np.flatnonzero(shears == shear)
-                trial = trial_forces(self.space, self.surface, bearing, shear)[:, allowed]
+                trial = trial_forces(self.space, self.surface, bearing, shear)
+                trial = trial[self.loaded][:, allowed]
                 # Amounts of the trial tractions that restore these resultants.
                 amount = -np.linalg.solve(modes.T @ trial, lost[:, here])
                 forces[:, here] += trial @ amount
@@ -340,11 +352,11 @@ class LocalModel:
         return self.directions[:, 2]
 
     def _forces(self, stress: Floats, only: tuple[str, ...] = ()) -> Floats:
-        """Nodal forces (3 N, L) of the tractions -s . n that relieve cuts of a stress (P, 6, L).
+        """Nodal forces (3 S, L) of the tractions -s . n that relieve cuts of a stress (P, 6, L).
 
         only: names of cuts, all by default.
         """
-        out = np.zeros((self.unknowns, stress.shape[2]))
+        out = np.zeros((len(self.loaded), stress.shape[2]))
         for cut, points, matrix in self._relief_of_faces:
             if not only or cut in only:
                 out += matrix @ stress[points].reshape(-1, stress.shape[2])
@@ -353,7 +365,7 @@ class LocalModel:
     @cached_property
     def _relief_of_faces(self) -> list[tuple[str | None, slice, sp.csr_matrix]]:
         """For each face of a cut the cut, the points on the face, and the matrix that makes nodal
-        forces (3 N,) of the stress (6 P,) at these.
+        forces (3 S,) of the stress (6 P,) at these.
         """
         (x, y), weight = quadrature()
         shapes, _ = slopes_at(x, y)
@@ -370,11 +382,12 @@ class LocalModel:
             # Component a of the force at a facet's node i by component ab of the stress at node j.
             each = -np.einsum("q,qi,qj,fqb->fijb", weight, shapes, shapes, area, optimize=True)
             each = np.broadcast_to(each[..., None, :], (*each.shape[:3], 3, 3))
-            forces = 3 * corners[:, :, None, None, None] + np.arange(3)[:, None]
+            nodes = np.searchsorted(self.nodes_once, corners)
+            forces = 3 * nodes[:, :, None, None, None] + np.arange(3)[:, None]
             at = np.searchsorted(r.nodes, corners)[:, None, :, None, None]
             rows: Ints = np.broadcast_to(forces, each.shape).ravel()
             columns: Ints = np.broadcast_to(6 * at + TENSOR_TO_VOIGT, each.shape).ravel()
-            shape = self.unknowns, 6 * len(r.nodes)
+            shape = len(self.loaded), 6 * len(r.nodes)
             matrix = sp.coo_matrix((each.ravel(), (rows, columns)), shape=shape).tocsr()
             out.append((self.piece.cut_at(r.face.name), here, matrix))
         return out
@@ -413,6 +426,6 @@ def _pressure(count: int) -> Floats:
 
 
 def _size(forces: Floats) -> Floats:
-    """The size of nodal forces (3 N, L), repeated for their three components."""
+    """The size of nodal forces (3 S, L), repeated for their three components."""
     size = np.linalg.norm(forces.reshape(-1, 3, forces.shape[1]), axis=1)
     return np.asarray(size.repeat(3, axis=0))

@@ -43,6 +43,7 @@ class PieceSystem:
 
     def displace(
         self,
+        loaded: Ints,
         forces: Floats,
         parity: tuple[int, ...],
         whole: Floats,
@@ -50,9 +51,10 @@ class PieceSystem:
     ) -> Floats:
         """Displacements (3 N, L) of a class, after balancing its forces.
 
-        forces: (3 N, L) N.
+        loaded: (M,) numbers of the unknowns on which forces act, those of whole nodes.
+        forces: (M, L) N.
         parity: of the class.
-        whole: (3 N,) size of all classes' forces.
+        whole: (M, L) size of all classes' forces.
         tolerance: of iterations (TwoLevel.solve).
         """
         free = np.ones(self.unknowns)
@@ -62,17 +64,18 @@ class PieceSystem:
         # held for each motion, chosen by pivoted QR so that they are independent.
         if not self.clamps:
             modes = rigid_modes(self.space.nodes)[:, self.parities.rigid(parity)]
-            forces = self.balanced(forces, modes, whole)
+            forces = self.balanced(forces, modes[loaded], whole)
             if count := modes.shape[1]:
                 at = np.flatnonzero(free * self._at_corners)
                 _, _, pivot = scipy.linalg.qr(modes[at].T, mode="economic", pivoting=True)
                 held = at[pivot[:count]]
         # Many loads stress the cuts in few ways: solve for the singular vectors of the forces
         # alone.
-        forces = free[:, None] * forces
+        forces = free[loaded, None] * forces
         size, right = combinations(forces)
         rank = int(np.sum(size > TRACTION_RANK_TOLERANCE * size[0]))
-        some = forces @ right[:rank].T
+        some = np.zeros((self.unknowns, rank))
+        some[loaded] = forces @ right[:rank].T
         u = (
             self._two_level.solve(free, held, some, tolerance)
             if self.unknowns > MAX_FACTORED_UNKNOWNS
@@ -123,7 +126,7 @@ class PieceSystem:
         """Forces without the small resultant that the mesh of the section leaves.
 
         It is taken up by the cuts' nodes, in proportion to the forces there.
-        modes: (3 N, m) rigid motions.
+        forces: (M, L) N. modes: (M, m) rigid motions. whole: (M, L) as of `displace`.
 
         Raises: SolveError when the resultant is more than that.
         """
@@ -136,6 +139,6 @@ class PieceSystem:
                 f"equilibrium (by {lost.max():.1e}), so a load acts on the removed area",
                 "cut-unbalanced",
             )
-        force_size = np.linalg.norm(forces.reshape(len(self.space.nodes), -1), axis=1)
+        force_size = np.linalg.norm(forces.reshape(len(forces) // 3, -1), axis=1)
         weight = force_size.repeat(3)[:, None] * modes
         return np.asarray(forces - weight @ np.linalg.solve(modes.T @ weight, modes.T @ forces))
