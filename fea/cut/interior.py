@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem import MeshTet1
 
 from fea.core.material import Material
 from fea.cut.parity import AXIS_NAMES, Parities
+from fea.cut.piece_system import Combined
 from fea.solid.assembly import Discretisation
 from fea.solid.stress_recovery import nodal_stress
 from pinbase.arrays import Floats, Ints
@@ -24,13 +24,13 @@ class InnerFields:
     """The displacements that the cuts add at all nodes of a piece's mesh, under L unit loads.
 
     mesh: on one side of the mirror planes, in the frame of the piece.
-    displaced: (N, 3, L) m, of the classes that act, by their number, with the precision of files.
+    displaced: of the classes that act, by their number, with the precision of files.
     """
 
     mesh: MeshTet1
     parities: Parities
     material: Material
-    displaced: Mapping[int, NDArray[np.float32]]
+    displaced: Mapping[int, Combined]
 
     def whole(self, amounts: Floats) -> InnerBody:
         """The piece at all images under amounts (L,) of the unit loads."""
@@ -38,7 +38,8 @@ class InnerFields:
         nodes, count = space.nodes, len(p.images)
         u = np.zeros((len(nodes), 3, count))  # under the load that each image sees
         for c, displaced in self.displaced.items():
-            u += (displaced @ amounts)[:, :, None] * p.characters[c]
+            moved = displaced.few @ (displaced.amounts @ amounts)
+            u += moved.reshape(-1, 3, 1) * p.characters[c]
         stress = nodal_stress(space, self.material, u) * p.stress_signs.T
         # Nodes on mirror planes are one with their images.
         numbers = self._numbers(nodes)

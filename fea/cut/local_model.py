@@ -25,14 +25,13 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
 from fea.core.material import Material
 from fea.core.voigt import TENSOR_TO_VOIGT, rotation
 from fea.cut.interior import InnerFields
 from fea.cut.lost_loads import Bearing, trial_forces, trials
 from fea.cut.parity import Parities
-from fea.cut.piece_system import PieceSystem
+from fea.cut.piece_system import Combined, PieceSystem
 from fea.cut.surface_reading import Face, FaceReading, read_face
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import QUARTER_TRIANGLES, area_vectors, quadrature, slopes_at, surface
@@ -177,7 +176,7 @@ class LocalModel:
         difference = np.zeros_like(by_class)
         moved = np.zeros((2, 6, uncut.shape[3]))
         displaced = np.zeros((*by_class.shape[:2], 3, uncut.shape[3]))
-        inside: dict[int, NDArray[np.float32]] = {}
+        inside: dict[int, Combined] = {}
         # Step 2: nodal forces of the tractions that relieve the cuts, and their size in all
         # classes.
         forces, acting, whole = self._relieving(by_class)
@@ -186,9 +185,10 @@ class LocalModel:
             if acting[c]:
                 more, spread = self._spread(by_class[c], parity, by_kind)
                 u = self.system.displace(self.loaded, forces[c] + more, parity, whole)
-                moved += self._moved(u, parity) * scale
-                inside[c] = (u.reshape(-1, 3, u.shape[1]) * scale).astype(np.float32)
-                displaced[c] = u.reshape(-1, 3, u.shape[1])[self.nodes] * scale
+                moved += self._moved(u.few, parity) @ u.amounts * scale
+                inside[c] = Combined(u.few.astype(np.float32), u.amounts * scale)
+                on_faces = (3 * self.nodes[:, None] + np.arange(3)).ravel()
+                displaced[c] = u.at(on_faces).reshape(displaced.shape[1:]) * scale
                 difference[c] = self._stress(u, by_class[c], spread, c) * scale
         # Step 4: add the uncut stress. Cuts are free of traction.
         del by_class
@@ -253,7 +253,7 @@ class LocalModel:
         tolerance: of iterations, as of fea.cut.two_level.
         """
         u = self.system.displace(self.loaded, forces, parity, _size(forces), tolerance)
-        return np.asarray(u[self.loaded])
+        return u.at(self.loaded)
 
     def _moved(self, u: Floats, parity: tuple[int, ...]) -> Floats:
         """The rigid motions (2, 6, L) of both ends by displacements (3 N, L) of a class.
@@ -392,19 +392,19 @@ class LocalModel:
             out.append((self.piece.cut_at(r.face.name), here, matrix))
         return out
 
-    def _stress(self, u: Floats, uncut: Floats, spread: Floats, c: int) -> Floats:
-        """The stress (P, 6, L) that displacements (3 N, L) add, along faces' directions.
+    def _stress(self, u: Combined, uncut: Floats, spread: Floats, c: int) -> Floats:
+        """The stress (P, 6, L) that displacements add, along faces' directions.
 
         spread: (P, 3, L) Pa, tractions that act besides.
         c: number of the class.
         """
         E, nu, mu = self.material.youngs_modulus, self.material.poisson_ratio, self.material.lame[1]
-        out, first = np.zeros((*uncut.shape[:2], u.shape[1])), 0
-        character = self.parities.characters[c]
+        out, first = np.zeros(uncut.shape), 0
+        character, few = self.parities.characters[c], u.few.reshape(-1, 3, u.few.shape[1])
         for r in self.readings:
             here = slice(first, first + len(r.nodes))
             first += len(r.nodes)
-            e = r.strain(u.reshape(-1, 3, u.shape[1]), self.parities, character)
+            e = r.strain(few, self.parities, character) @ u.amounts
             # Components along the normal are the known tractions; on cuts minus those of the uncut
             # stress.
             out[here, [4, 3, 2]] = np.einsum("pia,pal->pil", r.directions, spread[here])

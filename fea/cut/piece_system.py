@@ -24,6 +24,21 @@ MAX_UNBALANCED_TRACTION = 0.1  # a larger imbalance is not due to the section's 
 
 
 @dataclass(frozen=True)
+class Combined:
+    """Displacements under L loads as sums of a few.
+
+    few: (3 N, R) m. amounts: (R, L).
+    """
+
+    few: Floats
+    amounts: Floats
+
+    def at(self, unknowns: Ints) -> Floats:
+        """The displacements (M, L) of some unknowns, by their numbers."""
+        return np.asarray(self.few[unknowns] @ self.amounts)
+
+
+@dataclass(frozen=True)
 class PieceSystem:
     """The equations of a piece on one mesh; names as of fea.cut.local_model.LocalModel.
 
@@ -48,8 +63,8 @@ class PieceSystem:
         parity: tuple[int, ...],
         whole: Floats,
         tolerance: float = ENERGY_TOLERANCE,
-    ) -> Floats:
-        """Displacements (3 N, L) of a class, after balancing its forces.
+    ) -> Combined:
+        """Displacements of a class, after balancing its forces.
 
         loaded: (M,) numbers of the unknowns on which forces act, those of whole nodes.
         forces: (M, L) N.
@@ -85,7 +100,7 @@ class PieceSystem:
         if u is None:
             free[held] = 0.0
             u = self._system.solve(self.stiffness.copy(), free, some)
-        return np.asarray(u @ right[:rank])
+        return Combined(u, right[:rank])
 
     @cached_property
     def _at_corners(self) -> Floats:
