@@ -286,14 +286,14 @@ def _words(study: Study, name: str, loads: CaseLoads) -> str:
         many = "one instant"
         if reactions.times is not None and len(reactions) > 1:
             jumps = ", ".join(f"{t:g} s" for t in jump_times(reactions.times)[:MAX_SHOWN_JUMPS])
-            many = f"{len(reactions)} instants" + f", jump at t = {jumps}" * bool(jumps)
+            many = f"{len(reactions):,} instants" + f", jump at t = {jumps}" * bool(jumps)
         return f"given, {many}, connections {', '.join(reactions.connections)}"
     if isinstance(case, DropCase):
-        return f"drop, {case.samples} instants over {case.duration:g} s, ground on {case.body}"
+        return f"drop, {case.samples:,} instants over {case.duration:g} s, ground on {case.body}"
     if isinstance(case, GroundCase):
         return f"ground, {f'14 CFR {case.rule}' if case.rule else 'stated factors'}, on {case.body}"
     applied = ", ".join(f"{load.body}" for load in case.apply)
     if isinstance(case, MotionCase):
         also = f", loads on {applied}" if applied else ""
-        return f"motion, {case.samples} instants over {span(study):g} s{also}"
+        return f"motion, {case.samples:,} instants over {span(study):g} s{also}"
     return f"{case.kind}, {f'loads on {applied}' if applied else 'gravity only'}"

@@ -122,13 +122,13 @@ class _Joint:
     @staticmethod
     def of(row: PinResult, shape: PinShape | None) -> _Joint:
         lugs = shape.lugs if shape and row.joint and row.joint.bands else ()
-        links = {load.connection for load in row.loads}
+        links = {label for *_, label, kind in shape.segments if kind == "band"} if shape else ()
         return _Joint(
             bool(lugs),
             all(lug.clearance == lug.edge_radius == 0.0 for lug in lugs),
             any(lug.clearance < 0.0 for lug in lugs),
             frozenset(lug.connection for lug in lugs if lug.interference > 0.0),
-            frozenset(lug.connection for lug in lugs) - links,
+            frozenset(lug.connection for lug in lugs).difference(links),
         )
 
     def judged(self, steps: Iterable[tuple[LettingGo, bool]]) -> Iterator[LettingGo]:

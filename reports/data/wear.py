@@ -12,6 +12,7 @@ from pinbase.dimensions import Length, Stress, Time, Velocity
 class BandWear:
     """A band of a pin over the motion of one case.
 
+    connection: whose band it is; of the other ear of a clevis the name of its segment.
     body: in whose lug the band sits. against: the body with which the pin turns.
     floats: whether the pin may turn with any of its links; then `against` is the one for which the
     band slides farthest, and the other numbers are the largest for any of them.

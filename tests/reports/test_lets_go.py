@@ -26,6 +26,7 @@ from reports.tables.strength.lets_go import (
 )
 from reports.tables.stress.joint import lugs_table
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.programs.once import Shipped
 from tests.support.results.made_up_joint import in_lugs, make_joint
 from tests.support.results.made_up_run import make_results
@@ -164,6 +165,19 @@ def test_press_fits_have_no_load_factor() -> None:
     assert {s.what for s in of_bushing if s.load_factor} > of_pin
     pressed = made_up(replace(LOOSE, clearance=-0.002))
     assert not [step for step in pressed if step.load_factor]
+
+
+@each("kind", ["band", "plain"])
+def test_formulas_of_an_ear_are_those_of_a_link(kind: str) -> None:
+    """The ear of a clevis is a band without loads of its own in the row; a named segment in a lug
+    of the structure is none.
+    """
+    margin = Margin("lug, net section", "", "hand", "limit", 1.0, 100.0, 200.0, at="FAR")
+    row = replace(make_results().pins[0], joint=make_joint(), margins=(margin,), worst=())
+    lug = replace(LOOSE, connection="FAR", clearance=-0.01)
+    shape = PinShape("A", ((1.0, 2.0, 0.0, "FAR", kind),), "steel", None, lugs=(lug,))
+    (net,) = (step for step in steps(row, shape) if step.what == "lug, net section")
+    assert net.load_factor == (2.0 if kind == "band" else None)
 
 
 def test_a_lug_has_its_limit_load_beside_its_stress() -> None:

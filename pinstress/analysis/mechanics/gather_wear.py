@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 
 from geometry import Band
-from loads import Dynamics, Joint
+from loads import Dynamics, Joint, Reactions
 from loads.motion.planar_equations import is_particle
 from pinbase.arrays import Floats
 from pinstress.study.model.cases import CaseLoads
+from pinstress.study.model.clevis import Ears, on_ears
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import Study
 from reports.data.wear import BandWear
@@ -26,9 +26,9 @@ def wear(study: Study, loads: dict[str, CaseLoads]) -> tuple[BandWear, ...]:
     return tuple(row for n, c in moving.items() for row in _of_case(n, c, _bands(study)))
 
 
-def _bands(study: Study) -> dict[str, tuple[str, Band]]:
-    """Return the pin and the band of every connection of a pin with a profile; of a clevis a band
-    as long as the shorter of its ears twice.
+def _bands(study: Study) -> dict[str, tuple[str, dict[str, Band]]]:
+    """Return the pin of every connection of a pin with a profile, and its bands by name: the
+    connection's and, of a clevis, that of the other ear.
     """
     out = {}
     for name, table in study.table.pin.items():
@@ -36,33 +36,43 @@ def _bands(study: Study) -> dict[str, tuple[str, Band]]:
             continue
         shape = pin_of(study, name)
         for connection in study.connections(name):
-            band = shape.band(connection)
-            if connection in table.ears:
-                shorter = min(band.length, shape.band(table.ears[connection]).length)
-                band = replace(band, z1=band.z0 + 2.0 * shorter)
-            out[connection] = name, band
+            on = [connection, table.ears[connection]] if connection in table.ears else [connection]
+            out[connection] = name, {band: shape.band(band) for band in on}
     return out
 
 
-def _of_case(name: str, case: CaseLoads, bands: dict[str, tuple[str, Band]]) -> Iterator[BandWear]:
+def _of_case(
+    name: str, case: CaseLoads, bands: dict[str, tuple[str, dict[str, Band]]]
+) -> Iterator[BandWear]:
     assert case.moving is not None
     assert case.solve is not None
     dynamics = case.solve(case.moving.instants)
     for k, (joint, connection) in enumerate(dynamics.motion.linkage.connections):
         if connection.name not in bands:
             continue
-        pin, band = bands[connection.name]
-        force = np.hypot(*dynamics.reactions.forces[:, k, :2].T)
-        pressure = force / (2.0 * band.radius * band.length)
-        slides = [
-            (against, *sliding(dynamics, connection.body, against, band.radius))
-            for against in _references(dynamics, joint, connection.body)
-        ]
-        row = BandWear(
-            name, pin, connection.name, connection.body, joint.fixed_in or "",
-            joint.fixed_in is None, float(pressure.max()),
-        )  # fmt: skip
-        yield _with_sliding(row, slides, pressure, dynamics.motion.times)
+        pin, on = bands[connection.name]
+        references = _references(dynamics, joint, connection.body)
+        for at, force in _forces(dynamics.reactions, k, on).items():
+            band = on[at]
+            pressure = force / (2.0 * band.radius * band.length)
+            slides = [
+                (against, *sliding(dynamics, connection.body, against, band.radius))
+                for against in references
+            ]
+            row = BandWear(
+                name, pin, at, connection.body, joint.fixed_in or "", joint.fixed_in is None,
+                float(pressure.max()),
+            )  # fmt: skip
+            yield _with_sliding(row, slides, pressure, dynamics.motion.times)
+
+
+def _forces(reactions: Reactions, k: int, on: dict[str, Band]) -> dict[str, Floats]:
+    """Return the sizes (T,) N of the force across the pin on each band of the k-th connection."""
+    first, last = next(iter(on)), next(reversed(on))
+    ears = {first: Ears(last, on[first].middle, on[last].middle)} if len(on) > 1 else {}
+    link = reactions.forces[:, [k]], reactions.moments[:, [k]]
+    names, forces, _ = on_ears([first], *link, ears)
+    return dict(zip(names, np.hypot(forces[..., 0], forces[..., 1]).T, strict=True))
 
 
 def sliding(dynamics: Dynamics, body: str, against: str, radius: float) -> tuple[float, Floats]:

@@ -107,6 +107,8 @@ def _singles(study: Study, key: str) -> Iterator[str]:
 
 def _change(study: Study, document: Any, key: str, value: Any) -> None:
     """Set the value at a key of a document of tomlkit."""
+    import tomlkit
+
     parts = written_parts(document, key_parts(study, key))
     match parts:
         case ["pin", str(pin), "lug", str(connection), *inner]:
@@ -116,7 +118,24 @@ def _change(study: Study, document: Any, key: str, value: Any) -> None:
     table = _place(study, document, parts, key, split=True)
     if replaces_fit(parts):
         table.pop("fit", None)
-    table[parts[-1]] = _plain(value, key)
+    new = _plain(value, key)
+    if _is_dotted(document, parts[:-1]):  # [table] would begin at the root
+        inline: Any = tomlkit.inline_table()
+        inline["new"] = new
+        new = inline["new"]
+    table[parts[-1]] = new
+
+
+def _is_dotted(document: Any, parts: Iterable[str | int]) -> bool:
+    """Return whether a table of a document of tomlkit is written by dotted keys."""
+    here = document
+    for part in parts:
+        here = _unwrapped(here)
+        body = getattr(getattr(here, "value", here), "body", ()) if isinstance(part, str) else ()
+        if any(key is not None and key.key == part and key.is_dotted() for key, _ in body):
+            return True
+        here = here[part]
+    return False
 
 
 def write_lug(

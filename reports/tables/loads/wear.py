@@ -12,8 +12,8 @@ from reports.tables.column import Column, Table, texts, unit_columns
 WEAR_NOTE = (
     "Over the whole motion. The link slides on the pin, which turns with the body that carries it; "
     "a floating pin may turn with any of its links: then the largest values for any of them. Mean "
-    "pressure: force over diameter and length of the band. p v: the largest product of mean "
-    "pressure and sliding velocity at one instant."
+    "pressure: force over diameter and length of the band; each ear of a clevis has a line. p v: "
+    "the largest product of mean pressure and sliding velocity at one instant."
 )
 
 

@@ -71,6 +71,24 @@ def test_pressure_and_p_v_are_those_of_the_forces(crank: Results) -> None:
     assert row.pressure_velocity < row.mean_pressure * row.velocity
 
 
+def test_each_ear_of_a_clevis_has_its_own_pressure_and_radius(crank: Results) -> None:
+    """A thinner and shorter ear had the diameter of the other. Each bears half of the force."""
+    text = (ROOT / "studies" / "slider_crank.toml").read_text(encoding="utf-8")
+    band = '  { length = 20, diameter = 16, connection = "A" },\n'
+    ear = '  { length = 9, diameter = 12, name = "FAR", ear_of = "A" },\n'
+    text = text.replace(band, band + ear).replace("fillet = 3\n", "")
+    forked = loads_only(pinstress.study_from(text))
+    rows = {row.connection: row for row in forked.wear}
+    (whole,) = (row for row in crank.wear if row.connection == "A")
+    assert whole.velocity is not None
+    force = whole.mean_pressure * BAND_A
+    for name, diameter, length in ("A", 16.0, 20.0), ("FAR", 12.0, 9.0):
+        row = rows[name]
+        assert (row.pin, row.body) == ("A", "rod")
+        assert row.mean_pressure == pytest.approx(0.5 * force / (diameter * length))
+        assert row.velocity == pytest.approx(whole.velocity * diameter / 16.0)
+
+
 def test_a_floating_pin_may_turn_with_any_of_its_links() -> None:
     results = loads_of("landing_gear")
     rows = {row.connection: row for row in results.wear if row.pin == "E"}

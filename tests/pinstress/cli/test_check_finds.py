@@ -125,6 +125,15 @@ def test_a_table_with_one_time_has_one_instant(tmp_path: Path) -> None:
     assert "given, one instant, " in summary
 
 
+def test_many_instants_have_commas(tmp_path: Path) -> None:
+    rows = "".join(f"{t},0,1000,0,-2000,0,1000\n" for t in range(1000))
+    header = "time,left.fx,left.fy,middle.fx,middle.fy,right.fx,right.fy\n"
+    (tmp_path / "many.csv").write_text(header + rows)
+    text = PIN.replace("CLAMP", FREE).replace("FORCES", 'table = "many.csv"').replace("MODEL", "")
+    summary, _, _ = describe(pinstress.study_from(text, tmp_path))
+    assert "given, 1,000 instants, " in summary
+
+
 def test_a_case_without_loads_is_noted() -> None:
     nothing = "forces = { left = [0, 0], middle = [0, 0], right = [0, 0] }"
     note = "every force and moment on the pins is zero"

@@ -158,6 +158,39 @@ def test_a_key_of_vary_is_one_of_a_changed_study(name: str, key: str, full: str)
     assert number_at(study, key).path == number_at(study, full).path
 
 
+@each("key", ["lug.thick", "lug.rod", "lug.rod.bushing"])
+def test_a_table_beneath_dotted_keys_is_written_there(key: str, tmp_path: Path) -> None:
+    """It began a table [lug] at the root."""
+    path = tmp_path / "dotted.toml"
+    path.write_text(
+        """title = "dotted"
+units = "mm-N-s"
+[material.steel]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+[pin.P]
+material = "steel"
+profile = [
+  { length = 10, diameter = 20, connection = "rod" },
+  { length = 10, diameter = 20, name = "thick" },
+]
+lug.rod.outer_diameter = 50
+[case.pull]
+kind = "given"
+forces = { rod = [0, 5] }
+""",
+        encoding="utf-8",
+    )
+    value = {"thickness": 1, "material": "steel"}
+    new = changed_study(
+        load_study(path),
+        {f"pin.P.{key}": value if "bushing" in key else {"bushing": value}},
+    )
+    bushing = new.table.pin["P"].lug["thick" if "thick" in key else "rod"].bushing
+    assert bushing is not None
+    assert bushing.thickness == 1e-3
+
+
 @each("key", ["pin.Z.fillet", "pin.B.profile[9].length", "pin.B.clamp[0]", "", "a["])
 def test_both_ways_refuse_a_key_with_the_same_words(key: str) -> None:
     study = load_study(shipped_studies()["one_pin"])
