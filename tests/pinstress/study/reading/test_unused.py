@@ -30,6 +30,9 @@ CASE
 [analysis]
 ANALYSIS
 """
+CLAMP, PRESCRIBED = 'clamp = ["start"]', 'joints = "prescribed"'
+DEFAULTS, HOT = "lug_defaults = { outer_diameter = 50 }", 'temperature = "80 degC"'
+SEATED = 'lug.L = { axial = "head" }'
 
 
 def text(pin: str = "", defaults: str = "", case: str = "", analysis: str = "") -> str:
@@ -52,3 +55,23 @@ def test_factors_need_the_code_that_has_them(pin: str, defaults: str, key: str) 
         with pytest.raises(InputError, match=f"{key}: only checks of the code") as error:
             study_from(text(pin, defaults, analysis=analysis))
         assert error.value.code == "key-not-applicable"
+
+
+@each(
+    ("pin", "defaults", "case", "analysis", "key"),
+    [
+        (CLAMP, DEFAULTS, "", "", "lug_defaults"),
+        ("", DEFAULTS, "", "", ""),
+        ("lug.L = {}", "", HOT, "", ""),
+        ("lug.L = {}", "", HOT, PRESCRIBED, ""),  # whose checks take the fit
+        (CLAMP, "", HOT, "", "case.pull.temperature"),
+        (SEATED, "", "", PRESCRIBED, "pin.P.lug.L.axial"),
+        (SEATED, "", "", "", ""),
+    ],
+)
+def test_keys_without_effect_have_a_warning(
+    pin: str, defaults: str, case: str, analysis: str, key: str
+) -> None:
+    warnings = study_from(text(pin, defaults, case, analysis)).warnings
+    assert ["has no effect" in x for x in warnings] == [True] * bool(key)
+    assert all(f": {key}: has" in x for x in warnings)
