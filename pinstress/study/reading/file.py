@@ -23,6 +23,7 @@ from pinstress.study.reading.limits import control_characters, texts
 from pinstress.study.reading.materials import StoredMaterial, looked_up, with_materials
 from pinstress.study.reading.plausible import questions
 from pinstress.study.reading.toml_text import read_toml
+from pinstress.study.reading.unused import unused
 from pinstress.study.schema.materials import MaterialTable
 from pinstress.study.schema.shown import MAX_LISTED_NAMES, as_text, cut, in_toml
 from pinstress.study.schema.tables import StudyTable
@@ -63,7 +64,7 @@ class Study:
     """A valid study.
 
     table: its content in SI.
-    questions: implausible values, each after its key.
+    questions: implausible values and keys without effect, each after its key.
     located: whether messages give lines of its text, which the user did not write if the study was
     built in Python.
     """
@@ -95,7 +96,7 @@ class Study:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Implausible values, each with its line: the first ones, and the number of others."""
+        """Its questions, each with its line: the first ones, and the number of others."""
         if not self.questions:
             return ()
         errors = self.errors([Wrong(question) for question in self.questions])
@@ -227,6 +228,7 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
             remainder = Study(path, text, table, (), located=located)
             error.remainder = Remainder(remainder, damage)
         raise error
+    doubtful += tuple(unused(table))
     return Study(path, text, table, tuple(provenance), doubtful, located)
 
 

@@ -1,0 +1,37 @@
+"""Keys of a study that have no effect: a warning, as sweeps and other choices may need them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pinbase.keys import key_part
+from pinstress.study.schema.tables import StudyTable
+
+
+def unused(table: StudyTable) -> Iterator[str]:
+    """Yield a sentence on every key without an effect, after the key."""
+    lugs = {
+        f"pin.{key_part(name)}.lug.{key_part(connection)}": lug
+        for name, pin in table.pin.items()
+        for connection, lug in pin.lug.items()
+    }
+    if table.analysis.joints == "prescribed":
+        for key, lug in lugs.items():
+            if lug.axial is not None:
+                yield (
+                    f'{key}.axial: has no effect with analysis.joints = "prescribed", where forces '
+                    "along the axis act on the bands of the links; use other joints, or remove it"
+                )
+    if lugs or not table.pin:
+        return
+    if table.lug_defaults is not None:
+        yield (
+            "lug_defaults: has no effect, because no pin has a lug: each is clamped, is from a "
+            "file, or has lugs = false; give pin.NAME.lug, or remove it"
+        )
+    for name, case in table.case.items():
+        if case.temperature is not None:
+            yield (
+                f"case.{key_part(name)}.temperature: has no effect, because it changes the fits of "
+                "lugs alone, and no pin has a lug; give pin.NAME.lug, or remove it"
+            )

@@ -1,0 +1,77 @@
+"""Keys that have no effect in a study: they are refused or have a warning, never left out in
+silence.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from pinstress import InputError, study_from
+from tests.support.each import each
+
+STUDY = """title = "Clamped pin"
+units = "mm-N-s"
+DEFAULTS
+[material.steel]
+youngs_modulus = "205 GPa"
+poisson_ratio = 0.3
+thermal_expansion = "12e-6 1/K"
+[pin.P]
+material = "steel"
+PIN
+profile = [
+  { length = 10, diameter = 20, name = "head" },
+  { length = 20, diameter = 20, connection = "L" },
+]
+[case.pull]
+kind = "given"
+forces = { L = [0, 0] }
+CASE
+[analysis]
+ANALYSIS
+"""
+CLAMP, PRESCRIBED = 'clamp = ["start"]', 'joints = "prescribed"'
+DEFAULTS, HOT = "lug_defaults = { outer_diameter = 50 }", 'temperature = "80 degC"'
+SEATED = 'lug.L = { axial = "head" }'
+
+
+def text(pin: str = "", defaults: str = "", case: str = "", analysis: str = "") -> str:
+    filled = STUDY.replace("DEFAULTS", defaults).replace("PIN", pin).replace("CASE", case)
+    return filled.replace("ANALYSIS", analysis)
+
+
+@each(
+    ("pin", "defaults", "key"),
+    [
+        ("bending_factor = 1.5", "", "pin.P.bending_factor"),
+        ("lug.L.factors.K = 1.4", "", "pin.P.lug.L.factors"),
+        ("", "lug_defaults.factors.K = 1.4", "lug_defaults.factors"),
+    ],
+)
+def test_factors_need_the_code_that_has_them(pin: str, defaults: str, key: str) -> None:
+    for code in ('"aircraft"', '["general", "aircraft"]'):
+        study_from(text(pin, defaults, analysis=f"code = {code}"))
+    for analysis in ("", 'code = "lifting"\ndesign_factor = 2'):
+        with pytest.raises(InputError, match=f"{key}: only checks of the code") as error:
+            study_from(text(pin, defaults, analysis=analysis))
+        assert error.value.code == "key-not-applicable"
+
+
+@each(
+    ("pin", "defaults", "case", "analysis", "key"),
+    [
+        (CLAMP, DEFAULTS, "", "", "lug_defaults"),
+        ("", DEFAULTS, "", "", ""),
+        ("lug.L = {}", "", HOT, "", ""),
+        ("lug.L = {}", "", HOT, PRESCRIBED, ""),  # whose checks take the fit
+        (CLAMP, "", HOT, "", "case.pull.temperature"),
+        (SEATED, "", "", PRESCRIBED, "pin.P.lug.L.axial"),
+        (SEATED, "", "", "", ""),
+    ],
+)
+def test_keys_without_effect_have_a_warning(
+    pin: str, defaults: str, case: str, analysis: str, key: str
+) -> None:
+    warnings = study_from(text(pin, defaults, case, analysis)).warnings
+    assert ["has no effect" in x for x in warnings] == [True] * bool(key)
+    assert all(f": {key}: has" in x for x in warnings)
