@@ -112,7 +112,7 @@ def test_an_idle_case_adds_no_place_to_the_codes(tmp_path: Path) -> None:
 
 def test_one_code_is_not_compared(tmp_path: Path) -> None:
     """Nor are those of the general one named, which a study has without a choice."""
-    text = re.sub(r"(code|design_factor) = .*\n", "", STUDY)
+    text = re.sub(r"(code|design_factor|bending_factor|factors) = .*\n", "", STUDY)
     general = joint(tmp_path, text)
     assert not codes_table(general.results).rows
     assert {row["code"] for row in general.rows.values()} == {""}
