@@ -364,7 +364,7 @@ class LocalModel:
 
     @cached_property
     def _relief_of_faces(self) -> list[tuple[str | None, slice, sp.csr_matrix]]:
-        """For each face of a cut the cut, the points on the face, and the matrix that makes nodal
+        """The faces of cuts: the cut, the points on its face, and the matrix that makes nodal
         forces (3 S,) of the stress (6 P,) at these.
         """
         (x, y), weight = quadrature()

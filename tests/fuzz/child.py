@@ -19,7 +19,7 @@ __all__ = ["End", "check", "run", "write"]
 
 SECONDS = 60  # of processor time: the machine may have other things to do
 OUT_OF_TIME = f"signal {int(signal.SIGXCPU)} "  # as a worker's end is reported
-MEMORY = 4 * 2**30  # bytes of address space
+MEMORY = 8 * 2**30  # bytes of address space
 MEMORY_OF_CHARTS = resource.RLIM_INFINITY  # their engine reserves any amount, and takes little
 SIGNS = re.compile(
     r"Traceback|\w+Warning\b|Exception ignored|\w+Error\b(?!:? the numerics)|<class "

@@ -25,7 +25,7 @@ from tests.fuzz.quantity import Tree, write
 
 TOLERANCE = 0.2  # of all studies
 OPTIONS = {
-    "run": ("--no-cache", "--vtk", "none", "--jobs", "1", "--memory-limit", "1000"),
+    "run": ("--no-cache", "--vtk", "none", "--jobs", "1", "--memory-limit", "2000"),
     "sweep": ("--jobs", "1", "--quiet"),
     "reliability": ("--jobs", "1", "--quiet"),
 }
