@@ -74,8 +74,6 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
                 f"pin.{key_part(name)}.balance", "connection of the pin", pin.balance, own
             )
     yield from _of_bearing(table)
-    if "aircraft" not in table.analysis.codes:
-        yield from _of_aircraft(table)
     if isinstance(table.analysis.limit_load, list):
         yield from known("analysis.limit_load", "pin", table.pin)
     yield from _of_cases(table, bears)
@@ -151,23 +149,6 @@ def _of_bearing(table: StudyTable) -> Iterator[Wrong]:
                 "this",
                 code="bearing-strength-without-lug",
             )
-
-
-def _of_aircraft(table: StudyTable) -> Iterator[Wrong]:
-    """Yield errors for factors that only checks of the code "aircraft" have."""
-    given = table.lug_defaults or LugTable()
-    keys = ["lug_defaults.factors"] if "factors" in given.model_fields_set else []
-    for name, pin in table.pin.items():
-        at = f"pin.{key_part(name)}"
-        keys += [f"{at}.bending_factor"] if pin.bending_factor is not None else []
-        keys += [
-            f"{at}.lug.{key_part(connection)}.factors"
-            for connection, lug in pin.lug.items()
-            if any(value is not None for _, value in lug.factors) and lug.factors != given.factors
-        ]
-    for key in keys:
-        text = 'only checks of the code "aircraft" have it; add that to analysis.code, or remove it'
-        yield Wrong(f"{key}: {text}", code="key-not-applicable")
 
 
 def _of_cases(table: StudyTable, bears: dict[str, str]) -> Iterator[Wrong]:

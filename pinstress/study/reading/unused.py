@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from pinbase.keys import key_part
+from pinstress.study.schema.lugs import LugTable
 from pinstress.study.schema.tables import StudyTable
 
 
@@ -22,6 +23,7 @@ def unused(table: StudyTable) -> Iterator[str]:
                     f'{key}.axial: has no effect with analysis.joints = "prescribed", where forces '
                     "along the axis act on the bands of the links; use other joints, or remove it"
                 )
+    yield from _of_codes(table)
     if lugs or not table.pin:
         return
     if table.lug_defaults is not None:
@@ -35,3 +37,29 @@ def unused(table: StudyTable) -> Iterator[str]:
                 f"case.{key_part(name)}.temperature: has no effect, because it changes the fits of "
                 "lugs alone, and no pin has a lug; give pin.NAME.lug, or remove it"
             )
+
+
+def _of_codes(table: StudyTable) -> Iterator[str]:
+    """Yield a sentence on every factor that only checks of a code which is not chosen have."""
+    codes, given = table.analysis.codes, table.lug_defaults or LugTable()
+    factors = ["lug_defaults.factors"] if "factors" in given.model_fields_set else []
+    for name, pin in table.pin.items():
+        at = f"pin.{key_part(name)}"
+        factors += [f"{at}.bending_factor"] if pin.bending_factor is not None else []
+        factors += [
+            f"{at}.lug.{key_part(connection)}.factors"
+            for connection, lug in pin.lug.items()
+            if any(value is not None for _, value in lug.factors) and lug.factors != given.factors
+        ]
+    if "aircraft" not in codes:
+        for key in factors:
+            yield (
+                f'{key}: has no effect, because only checks of the code "aircraft" have it; add '
+                "that to analysis.code, or remove it"
+            )
+    if table.analysis.design_factor is not None and "lifting" not in codes:
+        yield (
+            'analysis.design_factor: has no effect, because only checks of the code "lifting" have '
+            "it; add that to analysis.code, or state fitting_factor, which multiplies the loads of "
+            "all checks"
+        )

@@ -128,16 +128,6 @@ class AnalysisTable(StrictTable):
             )
         return self
 
-    @model_validator(mode="after")
-    def _design_factor_counts(self) -> "AnalysisTable":
-        if self.design_factor is not None and "lifting" not in self.codes:
-            raise ArgumentError(
-                'design_factor: only checks of the code "lifting" have it; add that to code, or '
-                "state fitting_factor, which multiplies the loads of all checks",
-                "key-not-applicable",
-            )
-        return self
-
 
 class BeamCheckTable(StrictTable):
     """Compare a cantilever pin's axial stress with beam theory, with the load on its surface and on

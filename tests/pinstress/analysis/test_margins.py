@@ -152,7 +152,6 @@ def test_a_pin_in_two_lugs_of_a_structure_is_a_beam_on_two_supports() -> None:
         ({}, {"ultimate_factor": 0.9}, "factors-out-of-order"),
         ({}, {"fitting_factor": 0.9}, "out-of-range"),
         ({}, {"limit_factor": 0}, "out-of-range"),
-        ({}, {"design_factor": 2.0}, "key-not-applicable"),  # of the code "lifting" alone
     ],
 )
 def test_bad_input(material: dict[str, Any], analysis: dict[str, Any], code: str) -> None:
