@@ -25,6 +25,7 @@ from benchmarks.joints import (
     lugs,
     narrow_arcs,
     places,
+    shanks,
 )
 from benchmarks.motion import motion_accuracy, peers_drop, peers_motion, scissor
 from benchmarks.pins import (
@@ -78,6 +79,7 @@ ACCURACY = {
     "places": places.places,
     "cells": cells.cells,
     "narrow-arcs": narrow_arcs.narrow_arcs,
+    "shanks": shanks.shanks,
     "lugs": lugs.lugs,
     "fillet": accuracy.fillet,
     "reliability": reliability.reliability,

@@ -10,7 +10,7 @@ from itertools import product
 
 import numpy as np
 
-from benchmarks.joints.joint import COARSE, EYE, STEEL, USUAL, D, _model, _pull
+from benchmarks.joints.joint import COARSE, EYE, STEEL, USUAL, D, model, pull
 from benchmarks.joints.rounded_edge import ShrinkFit, edge_stress
 from benchmarks.timing import table
 from fea.core.material import Material
@@ -87,8 +87,7 @@ def _clevises() -> str:
         lug = Lug("all", EYE, lugs, clearance / 1e3, edge_radius=radius * D)
         loads = _part(part)
         found = [
-            _model(inner, outer, gap, lug, cells).solve(loads)
-            for cells in (RESOLVED, USUAL, COARSE)
+            model(inner, outer, gap, lug, cells).solve(loads) for cells in (RESOLVED, USUAL, COARSE)
         ]
         for (name, band), about in product(BANDS, (f"{inner:g} / {outer:g}+{outer:g}",)):
             truth = found[0].largest_pressure[0, band]
@@ -108,7 +107,7 @@ def _clevises() -> str:
 
 
 def _part(part: float) -> PinLoads:
-    loads = _pull(np.zeros(1))
+    loads = pull(np.zeros(1))
     return replace(loads, forces=part * loads.forces)
 
 

@@ -27,11 +27,12 @@ from fea.support.contact.resolution import Resolution
 from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
+from geometry.shape.lug_outline import LugOutline
 
 S = TypeVar("S")
 T = TypeVar("T")
 
-E, NU, D, EYE, ARM, FORCE = 210e9, 0.3, 0.02, 0.05, 0.04, 50e3
+E, NU, D, EYE, HELD, FORCE = 210e9, 0.3, 0.02, 0.05, 0.05, 50e3
 STEEL = Material("steel", E, NU)
 NAMES = "L", "M", "R"
 SHARE = np.array([-0.5, 1.0, -0.5])
@@ -58,7 +59,7 @@ def joint() -> str:
     return f"{_accuracy()}\n\n{_convergence()}\n\n{_times()}"
 
 
-def _model(
+def model(
     inner: float, outer: float, gap: float, of_all: Lug, cells: Resolution = USUAL
 ) -> ContactModel:
     """A clevis, mm, whose lugs are as `of_all` but for the tilt of the outer ones."""
@@ -68,13 +69,19 @@ def _model(
         for t, name in zip((outer, inner, outer), NAMES, strict=True)
     )
     pin = Pin("P", (over, left, apart, middle, apart, right, over))
-    shank = E * EYE * (outer / 1e3) ** 3 / (12.0 * ARM)
+    shank = shank_tilt(outer / 1e3)
     tilt = dict(zip(NAMES, (shank, math.inf, shank), strict=True))
     lugs = [replace(of_all, connection=name, tilt=k) for name, k in tilt.items()]
     return ContactModel(pin, STEEL, lugs, cells)
 
 
-def _pull(angle: Floats) -> PinLoads:
+def shank_tilt(thick: float) -> float:
+    """The stiffness, N m/rad, with which the shank of an eye bends. thick: m."""
+    outline = LugOutline("round", D, EYE, EYE, HELD, EYE / 2.0)
+    return E * thick**3 / (12.0 * outline.bending)
+
+
+def pull(angle: Floats) -> PinLoads:
     """One instant for each angle (rad) of the load."""
     along = np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=1)
     return PinLoads("pull", NAMES, FORCE * SHARE[None, :, None] * along[:, None, :])
@@ -84,7 +91,7 @@ def _growing(count: int) -> PinLoads:
     """Instants of which no two have the same contact, which clearance makes depend on the size of
     the load.
     """
-    loads = _pull(np.linspace(0.0, np.pi, count))
+    loads = pull(np.linspace(0.0, np.pi, count))
     return replace(loads, forces=loads.forces * np.linspace(1.0, 0.2, count)[:, None, None])
 
 
@@ -92,8 +99,8 @@ def _accuracy() -> str:
     rows = []
     for inner, outer, gap, clearance, moment, stress in TRUTH:
         lug = Lug("all", EYE, STEEL, clearance / 1e3)
-        found = _model(inner, outer, gap, lug).solve(_pull(np.zeros(1)))
-        bending, ours = _at_mid_span(found, inner, outer, gap)
+        found = model(inner, outer, gap, lug).solve(pull(np.zeros(1)))
+        bending, ours = at_mid_span(found, inner, outer, gap)
         rows.append(
             (
                 f"{inner:g} / {outer:g}+{outer:g}, gap {gap:g}",
@@ -109,9 +116,7 @@ def _accuracy() -> str:
     return table(head, rows)
 
 
-def _at_mid_span(
-    found: JointContact, inner: float, outer: float, gap: float
-) -> tuple[float, float]:
+def at_mid_span(found: JointContact, inner: float, outer: float, gap: float) -> tuple[float, float]:
     """Bending moment over the nominal one, and von Mises stress of the tension fibre, MPa."""
     middle = (2.0 + outer + gap + inner / 2.0) / 1e3
     bending = abs(found.bending_moment(np.array([middle]))[0, 0, 0])
@@ -132,13 +137,13 @@ def _convergence() -> str:
     for case, radius, cells in product((TRUTH[2], TRUTH[7]), RADII, (COARSE, USUAL, FINE)):
         inner, outer, gap, clearance = case[:4]
         lug = Lug("all", EYE, STEEL, clearance / 1e3, edge_radius=radius * D)
-        model = _model(inner, outer, gap, lug, cells)
-        found = model.solve(_pull(np.zeros(1)))
-        bending, stress = _at_mid_span(found, inner, outer, gap)
+        solved = model(inner, outer, gap, lug, cells)
+        found = solved.solve(pull(np.zeros(1)))
+        bending, stress = at_mid_span(found, inner, outer, gap)
         about = f"{cells.rings}, {cells.sectors}, {cells.highest}"
         clevis = f"{inner:g} / {outer:g}+{outer:g}"
         numbers = f"{bending:.5f}", f"{stress:.1f}"
-        rows.append((clevis, f"{radius:g}", about, str(len(model.rings)), *numbers))
+        rows.append((clevis, f"{radius:g}", about, str(len(solved.rings)), *numbers))
     head = ("lugs [mm]", "edge radius / d", "rings, sectors, n", "all rings", "M / M0")
     return table((*head, "mid-span [MPa]"), rows)
 
@@ -151,7 +156,7 @@ def _times() -> str:
 
 
 def _times_on(cells: Resolution) -> tuple[str, ...]:
-    new = partial(_model, 20, 10, 1, Lug("all", EYE, STEEL, 5e-5), cells)
+    new = partial(model, 20, 10, 1, Lug("all", EYE, STEEL, 5e-5), cells)
     first, _ = _timed(lambda _: new(), str)
     one, _ = _timed(lambda model: model.solve(_growing(1)), new)
     many, found = _timed(lambda model: model.solve(_growing(INSTANTS)), new)

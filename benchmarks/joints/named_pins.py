@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from benchmarks.joints.joint import ARM, EYE, FORCE, NAMES, SHARE, STEEL, D, E
+from benchmarks.joints.joint import EYE, FORCE, NAMES, SHARE, STEEL, D, shank_tilt
 from benchmarks.joints.turned_ccx import Groove
 from benchmarks.timing import table
 from fea.core.material import Material
@@ -58,7 +58,7 @@ def clevis(
     )
     between = tuple(replace(part, bore=bore) for part in gap)
     pin = Pin("P", (over, left, *between, middle, *between, right, over))
-    shank = E * EYE * outer**3 / (12.0 * ARM)
+    shank = shank_tilt(outer)
     tilts = zip(NAMES, (shank, math.inf, shank), strict=True)
     lugs = tuple(Lug(name, EYE, STEEL, -interference, tilt=k) for name, k in tilts)
     along = FORCE * SHARE[None, :, None] * np.eye(3)[0]

@@ -9,7 +9,7 @@ import math
 from dataclasses import replace
 
 from benchmarks import ROOT
-from benchmarks.joints.joint import ARM, EYE, FORCE, NAMES, SHARE, STEEL, TRUTH, D, E
+from benchmarks.joints.joint import EYE, FORCE, NAMES, SHARE, STEEL, TRUTH, D, shank_tilt
 from benchmarks.joints.named_pins import named_pins
 from benchmarks.joints.random_pins import Checked, check, pin_trials
 from benchmarks.timing import table
@@ -115,7 +115,7 @@ def clevis_row(inner: float, outer: float, gap: float, clearance: float) -> Maxi
         for t, name in zip((outer, inner, outer), NAMES, strict=True)
     )
     pin = Pin("P", (over, left, apart, middle, apart, right, over))
-    shank = E * EYE * (outer / 1e3) ** 3 / (12.0 * ARM)
+    shank = shank_tilt(outer / 1e3)
     tilts = shank, math.inf, shank
     lugs = tuple(
         Lug(name, EYE, STEEL, clearance / 1e3, tilt=tilt)

@@ -9,12 +9,16 @@ import math
 from dataclasses import dataclass, replace
 from typing import Literal
 
+import numpy as np
+
+from pinbase.arrays import Floats
 from pinbase.errors import ArgumentError
 
 HeadShape = Literal["round", "tapered", "square"]
 OutlineShape = Literal["round", "tapered", "square", "ring"]
 DIGITS = 9  # of lengths in radii: similar lugs that differ by round-off are one
 MIN_WALL = 1e-3  # of a head, of its bore's diameter
+BENDING_STATIONS = 400  # of the integral over the shank, which they give to 1e-4
 
 
 @dataclass(frozen=True)
@@ -103,3 +107,21 @@ class LugOutline:
         along, across = self.length - self.centre, self.width / 2.0
         turn = math.atan2(across, along) + math.acos(R / math.hypot(along, across))
         return (self.centre + R * math.cos(turn), R * math.sin(turn)), (self.length, across)
+
+    @property
+    def bending(self) -> float:
+        """The integral of dx / width from the bore's centre to where the shank is held, without the
+        hole: by it a lug bends out of its plane, like a beam of such width.
+        """
+        step = self.length / BENDING_STATIONS
+        x = np.asarray(step * (np.arange(BENDING_STATIONS) + 0.5), dtype=np.float64)
+        hole = np.sqrt(np.maximum((self.hole / 2.0) ** 2 - x * x, 0.0))
+        return float(np.sum(step / (2.0 * (self._half_width(x) - hole))))
+
+    def _half_width(self, x: Floats) -> Floats:
+        """Half of the width (P,) m, at x (P,) m from the bore's centre towards the shank."""
+        if self.shape == "square":
+            return np.full(len(x), self.width / 2.0)
+        (leaves, half), (held, last) = self.joints
+        head = np.sqrt(np.maximum((self.head / 2.0) ** 2 - (x - self.centre) ** 2, 0.0))
+        return np.where(x < leaves, head, np.interp(x, [leaves, held], [half, last]))

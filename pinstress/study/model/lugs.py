@@ -281,23 +281,25 @@ def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Mater
     band = pin.band(connection)
     outer = given.outer_diameter or EYE_DIAMETER_RATIO * 2.0 * band.radius
     made_of = of_pin if given.material is None else material(study, given.material)
-    tilt = _bending(made_of, outer, band.length) if given.tilt is None else _stiffness(given.tilt)
     fit = None if given.fit is None else _fit(connection, given.fit, 2.0 * band.radius)
     middle = 0.0 if fit is None else sum(fit) / 2.0
     bushing, pressed = _bushing(study, connection, given, 2.0 * band.radius)
-    return Lug(
+    lug = Lug(
         connection,
         outer,
         made_of,
         middle if given.clearance is None else given.clearance,
         given.edge_radius,
-        tilt,
         bushing=bushing,
         range=replace(_range(given.range, fit), interference=pressed),
         shank=None if given.shank is None else _shank(given.shank, outer),
         friction=given.friction,
         axial=(given.axial, given.axial) if isinstance(given.axial, str) else given.axial,
     )
+    if given.tilt is not None:
+        return replace(lug, tilt=_stiffness(given.tilt))
+    held = given.shank is not None and given.shank.length is not None
+    return replace(lug, tilt=_bending(lug, band, held))
 
 
 def _bushing(
@@ -368,6 +370,10 @@ def _stiffness(tilt: str | float) -> float:
     return {"guided": math.inf, "free": 0.0}[tilt] if isinstance(tilt, str) else tilt
 
 
-def _bending(material: Material, outer: float, thickness: float) -> float:
-    """Return the bending stiffness of a shank as wide as the eye, N m/rad."""
-    return material.youngs_modulus * outer * thickness**3 / (12.0 * CLAMP_DISTANCE_RATIO * outer)
+def _bending(lug: Lug, band: Band, held: bool) -> float:
+    """Return the stiffness, N m/rad, with which a lug on a band bends out of its plane.
+
+    held: whether its shank says where it is held.
+    """
+    over_width = lug.outline(band.radius).bending if held else CLAMP_DISTANCE_RATIO
+    return lug.material.youngs_modulus * band.length**3 / (12.0 * over_width)

@@ -127,7 +127,8 @@ class LugTable(StrictTable):
     results have no peak of pressure there."""
     tilt: Tilt | None = None
     """Resistance of the link to tilting of its eye: "guided" (rigid), "free", or a stiffness.
-    Default: the bending stiffness of an eye clamped at a distance of 0.8 outer diameters."""
+    Default: the bending stiffness of the lug as far as its `shank.length`; without one, of an eye
+    clamped at a distance of 0.8 outer diameters."""
     bushing: BushingTable | None = None
     """A bushing in the eye."""
     friction: Friction = 0.0

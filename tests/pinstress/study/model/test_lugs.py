@@ -96,6 +96,25 @@ def test_what_is_not_given(tmp_path: Path) -> None:
     assert middle.tilt == pytest.approx(8.0 * left.tilt)
 
 
+def test_a_lug_bends_as_far_as_its_shank_is_held(tmp_path: Path) -> None:
+    """A shank 30 wide and held 100 away bends four times as much as the default says."""
+    shanks = """
+[pin.P.lug.L]
+shank = { width = 30, length = 100 }
+[pin.P.lug.M]
+shank = { width = 30, length = 100 }
+tilt = "guided"
+[pin.P.lug.R]
+shank = { width = 30 }
+"""
+    left, middle, right = lugs(tmp_path, shanks)
+    default = 210e9 * 0.05 * 0.01**3 / (12.0 * 0.04)
+    assert left.tilt == pytest.approx(default * 0.8 / left.outline(0.01).bending)
+    assert left.tilt == pytest.approx(0.248 * default, rel=0.01)
+    assert right.tilt == pytest.approx(default)
+    assert middle.tilt == math.inf
+
+
 @each(
     ("pin", "joints", "held"),
     [
