@@ -5,7 +5,7 @@ three dimensions, and what its stiffness in the plane would change.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import gmsh
 import numpy as np
@@ -45,32 +45,46 @@ LUGS = (
     (36.0, 36.0, 50.0, 10.0),
 )
 USUAL = 0.8  # integral of dx / width of a lug without a shank
-AT_BORE, GROWTH, LARGEST = 4.0, 0.25, 6.0  # of elements: at the bore, per distance from it, mm
-RING_LAYERS, AROUND, LAYERS = 3, 48, 2  # elements of a ring, and through the thickness
+AT_BORE, GROWTH, LARGEST = 2.5, 0.25, 6.0  # of elements: at the bore, per distance from it, mm
+RING_LAYERS, AROUND, LAYERS = 5, 72, 3  # elements of a ring, and through the thickness
+ANGLES, NEAR = (75, 90, 105, 120), 6  # degrees from the shank where hoop stress is read, and about
 # Width of the shank, its length, mm, and whether it is pressed: of the clevises of `joint`
 SHANKS = ((50.0, 50.0, False), (50.0, 50.0, True), (30.0, 100.0, False), (24.0, 50.0, False))
 
 
 def shanks() -> str:
     """Two tables."""
-    return f"{_tilts()}\n\n{_in_the_plane()}"
+    return f"{_bent()}\n\n{_in_the_plane()}"
 
 
-def _tilts() -> str:
+@dataclass(frozen=True)
+class _Tilted:
+    """A bore under a pressure z cos: its tilt, rad, and hoop stress at the face by angle from the
+    shank, each over the couple.
+    """
+
+    tilt: float
+    hoop: Floats
+
+
+def _bent() -> str:
+    """Stiffness against tilting, and hoop stress beyond that of the eye alone."""
     rows = []
     for head, width, length, thick in LUGS:
-        ring = _ring(head, thick)
-        lug, usual = _lug(head, width, length, thick), thick**3 / (12.0 * USUAL)
-        stiff = [
-            1.0 / (_compliance(lug, end, length) - _compliance(ring, end, outer=head / 2.0))
-            for end in (True, False)
-        ]
+        lug, ring = _lug(head, width, length, thick), _ring(head, thick)
+        usual = thick**3 / (12.0 * USUAL)
         outline = LugOutline("round", BORE, head, width, length, head / 2.0)
-        shown = (*(k / usual for k in stiff), USUAL / outline.bending)
+        nominal = 6.0 / (outline.net_width * thick**2)
+        stiff, more = list[float](), list[str]()
+        for end in (True, False):
+            whole, eye = _tilted(lug, end, length), _tilted(ring, end, outer=head / 2.0)
+            stiff.append(1.0 / (whole.tilt - eye.tilt) / usual)
+            more.append(", ".join(f"{x:.2f}" for x in (whole.hoop - eye.hoop) / nominal))
         sizes = (f"{x:g}" for x in (head, width, length, thick))
-        rows.append((*sizes, *(f"{x:.3f}" for x in shown)))
+        shown = (f"{x:.3f}" for x in (*stiff, USUAL / outline.bending))
+        rows.append((*sizes, *shown, *more))
     titles = ("head [mm]", "width", "length", "thickness", "pressed at its end", "at the shank")
-    return table((*titles, "by its outline"), rows)
+    return table((*titles, "by its outline", "hoop stress, at its end", "at the shank"), rows)
 
 
 def _lug(head: float, width: float, length: float, thick: float) -> MeshHex:
@@ -126,11 +140,9 @@ def _through(points: Floats, quads: np.ndarray, thick: float) -> MeshHex:
     return MeshHex(nodes, np.hstack(layers))
 
 
-def _compliance(
-    mesh: MeshHex, at_end: bool, held: float = 0.0, outer: float | None = None
-) -> float:
-    """Tilt of the bore, rad per N mm over Young's modulus, under a pressure z cos on the half of it
-    away from the shank (`at_end`) or towards it, by its work.
+def _tilted(mesh: MeshHex, at_end: bool, held: float = 0.0, outer: float | None = None) -> _Tilted:
+    """A bore, over Young's modulus, under a pressure z cos on the half of it away from the shank
+    (`at_end`) or towards it. Its tilt is by the work.
 
     held: x of the end that is held; or outer: radius of a ring, whose outer surface reacts by a
     traction along x, linear in z, and from whose mean motion the tilt counts.
@@ -162,7 +174,7 @@ def _compliance(
     if outer is None:
         free[basis.get_dofs(lambda x: np.abs(x[0] - held) < 1e-9).all()] = 0.0
         moved = ConstrainedSystem(K).solve(K, free, force[:, None])[:, 0]
-        return float(force @ moved) / moment**2
+        return _Tilted(float(force @ moved) / moment**2, _hoop(bore, moved) / moment)
     against, rigid = _guides(mesh, basis, outer)
     force = force - against @ np.linalg.solve(rigid.T @ against, rigid.T @ force)
     for at, axes in (((outer, 0.0), (0, 1, 2)), ((-outer, 0.0), (1, 2)), ((0.0, outer), (2,))):
@@ -170,7 +182,25 @@ def _compliance(
         free[basis.nodal_dofs[list(axes), corner]] = 0.0
     moved = ConstrainedSystem(K).solve(K, free, force[:, None])[:, 0]
     moved = moved - rigid @ np.linalg.solve(against.T @ rigid, against.T @ moved)
-    return float(force @ moved) / moment**2
+    return _Tilted(float(force @ moved) / moment**2, _hoop(bore, moved) / moment)
+
+
+def _hoop(bore: FacetBasis, moved: Floats) -> Floats:
+    """The hoop stress at a face near ANGLES from x, by the least squares of its slope along z."""
+    strain = np.asarray(sym_grad(bore.interpolate(moved)))
+    x, y, z = np.asarray(bore.global_coordinates())
+    r = np.hypot(x, y)
+    t = np.stack([-y / r, x / r, 0.0 * r])
+    lam, mu = NU / (1.0 + NU) / (1.0 - 2.0 * NU), 0.5 / (1.0 + NU)
+    stress = lam * np.einsum("iiab->ab", strain) + 2.0 * mu * np.einsum(
+        "iab,ijab,jab->ab", t, strain, t
+    )
+    turn, out = np.abs(np.degrees(np.arctan2(y, x))), list[float]()
+    for angle in ANGLES:
+        near = np.abs(turn - angle) < NEAR
+        weight = bore.dx[near]
+        out.append((stress * z)[near] @ weight / (z[near] ** 2 @ weight) * z.max())
+    return np.array(out)
 
 
 def _guides(mesh: MeshHex, basis: Basis, outer: float) -> tuple[Floats, Floats]:

@@ -10,11 +10,11 @@ from functools import partial
 import numpy as np
 
 from fea.core.material import Material
+from fea.lug.lug_load import LugLoad
 from fea.lug.lug_stress import (
     USUAL_AROUND,
     BoreStress,
     LugInPlane,
-    LugLoad,
     at_walls,
     bore_stresses,
 )

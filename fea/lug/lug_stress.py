@@ -22,8 +22,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fea.core.material import Material
+from fea.lug.lug_load import LugLoad
 from fea.lug.plane_contact import PlaneContact
 from fea.lug.plane_fields import Elasticity, PlaneFields, plane_fields
+from fea.lug.shank_bending import bent
 from fea.lug.slipping import SlippingBushing, TwoWalls
 from fea.lug.through_thickness import EyeStress
 from fea.support.lugs.lug import Lug
@@ -36,30 +38,6 @@ COARSER = 2  # times as long: elements and sectors with which the result is comp
 MIN_FORCE_SHARE = 0.05
 MIN_RINGS_OF_SHARP_BORE = 2  # of which the outermost are not read beneath the pin
 USUAL_AROUND = 96  # elements and sectors around the bore
-
-
-@dataclass(frozen=True)
-class LugLoad:
-    """The load of a joint on one lug in one case, at T instants.
-
-    force: of the pin on the lug, (T, 2) N in the pin's axes.
-    pressure: harmonics (N + 1, T, R, 2) Pa of the pressure on its R rings, in the pin's axes.
-    length: of the rings, (R,) m.
-    angle: of the shank from the pin's x axis, (T,) rad.
-    times: (T,) s, None without a motion.
-    """
-
-    force: Floats
-    pressure: Floats
-    length: Floats
-    angle: Floats
-    times: Floats | None = None
-
-    def at(self, instant: int) -> LugLoad:
-        """The load at one instant."""
-        one = slice(instant, instant + 1)
-        times = None if self.times is None else self.times[one]
-        return LugLoad(self.force[one], self.pressure[:, one], self.length, self.angle[one], times)
 
 
 @dataclass(frozen=True)
@@ -111,8 +89,8 @@ class LugInPlane:
         around: int = USUAL_AROUND,
         memo: Memo | None = None,
     ) -> None:
-        self.lug, outline, elastic = lug, lug.outline(radius), _elasticity(lug)
-        scaled = outline.in_radii()
+        self.lug, self.outline, elastic = lug, lug.outline(radius), _elasticity(lug)
+        scaled = self.outline.in_radii()
         self.fields: PlaneFields = (memo or Memo()).get(
             ("plane lug", scaled, elastic, around), lambda: plane_fields(scaled, elastic, around)
         )
@@ -121,7 +99,7 @@ class LugInPlane:
             self.fields, E, lug.bearing, pin, inner, radius, lug.clearance, around
         )
         misfit = 0.0 if lug.bushing is None else lug.bushing.misfit
-        self.misfit = misfit / outline.hole * E
+        self.misfit = misfit / self.outline.hole * E
 
     def amounts(self, pressures: Floats) -> Floats:
         """The amounts (T, K) of the unit loads under pressures (T, M), Pa, and the misfit."""
@@ -236,7 +214,7 @@ def at_walls(
 ) -> list[BoreStress]:
     """The largest stress at each wall, without the parts of its error but that of sampling."""
     bushing, lug = plane.lug.bushing, plane.lug
-    forces = _along_shank(load)
+    forces = load.along_shank / load.length.sum()
     size = np.hypot(*forces.T)
     strong = size > MIN_FORCE_SHARE * size.max()
     if isinstance(plane, SlippingBushing):
@@ -259,23 +237,26 @@ def at_walls(
     return out
 
 
-def _along_shank(load: LugLoad) -> Floats:
-    """The force per thickness along the shank and across it, (T, 2) N/m."""
-    c, s = np.cos(load.angle), np.sin(load.angle)
-    x, y = load.force.T / load.length.sum()
-    return np.stack([c * x + s * y, c * y - s * x], axis=1)
-
-
-def _added(eye: EyeStress, load: LugLoad, angles: Floats, hole: bool = False) -> Floats:
+def _added(
+    plane: LugInPlane | SlippingBushing,
+    eye: EyeStress,
+    load: LugLoad,
+    angles: Floats,
+    hole: bool = False,
+) -> Floats:
     """The stress (T, R, P), Pa, that pressure adds by being uneven through the thickness, at angles
     (P,) from the shank.
+
+    hole: whether at that of the lug about a bushing.
     """
     amplitude = eye.added(load.pressure, load.length, hole)
     turns = angles + load.angle[:, None]  # (T, P)
     n = np.arange(len(amplitude))[:, None, None]
     cos, sin = np.cos(n * turns), np.sin(n * turns)
     first = np.einsum("ntr,ntp->trp", amplitude[..., 0], cos)
-    return np.asarray(first + np.einsum("ntr,ntp->trp", amplitude[..., 1], sin))
+    out = np.asarray(first + np.einsum("ntr,ntp->trp", amplitude[..., 1], sin))
+    of_lug = hole or plane.lug.bushing is None
+    return out + bent(plane.outline, load, angles) if of_lug else out
 
 
 def _bore(
@@ -283,7 +264,7 @@ def _bore(
 ) -> tuple[_Around, _Around]:
     """The stress of the wall on which the pin bears, where it is free and beneath the pin."""
     wall = plane.fields.bore
-    total = (amounts @ (wall.hoop - wall.radial))[:, None] + _added(eye, load, wall.angles)
+    total = (amounts @ (wall.hoop - wall.radial))[:, None] + _added(plane, eye, load, wall.angles)
     return _of_wall(plane.lug, load, wall.angles, total, pressure)
 
 
@@ -296,7 +277,7 @@ def _of_wall(
     sectors, (T, P / 2), as the mean of the rings.
     """
     # At the middles of sectors; two points of a wall a sector.
-    middles, here = angles[::2], pressure[:, None] * _shares(load)[:, :, None]
+    middles, here = angles[::2], pressure[:, None] * load.shares[:, :, None]
     at_middles = np.broadcast_to(middles, pressure.shape)
     hoop = total[:, :, ::2] - here
     # And free where contact ends, of which there are two at most at most instants.
@@ -323,9 +304,10 @@ def _slipping(
     """The stress of a slipping bushing's bore, and of the hole about it."""
     angles = plane.angles
     bore, hole = (x[:, None] for x in plane.stress_and_pressure(pressures))
-    walls = _of_wall(plane.lug, load, angles, bore + _added(eye, load, angles), pressures.bore)
+    bore = bore + _added(plane, eye, load, angles)
+    walls = _of_wall(plane.lug, load, angles, bore, pressures.bore)
     # Beneath the bushing the press fit is even through the thickness; where it opens, as at a bore
-    total, pressed = hole + _added(eye, load, angles, hole=True), pressures.hole[:, None]
+    total, pressed = hole + _added(plane, eye, load, angles, hole=True), pressures.hole[:, None]
     edge, known = _ends_of_contact(pressures.hole)
     at = np.where(known, edge, 0.0)
     beside = np.where(known[:, None], _between(total, 2.0 * at), 0.0)
@@ -335,15 +317,6 @@ def _slipping(
     pressed = np.concatenate([pressed, np.zeros((*pressed.shape[:2], beside.shape[2]))], axis=2)
     von_mises = np.sqrt(hoop * hoop + hoop * pressed + pressed * pressed)
     return walls, _Around(angle, hoop, von_mises)
-
-
-def _shares(load: LugLoad) -> Floats:
-    """The load per length of each ring over the mean, (T, R), in the direction of the force."""
-    first = load.pressure[1] if len(load.pressure) > 1 else np.zeros((1, len(load.length), 2))
-    mean = np.einsum("trp,r->tp", first, load.length / load.length.sum())
-    size = np.einsum("tp,tp->t", mean, mean)[:, None]
-    along = np.einsum("trp,tp->tr", first, mean)
-    return np.where(size > 0.0, np.maximum(along, 0.0) / np.where(size > 0.0, size, 1.0), 1.0)
 
 
 def _ends_of_contact(
@@ -384,7 +357,7 @@ def _hole(plane: LugInPlane, eye: EyeStress, load: LugLoad, amounts: Floats) -> 
     """The stress of the lug about its bushing."""
     assert plane.fields.hole is not None
     wall = plane.fields.hole.at(amounts)
-    hoop = wall.hoop[:, None] + _added(eye, load, wall.angles, hole=True)
+    hoop = wall.hoop[:, None] + _added(plane, eye, load, wall.angles, hole=True)
     radial, shear = wall.radial[:, None], wall.shear[:, None]
     von_mises = np.sqrt(hoop * hoop - hoop * radial + radial * radial + 3.0 * shear * shear)
     return _Around(np.broadcast_to(wall.angles, wall.hoop.shape), hoop, von_mises)

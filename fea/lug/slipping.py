@@ -66,7 +66,7 @@ class SlippingBushing:
         assert lug.bushing is not None
         self.lug, self.pin, self.inner, self.radius = lug, pin, inner, radius
         self.sectors, self.hole = around, radius + lug.bushing.thickness
-        whole = lug.outline(radius)
+        self.outline = whole = lug.outline(radius)
         alone = LugOutline(
             whole.shape, 2.0 * self.hole, whole.head, whole.width, whole.length, whole.end
         ).in_radii()

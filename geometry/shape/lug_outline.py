@@ -109,6 +109,11 @@ class LugOutline:
         return (self.centre + R * math.cos(turn), R * math.sin(turn)), (self.length, across)
 
     @property
+    def net_width(self) -> float:
+        """The width beside the hole, across the shank, m."""
+        return 2.0 * float(self._half_width(np.zeros(1))[0]) - self.hole
+
+    @property
     def bending(self) -> float:
         """The integral of dx / width from the bore's centre to where the shank is held, without the
         hole: by it a lug bends out of its plane, like a beam of such width.

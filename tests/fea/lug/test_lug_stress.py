@@ -8,7 +8,8 @@ import pytest
 
 from fea.core.material import Material
 from fea.lug.in_joint import degrees_from_shank
-from fea.lug.lug_stress import BoreStress, LugInPlane, LugLoad, bore_stresses
+from fea.lug.lug_load import LugLoad
+from fea.lug.lug_stress import BoreStress, LugInPlane, bore_stresses
 from fea.lug.plane_fields import Elasticity, plane_fields
 from fea.lug.through_thickness import EyeStress, eye_stress
 from fea.support.contact.flexibility import lug_rings

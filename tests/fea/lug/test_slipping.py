@@ -6,7 +6,8 @@ from functools import partial
 import numpy as np
 import pytest
 
-from fea.lug.lug_stress import BoreStress, LugInPlane, LugLoad, bore_stresses, stresses_of
+from fea.lug.lug_load import LugLoad
+from fea.lug.lug_stress import BoreStress, LugInPlane, bore_stresses, stresses_of
 from fea.lug.slipping import SlippingBushing
 from fea.lug.through_thickness import EyeStress
 from fea.support.lugs.fit import bushing_press_fit

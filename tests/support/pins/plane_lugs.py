@@ -16,7 +16,8 @@ from pathlib import Path
 import numpy as np
 
 from fea.core.material import Material
-from fea.lug.lug_stress import LugInPlane, LugLoad, stresses_of
+from fea.lug.lug_load import LugLoad
+from fea.lug.lug_stress import LugInPlane, stresses_of
 from fea.lug.slipping import SlippingBushing
 from fea.lug.through_thickness import EyeStress
 from fea.support.lugs.lug import Bushing, Lug, Shank

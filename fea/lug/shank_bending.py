@@ -1,0 +1,37 @@
+"""What a shank that bends out of its plane adds to the hoop stress beside the bore of its lug.
+
+A pin that bends presses more on one face of a lug than on the other, and the shank carries the
+couple. The eye as a body of revolution carries it all around (fea.lug.through_thickness), a lug
+that is pulled beside its bore alone: there lugs in three dimensions have 0.7 to 0.9 of the nominal
+bending stress of the net section more than such an eye, most at 82 degrees from the shank. Lugs
+that are pressed have less than the eye, which is safe. Measured by `python -m benchmarks shanks`.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fea.lug.lug_load import LugLoad
+from geometry.shape.lug_outline import LugOutline
+from pinbase.arrays import Floats
+
+SHARE = 0.88  # of the nominal stress: the largest of the lugs of the benchmark
+ANGLE = math.radians(82.0)  # from the shank, where it is largest; it falls as cos^2 on both sides
+
+
+def bent(outline: LugOutline, load: LugLoad, angles: Floats) -> Floats:
+    """The addition (T, R, P), Pa, to the hoop stress of the rings at angles (P,) from the shank.
+
+    outline: of the lug, m.
+    """
+    thick = load.length.sum()
+    along, across = load.along_shank.T
+    size = np.hypot(along, across)
+    pulled = np.where(size > 0.0, np.maximum(-along, 0.0) / np.where(size > 0.0, size, 1.0), 0.0)
+    per_depth = load.couple(outline.bore / 2.0) / (outline.net_width * thick**3 / 12.0)
+    slope = -SHARE * pulled * per_depth
+    off = np.abs(np.abs(np.remainder(angles + math.pi, 2.0 * math.pi) - math.pi) - ANGLE)
+    around = np.where(off < math.pi / 2.0, np.cos(off) ** 2, 0.0)
+    return np.asarray(slope[:, None, None] * load.z[:, None] * around)
