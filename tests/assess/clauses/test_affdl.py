@@ -17,13 +17,16 @@ import pytest
 from assess.checks import SETS, margins_of
 from assess.clauses.affdl_joint import DoubleShear
 from assess.clauses.affdl_lugs import net_section_load
+from assess.clauses.cozzone import cozzone_strength
 from assess.clauses.eye import PlateEye
 from assess.lug_factors import LugFactors
 from assess.margin import Margin
 from assess.situation import Situation
+from fea.beam.round_section import Circle
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.support.lugs.lug import Bushing, Lug, Shank
+from geometry import Pin
 from tests.support.each import each
 from tests.support.pins.plain_pins import double_shear
 
@@ -126,6 +129,27 @@ def test_the_diameter_that_would_pass() -> None:
         m for m in margins_of(replace(s, profile=thicker)) if m.method == "pin bending, rupture"
     )
     assert passing.used == pytest.approx(1.0)
+
+
+def test_bending_governs_where_the_section_carries_least() -> None:
+    """A tube in one gap and a solid waist in the other, both bent alike: stress is larger in the
+    waist, but a tube has less beyond yield, by the plastic over the elastic section modulus.
+    """
+    s = joint_of_table()
+    segments, bore = list(s.pin.segments), 0.9 * DP
+    tube = Circle(DP / 2.0, bore / 2.0)
+    waist = Circle((0.95 * tube.modulus * 4.0 / math.pi) ** (1.0 / 3.0))
+    segments[1] = replace(segments[1], diameter=2.0 * waist.outer)
+    segments[3] = replace(segments[3], bore=bore)
+    assert waist.modulus < tube.modulus
+    steel = replace(s.material, ultimate_strain=0.12)
+    s = replace(s, profile=Pin("P", tuple(segments)), material=steel, bending_factor=None,
+                lug_factors={})  # fmt: skip
+    (bent,) = (m for m in margins_of(s) if m.method == "pin bending, rupture")
+    assert bent.at == "segment 4"
+    assert bent.allowable == pytest.approx(
+        cozzone_strength(steel, tube, 0.12).result.value * tube.modulus
+    )
 
 
 def test_a_missing_factor_is_named() -> None:
