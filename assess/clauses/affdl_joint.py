@@ -19,6 +19,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from assess.check import CheckText, WorstPlace, check
 from assess.clauses.affdl_lugs import (
     LUG_OMITS,
@@ -29,10 +31,10 @@ from assess.clauses.affdl_lugs import (
 )
 from assess.clauses.cozzone import bending_strength
 from assess.clauses.eye import LoadedEye, loaded_eyes
-from assess.clauses.eye_margin import not_axial
+from assess.clauses.eye_margin import lacks_pull
 from assess.margin import Margin, strength_key
 from assess.situation import Situation
-from assess.strength.bending_arms import layout
+from assess.strength.bending_arms import LAYOUT_TOLERANCE, layout
 from assess.work import Work, work
 from fea.beam.round_section import thinnest_section
 from geometry import ArgumentError, Band
@@ -136,9 +138,6 @@ def affdl_joint(text: CheckText, s: Situation) -> list[Margin]:
     if isinstance(joint, list):
         return [text.lacks(s, *joint)]
     bands, loaded = _in_order(s)
-    for eye in loaded:
-        if across := not_axial(text, s, eye):
-            return [across]
     t = int(loaded[1].size.argmax())
     force, place = float(loaded[1].size[t]), WorstPlace.at_band(bands[1], s.loads, t)
     name, basis = s.material.name, loaded[1].basis
@@ -148,12 +147,21 @@ def affdl_joint(text: CheckText, s: Situation) -> list[Margin]:
 def joint_of(s: Situation) -> DoubleShear | list[str]:
     """The joint of a situation, or what it lacks to be one, or to be checked."""
     bands, eyes = _in_order(s)
-    if len(bands) != len(eyes) or layout(s) != LAYOUT:
+    if len(bands) != len(eyes) or not _symmetrical(s):
         return [LAYOUT_NEEDED]
+    if needs := [need for eye in eyes if (need := lacks_pull(eye))]:
+        return needs[:1]
     try:
         return _joint(s, bands, eyes)
     except ArgumentError as error:
         return [str(error)]
+
+
+def _symmetrical(s: Situation) -> bool:
+    """Whether the joint is in symmetrical double shear at every instant with a notable force."""
+    size = s.across.max(axis=1)
+    loaded = np.flatnonzero(size > LAYOUT_TOLERANCE * size.max())
+    return all(layout(s, int(t)) == LAYOUT for t in loaded)
 
 
 def _in_order(s: Situation) -> tuple[list[Band], list[LoadedEye]]:

@@ -131,6 +131,33 @@ def test_the_diameter_that_would_pass() -> None:
     assert passing.used == pytest.approx(1.0)
 
 
+def test_a_joint_that_is_not_checked_leaves_bending_to_even_loads() -> None:
+    """Pulled across its shanks the joint has no clause: even bearing is then no comparison."""
+    s = joint_of_table()
+    lugs = tuple(
+        replace(x, shank=Shank("round", x.outer_diameter, 0.2, x.outer_diameter / 2.0, 1.0))
+        for x in s.lugs
+    )
+    margins = margins_of(replace(s, lugs=lugs, sized=lugs))
+    (joint,) = (m for m in margins if m.method == "AFFDL joint in double shear")
+    assert "force along the shank" in joint.needs
+    assert "pin bending, rupture" in {m.method for m in margins if m.governs}
+
+
+def test_a_joint_is_symmetrical_at_every_instant() -> None:
+    """One that loads one outer lug alone later on is no symmetrical double shear."""
+    s = joint_of_table()
+    later = np.array([[-0.8 * FORCE, 0, 0], [0.8 * FORCE, 0, 0], [0, 0, 0]])
+    forces = np.stack([s.loads.forces[0], later])
+    margins = margins_of(replace(s, loads=replace(s.loads, forces=forces, times=np.arange(2.0))))
+    (joint,) = (m for m in margins if m.method == "AFFDL joint in double shear")
+    assert "symmetrical double shear" in joint.needs
+    assert "pin bending, rupture" in {m.method for m in margins if m.governs}
+    slight = np.stack([s.loads.forces[0], 0.01 * later])
+    s = replace(s, loads=replace(s.loads, forces=slight, times=np.arange(2.0)))
+    assert ("AFFDL joint in double shear", "B") in named(margins_of(s))
+
+
 def test_bending_governs_where_the_section_carries_least() -> None:
     """A tube in one gap and a solid waist in the other, both bent alike: stress is larger in the
     waist, but a tube has less beyond yield, by the plastic over the elastic section modulus.
