@@ -103,3 +103,16 @@ class LugOutline:
         along, across = self.length - self.centre, self.width / 2.0
         turn = math.atan2(across, along) + math.acos(R / math.hypot(along, across))
         return (self.centre + R * math.cos(turn), R * math.sin(turn)), (self.length, across)
+
+    @property
+    def width_at_bore(self) -> float:
+        """The width across the shank through the bore's centre, m, at most that of a round head: of
+        an eccentric one on a narrower shank it is less.
+        """
+        if self.shape == "square":
+            return self.width
+        (along, across), (length, half) = self.joints
+        if along > 0.0:
+            return 2.0 * math.sqrt((self.head / 2.0) ** 2 - self.centre**2)
+        side = across - (half - across) * along / (length - along)
+        return min(2.0 * side, self.head)
