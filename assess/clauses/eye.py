@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -29,7 +30,7 @@ class PlateEye:
     is one. pin: Dp. thickness: t.
     end: e, from the centre of the bore to the end of the head; None: that of a round head, W / 2.
     square: whether its end is straight. eccentric: whether its width is less than the diameter of
-    the round head, which then does not follow from it.
+    the round head, which then does not follow from it. shank: the width of what holds the head.
 
     Raises: ArgumentError for a head that is not wider, or does not reach further, than its hole.
     """
@@ -42,6 +43,7 @@ class PlateEye:
     end: float | None = None
     square: bool = False
     eccentric: bool = False
+    shank: float = math.inf
 
     def __post_init__(self) -> None:
         if not (0.0 < self.pin <= self.hole < min(self.width, 2.0 * self.e)):
@@ -121,7 +123,9 @@ def eye_of(s: Situation, lug: Lug) -> PlateEye:
     square, width = shank.shape == "square", lug.outline(band.radius).width_at_bore
     end = None if shank.end == width / 2.0 else shank.end
     eccentric = not square and width < lug.outer_diameter
-    return PlateEye(width, pin + ring, pin, band.length, bushed, end, square, eccentric)
+    return PlateEye(
+        width, pin + ring, pin, band.length, bushed, end, square, eccentric, shank.width
+    )
 
 
 def loaded_eyes(s: Situation) -> list[LoadedEye]:
