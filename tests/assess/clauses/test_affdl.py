@@ -179,6 +179,13 @@ def test_bending_governs_where_the_section_carries_least() -> None:
     )
 
 
+def test_required_checks_of_lugs_have_the_fitting_factor_of_the_code() -> None:
+    """The code "aircraft" makes no check of nominal bearing, which the study requires besides."""
+    s = replace(joint_of_table(), required=frozenset({("bearing", "limit")}))
+    bearing = named(margins_of(s))["lug, bearing", "B"]
+    assert (bearing.factor, bearing.code) == (1.15, "")
+
+
 def test_a_missing_factor_is_named() -> None:
     bare = replace(joint_of_table(), lug_factors={}, bending_factor=None)
     lacking = [m for m in margins_of(bare) if m.needs]
