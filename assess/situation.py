@@ -262,6 +262,12 @@ class Situation:
         """The size of the force across the pin on each of C bands, (T, C) N."""
         return np.asarray(np.hypot(self.loads.forces[..., 0], self.loads.forces[..., 1]))
 
+    @property
+    def loaded_across(self) -> bool:
+        """Whether a force, a moment or the weight of the pin acts across it."""
+        loads = self.loads
+        return any(bool(x[..., :2].any()) for x in (loads.forces, loads.moments, loads.body))
+
     def lug(self, band: str) -> Lug | None:
         """The lug in which a band sits, if it was given."""
         return next((lug for lug in self.lugs if lug.connection == band), None)
