@@ -176,29 +176,29 @@ def _joint(s: Situation, bands: list[Band], eyes: list[LoadedEye]) -> DoubleShea
 
     Raises: ArgumentError as assess.clauses.cozzone.
     """
-    section = min(
-        (
-            thinnest_section(segment, 0.0, segment.length)
-            for segment, z0, z1 in zip(
-                s.pin.segments, s.pin.stations, s.pin.stations[1:], strict=False
-            )
-            if z1 > bands[0].z0 and z0 < bands[2].z1
-        ),
-        key=lambda x: x.modulus,
-    )
-    strength, fsu = bending_strength(s, section), s.material.shear_strength
+    stations = zip(s.pin.segments, s.pin.stations, s.pin.stations[1:], strict=False)
+    sections = {
+        thinnest_section(segment, 0.0, segment.length)
+        for segment, z0, z1 in stations
+        if z1 > bands[0].z0 and z0 < bands[2].z1
+    }
+    strengths, fsu = {x: bending_strength(s, x) for x in sections}, s.material.shear_strength
     loads = [_lug_load(s, x) for x in eyes]
-    lacking = [key for load in loads if isinstance(load, list) for key in load]
-    lacking += strength if isinstance(strength, list) else []
+    lacking = [key for x in (*loads, *strengths.values()) if isinstance(x, list) for key in x]
     lacking += [strength_key(s.material.name, "shear")] * (fsu is None)
-    if lacking or isinstance(strength, list) or fsu is None:
+    if lacking or fsu is None:
         return list(dict.fromkeys(lacking))
     first, middle, last = (load for load in loads if isinstance(load, float))
     gap = max(bands[1].z0 - bands[0].z1, bands[2].z0 - bands[1].z1)
     outer = max(bands[0].length, bands[2].length)
+    moment = min(
+        strength.result.value * section.modulus
+        for section, strength in strengths.items()
+        if isinstance(strength, Work)
+    )
     return DoubleShear(
-        min(first, last), middle, (outer, bands[1].length), gap,
-        strength.result.value * section.modulus, 2.0 * fsu * section.area,
+        min(first, last), middle, (outer, bands[1].length), gap, moment,
+        2.0 * fsu * min(section.area for section in sections),
     )  # fmt: skip
 
 
