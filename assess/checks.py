@@ -157,12 +157,12 @@ def _together(checks: list[Check], situations: Iterable[Situation]) -> Iterator[
 
 
 def _with_code(check: Check, s: Situation) -> Iterable[Margin]:
-    """The margins of a check with the factors of the codes that have it, and their names."""
+    """The margins of a check with the factors of the codes that have it, and their names; of a
+    check that none has, but the study requires, with those of all.
+    """
     if s.codes == DEFAULT_CODES:
         return check(s)
     codes = [code for code in s.codes if check in SETS[code]]
-    factors = max(
-        (s.factors.of_code(code) for code in codes), key=lambda f: f.fitting, default=s.factors
-    )
+    factors = max((s.factors.of_code(code) for code in codes or s.codes), key=lambda f: f.fitting)
     name = ", ".join(codes)
     return [replace(m, code=name) for m in check(replace(s, factors=factors))]

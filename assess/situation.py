@@ -34,6 +34,8 @@ NO_LOADS = PinLoads("", (), np.zeros((1, 0, 3)))
 
 
 ForcesKind = Literal["even", "concentrated", "joint"]
+# The property of a section by which a nominal stress is the moment, or the shear force, over it.
+Resists = Literal["area", "axis_area", "modulus"]
 
 
 @dataclass(frozen=True)
@@ -81,8 +83,8 @@ class SectionForces:
 
     z: of S stations, (S,) m. sections, labels: the round section and the name of the segment at
     each. shear, moment: at T instants, (T, S) N and N m. times: (T,) s, None without a motion.
-    basis: where the forces come from. kind: the same for programs. exact: finds the largest mean
-    shear stress or bending stress between the stations, too, where the diagrams are polynomials.
+    basis: where the forces come from. kind: the same for programs. exact: finds the largest nominal
+    stress between the stations, too, where the diagrams are polynomials.
     """
 
     z: Floats
@@ -93,37 +95,33 @@ class SectionForces:
     times: Floats | None
     basis: str
     kind: ForcesKind = "even"
-    exact: Callable[[Literal["shear", "moment"]], NominalStress] | None = None
+    exact: Callable[[Resists], NominalStress] | None = None
 
     def of_sections(self, name: str) -> Floats:
         """A property of the sections, (S,)."""
         return np.array([getattr(section, name) for section in self.sections])
 
-    def largest(self, stress: Floats) -> NominalStress:
-        """The largest of stresses (T, S) at the stations, Pa."""
+    def mean_shear(self) -> NominalStress:
+        """The largest mean shear stress V / A."""
+        return self._largest("area")
+
+    def neutral_axis_shear(self) -> NominalStress:
+        """The largest shear stress at the neutral axis, V Q / (I t)."""
+        return self._largest("axis_area")
+
+    def bending(self) -> NominalStress:
+        """The largest elastic bending stress M c / I."""
+        return self._largest("modulus")
+
+    def _largest(self, resists: Resists) -> NominalStress:
+        if self.exact is not None:
+            return self.exact(resists)
+        force = self.moment if resists == "modulus" else self.shear
+        stress = force / self.of_sections(resists)
         t, k = np.unravel_index(stress.argmax(), stress.shape)
         time = None if self.times is None else float(self.times[t])
         at, z, section = self.labels[int(k)], float(self.z[k]), self.sections[int(k)]
         return NominalStress(float(stress[t, k]), at, z, time, section)
-
-    def mean_shear(self) -> NominalStress:
-        """The largest mean shear stress V / A."""
-        if self.exact is not None:
-            return self.exact("shear")
-        return self.largest(self.shear / self.of_sections("area"))
-
-    def neutral_axis_shear(self) -> NominalStress:
-        """The largest shear stress at the neutral axis, V Q / (I t)."""
-        if self.exact is None:
-            return self.largest(self.shear / self.of_sections("area") * self.of_sections("vq_it"))
-        mean = self.exact("shear")
-        return replace(mean, stress=mean.stress * mean.section.vq_it)
-
-    def bending(self) -> NominalStress:
-        """The largest elastic bending stress M c / I."""
-        if self.exact is not None:
-            return self.exact("moment")
-        return self.largest(self.moment / self.of_sections("modulus"))
 
 
 @dataclass(frozen=True)
@@ -263,6 +261,12 @@ class Situation:
     def across(self) -> Floats:
         """The size of the force across the pin on each of C bands, (T, C) N."""
         return np.asarray(np.hypot(self.loads.forces[..., 0], self.loads.forces[..., 1]))
+
+    @property
+    def loaded_across(self) -> bool:
+        """Whether a force, a moment or the weight of the pin acts across it."""
+        loads = self.loads
+        return any(bool(x[..., :2].any()) for x in (loads.forces, loads.moments, loads.body))
 
     def lug(self, band: str) -> Lug | None:
         """The lug in which a band sits, if it was given."""

@@ -19,6 +19,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from assess.check import CheckText, WorstPlace, check
 from assess.clauses.affdl_lugs import (
     LUG_OMITS,
@@ -29,10 +31,10 @@ from assess.clauses.affdl_lugs import (
 )
 from assess.clauses.cozzone import bending_strength
 from assess.clauses.eye import LoadedEye, loaded_eyes
-from assess.clauses.eye_margin import not_axial
+from assess.clauses.eye_margin import lacks_pull
 from assess.margin import Margin, strength_key
 from assess.situation import Situation
-from assess.strength.bending_arms import layout
+from assess.strength.bending_arms import LAYOUT_TOLERANCE, layout
 from assess.work import Work, work
 from fea.beam.round_section import thinnest_section
 from geometry import ArgumentError, Band
@@ -136,9 +138,6 @@ def affdl_joint(text: CheckText, s: Situation) -> list[Margin]:
     if isinstance(joint, list):
         return [text.lacks(s, *joint)]
     bands, loaded = _in_order(s)
-    for eye in loaded:
-        if across := not_axial(text, s, eye):
-            return [across]
     t = int(loaded[1].size.argmax())
     force, place = float(loaded[1].size[t]), WorstPlace.at_band(bands[1], s.loads, t)
     name, basis = s.material.name, loaded[1].basis
@@ -148,12 +147,21 @@ def affdl_joint(text: CheckText, s: Situation) -> list[Margin]:
 def joint_of(s: Situation) -> DoubleShear | list[str]:
     """The joint of a situation, or what it lacks to be one, or to be checked."""
     bands, eyes = _in_order(s)
-    if len(bands) != len(eyes) or layout(s) != LAYOUT:
+    if len(bands) != len(eyes) or not _symmetrical(s):
         return [LAYOUT_NEEDED]
+    if needs := [need for eye in eyes if (need := lacks_pull(eye))]:
+        return needs[:1]
     try:
         return _joint(s, bands, eyes)
     except ArgumentError as error:
         return [str(error)]
+
+
+def _symmetrical(s: Situation) -> bool:
+    """Whether the joint is in symmetrical double shear at every instant with a notable force."""
+    size = s.across.max(axis=1)
+    loaded = np.flatnonzero(size > LAYOUT_TOLERANCE * size.max())
+    return all(layout(s, int(t)) == LAYOUT for t in loaded)
 
 
 def _in_order(s: Situation) -> tuple[list[Band], list[LoadedEye]]:
@@ -168,29 +176,29 @@ def _joint(s: Situation, bands: list[Band], eyes: list[LoadedEye]) -> DoubleShea
 
     Raises: ArgumentError as assess.clauses.cozzone.
     """
-    section = min(
-        (
-            thinnest_section(segment, 0.0, segment.length)
-            for segment, z0, z1 in zip(
-                s.pin.segments, s.pin.stations, s.pin.stations[1:], strict=False
-            )
-            if z1 > bands[0].z0 and z0 < bands[2].z1
-        ),
-        key=lambda x: x.modulus,
-    )
-    strength, fsu = bending_strength(s, section), s.material.shear_strength
+    stations = zip(s.pin.segments, s.pin.stations, s.pin.stations[1:], strict=False)
+    sections = {
+        thinnest_section(segment, 0.0, segment.length)
+        for segment, z0, z1 in stations
+        if z1 > bands[0].z0 and z0 < bands[2].z1
+    }
+    strengths, fsu = {x: bending_strength(s, x) for x in sections}, s.material.shear_strength
     loads = [_lug_load(s, x) for x in eyes]
-    lacking = [key for load in loads if isinstance(load, list) for key in load]
-    lacking += strength if isinstance(strength, list) else []
+    lacking = [key for x in (*loads, *strengths.values()) if isinstance(x, list) for key in x]
     lacking += [strength_key(s.material.name, "shear")] * (fsu is None)
-    if lacking or isinstance(strength, list) or fsu is None:
+    if lacking or fsu is None:
         return list(dict.fromkeys(lacking))
     first, middle, last = (load for load in loads if isinstance(load, float))
     gap = max(bands[1].z0 - bands[0].z1, bands[2].z0 - bands[1].z1)
     outer = max(bands[0].length, bands[2].length)
+    moment = min(
+        strength.result.value * section.modulus
+        for section, strength in strengths.items()
+        if isinstance(strength, Work)
+    )
     return DoubleShear(
-        min(first, last), middle, (outer, bands[1].length), gap,
-        strength.result.value * section.modulus, 2.0 * fsu * section.area,
+        min(first, last), middle, (outer, bands[1].length), gap, moment,
+        2.0 * fsu * min(section.area for section in sections),
     )  # fmt: skip
 
 

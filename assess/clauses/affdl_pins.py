@@ -11,6 +11,7 @@ Source: AFFDL-TR-69-42, Stress Analysis Manual, 9.4, equations 9-12 to 9-15.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from operator import attrgetter
 
@@ -24,6 +25,7 @@ from assess.situation import Situation
 from assess.work import Work, wider, work
 from fea.beam.round_section import Circle
 from geometry import ArgumentError
+from pinbase.arrays import Floats
 
 PIN_OMITS = "Not covered: shear together with bending, axial force, a bore that is crushed."
 
@@ -37,12 +39,16 @@ def pin_shear(text: CheckText, s: Situation) -> list[Margin]:
         return []
     if fsu is None:
         return [text.lacks(s, strength_key(s.material.name, "shear"))]
-    place, section = _worst_section(s, "shear")
-    allowed = work(
-        "P_us", fsu * section.area, "force", "{A} × {F_su}",
-        A=(section.area, "length^2"), F_su=(fsu, "stress"),
-    )  # fmt: skip
-    return [_of_section(text, s, "shear", place, (allowed,))]
+
+    def resisted(section: Circle) -> tuple[Work, ...]:
+        return (
+            work(
+                "P_us", fsu * section.area, "force", "{A} × {F_su}",
+                A=(section.area, "length^2"), F_su=(fsu, "stress"),
+            ),
+        )  # fmt: skip
+
+    return [_worst(text, s, s.forces.shear, resisted, ("area", 2.0))]
 
 
 @check("pin bending, rupture", "AFFDL-TR-69-42, 9.4, eq. 9-15; Cozzone", kind="clause",
@@ -54,43 +60,50 @@ def pin_bending(text: CheckText, s: Situation) -> list[Margin]:
     """
     if s.forces.kind == "concentrated":
         return []
-    place, section = _worst_section(s, "moment")
+    strengths = dict[Circle, Work]()
     try:
-        strength = bending_strength(s, section)
+        for section in set(s.forces.sections):
+            strength = bending_strength(s, section)
+            if isinstance(strength, list):
+                return [text.lacks(s, *strength)]
+            strengths[section] = strength
     except ArgumentError as error:
         return [text.lacks(s, str(error))]
-    if isinstance(strength, list):
-        return [text.lacks(s, *strength)]
-    F_b = strength.result.value
-    moment = work(
-        "M_u", F_b * section.modulus, "moment", "{F_b} × {W}",
-        F_b=(F_b, "stress"), W=(section.modulus, "length^3"),
-    )  # fmt: skip
-    margin = _of_section(text, s, "moment", place, (strength, moment))
+
+    def resisted(section: Circle) -> tuple[Work, ...]:
+        F_b = strengths[section].result.value
+        moment = work(
+            "M_u", F_b * section.modulus, "moment", "{F_b} × {W}",
+            F_b=(F_b, "stress"), W=(section.modulus, "length^3"),
+        )  # fmt: skip
+        return strengths[section], moment
+
+    margin = _worst(text, s, s.forces.moment, resisted, ("modulus", 3.0))
     shifts = s.forces.kind == "even" and s.governs and isinstance(joint_of(s), DoubleShear)
     return [for_comparison(margin) if shifts else margin]
 
 
-def _worst_section(s: Situation, quantity: str) -> tuple[tuple[int, int], Circle]:
-    """The instant and the station of the largest mean shear or elastic bending stress, and the
-    section there.
-    """
-    forces, per = s.forces, "area" if quantity == "shear" else "modulus"
-    stress = getattr(forces, quantity) / forces.of_sections(per)
-    t, k = np.unravel_index(int(stress.argmax()), stress.shape)
-    return (int(t), int(k)), forces.sections[int(k)]
-
-
-def _of_section(
-    text: CheckText, s: Situation, quantity: str, place: tuple[int, int], allowed: tuple[Work, ...]
+def _worst(
+    text: CheckText,
+    s: Situation,
+    demand: Floats,
+    resisted: Callable[[Circle], tuple[Work, ...]],
+    grows: tuple[str, float],
 ) -> Margin:
-    forces, (t, k) = s.forces, place
-    time = None if forces.times is None else float(forces.times[t])
+    """The margin of the section that a demand (T, S) uses most.
+
+    resisted: the work of what a section resists, the last its result. grows: the property of the
+    section with which that grows, and the power of the diameter with which this does.
+    """
+    forces, (per, power) = s.forces, grows
+    works = {section: resisted(section) for section in set(forces.sections)}
+    allowable = np.array([works[section][-1].result.value for section in forces.sections])
+    used = demand / allowable
+    t, k = (int(i) for i in np.unravel_index(int(used.argmax()), used.shape))
+    time, section = None if forces.times is None else float(forces.times[t]), forces.sections[k]
     margin = text.margin(
-        s, float(getattr(forces, quantity)[t, k]), allowed[-1].result.value,
+        s, float(demand[t, k]), float(allowable[k]),
         WorstPlace(forces.labels[k], float(forces.z[k]), time), s.material.name, forces.basis,
-        allowed,
+        works[section],
     )  # fmt: skip
-    power, per = (2.0, "area") if quantity == "shear" else (3.0, "modulus")
-    passing = wider(forces.sections[k], margin.used, power, attrgetter(per))
-    return replace(margin, passing=passing)
+    return replace(margin, passing=wider(section, margin.used, power, attrgetter(per)))

@@ -69,10 +69,13 @@ def bearing(eye: PlateEye, yields: float, ultimate: float) -> Work:
 
 
 def gross_yielding(eye: PlateEye, yields: float, ultimate: float) -> Work:
-    """The design strength phi P_n, N (D2-1); arguments as `tensile_rupture`."""
+    """The design strength phi P_n, N (D2-1), of the head or of a narrower shank; arguments as
+    `tensile_rupture`.
+    """
+    w = min(eye.width, eye.shank)
     return work(
-        "φP_n", YIELD_PHI * yields * eye.width * eye.thickness, "force", "0.90 × {F_y} × {w} × {t}",
-        F_y=(yields, "stress"), w=(eye.width, "length"), t=(eye.thickness, "length"),
+        "φP_n", YIELD_PHI * yields * w * eye.thickness, "force", "0.90 × {F_y} × {w} × {t}",
+        F_y=(yields, "stress"), w=(w, "length"), t=(eye.thickness, "length"),
     )  # fmt: skip
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -25,9 +26,11 @@ AXIAL_BASIS = "the force taken along the shank, whose direction is not given"
 class PlateEye:
     """The head of a lug, m.
 
-    width: W. hole: D, in the lug itself, around a bushing if there is one. pin: Dp. thickness: t.
+    width: W, through the centre of the bore. hole: D, in the lug itself, around a bushing if there
+    is one. pin: Dp. thickness: t.
     end: e, from the centre of the bore to the end of the head; None: that of a round head, W / 2.
-    square: whether its end is straight.
+    square: whether its end is straight. eccentric: whether its width is less than the diameter of
+    the round head, which then does not follow from it. shank: the width of what holds the head.
 
     Raises: ArgumentError for a head that is not wider, or does not reach further, than its hole.
     """
@@ -39,6 +42,8 @@ class PlateEye:
     bushed: bool = False
     end: float | None = None
     square: bool = False
+    eccentric: bool = False
+    shank: float = math.inf
 
     def __post_init__(self) -> None:
         if not (0.0 < self.pin <= self.hole < min(self.width, 2.0 * self.e)):
@@ -70,8 +75,10 @@ class PlateEye:
 
     def would_pass(self, dimension: str, utilisation: EyeUtilisation) -> float | None:
         """The value of a dimension, m, at which a utilisation of the eye is 1; None where none is
-        near.
+        near, and for the width of an eccentric head.
         """
+        if self.eccentric and dimension == "width":
+            return None
 
         def used(x: float) -> float:
             try:
@@ -113,10 +120,12 @@ def eye_of(s: Situation, lug: Lug) -> PlateEye:
     ring = 2.0 * lug.bushing.thickness if lug.bushing else max(lug.loosest, 0.0)
     if shank is None:
         return PlateEye(lug.outer_diameter, pin + ring, pin, band.length, bushed)
-    square = shank.shape == "square"
-    width = shank.width if square else lug.outer_diameter
+    square, width = shank.shape == "square", lug.outline(band.radius).width_at_bore
     end = None if shank.end == width / 2.0 else shank.end
-    return PlateEye(width, pin + ring, pin, band.length, bushed, end, square)
+    eccentric = not square and width < lug.outer_diameter
+    return PlateEye(
+        width, pin + ring, pin, band.length, bushed, end, square, eccentric, shank.width
+    )
 
 
 def loaded_eyes(s: Situation) -> list[LoadedEye]:

@@ -42,19 +42,26 @@ def lug_key(s: Situation, connection: str, key: str) -> str:
 
 
 def not_axial(text: CheckText, s: Situation, loaded: LoadedEye) -> Margin | None:
-    """The margin of a clause for a pull along the shank where a force acts across it, or only
-    pushes; else None.
+    """The margin of a clause for a pull along the shank that it lacks, as of `lacks_pull`, or None
+    where there is one.
+    """
+    need = lacks_pull(loaded)
+    return text.lacks(s, need) if need else None
+
+
+def lacks_pull(loaded: LoadedEye) -> str:
+    """What a clause for a pull along the shank lacks where a force acts across it, or only pushes;
+    else empty.
     """
     at = f"at lug {loaded.connection}"
     if loaded.transverse.max() > MAX_TRANSVERSE_RATIO * loaded.size.max():
-        return text.lacks(
-            s,
+        return (
             f"a force along the shank {at}, where it also acts across (clauses for that: code = "
-            '"aircraft")',
+            '"aircraft")'
         )
     if not loaded.axial.any():
-        return text.lacks(s, f"a pull of the shank {at}, where the force only pushes it")
-    return None
+        return f"a pull of the shank {at}, where the force only pushes it"
+    return ""
 
 
 def eye_margin(

@@ -176,9 +176,7 @@ def _of_lug(
 
 def _largest(eye: PlateEye, shank: Shank, actions: _Actions) -> tuple[Floats, Shown, str]:
     """The stress (T,), Pa, of the point with the largest one, its work, and where it is."""
-    offset = 0.0 if eye.square else eye.width / 2.0 - eye.e
-    chord = 2.0 * math.sqrt((eye.width / 2.0) ** 2 - offset**2)
-    beside = PlateSection(chord, eye.thickness, eye.hole)
+    beside = PlateSection(eye.width, eye.thickness, eye.hole)
     held = PlateSection(shank.width, eye.thickness)
     points = [(*_corner(beside, actions, 0.0), "beside the bore")]
     points += [(*of(held, actions, shank.length), "where it is held") for of in (_corner, _face)]

@@ -116,15 +116,14 @@ def _along(
 
 @check("Melcon-Hoblit yield", NIU, kind="clause", takes="loads", dimension="force", omits=NIU_OMITS)
 def lug_yield(text: CheckText, s: Situation) -> list[Margin]:
-    """The axial force on every eye whose k_br and k_t are given against its yield load."""
+    """The axial force on every eye of which k_br or k_t is given against its yield load."""
     margins = []
     for x in _pulled(s):
         k, strengths = s.factors_of(x.connection), strengths_of(x.lug)
-        if k.k_br is None or k.k_t is None:
+        if not _axial_given(s, x):
             continue
-        lacking = list(strengths.missing) + _lacking(s, x, "C")
-        if lacking or k.C is None:
-            margins.append(text.lacks(s, *lacking))
+        if k.k_br is None or k.k_t is None or k.C is None or strengths.missing:
+            margins.append(text.lacks(s, *strengths.missing, *_lacking(s, x, *AXIAL_KEYS, "C")))
             continue
 
         def capacity(
@@ -191,11 +190,11 @@ def _oblique(text: CheckText, s: Situation, x: LoadedEye) -> Margin:
 @check("Melcon-Hoblit oblique yield", NIU, kind="clause", takes="loads", dimension=RATIO_DIMENSION,
        omits=NIU_OMITS)  # fmt: skip
 def oblique_yield(text: CheckText, s: Situation) -> list[Margin]:
-    """The same at yield, of every eye whose factors of ultimate load are given."""
+    """The same at yield, of every eye of which k_br or k_t is given."""
     return [
         _oblique_yield(text, s, x)
         for x in loaded_eyes(s)
-        if (x.axial * x.transverse).any() and s.factors_of(x.connection).k_br is not None
+        if (x.axial * x.transverse).any() and _axial_given(s, x)
     ]
 
 
@@ -230,6 +229,11 @@ def _combined(
 def _pulled(s: Situation) -> list[LoadedEye]:
     """The eyes that are pulled along their shanks at any instant."""
     return [x for x in loaded_eyes(s) if x.axial.any()]
+
+
+def _axial_given(s: Situation, x: LoadedEye) -> bool:
+    """Whether the study gives any of the efficiency factors for pulls."""
+    return any(getattr(s.factors_of(x.connection), key) is not None for key in AXIAL_KEYS)
 
 
 def _lacking(s: Situation, x: LoadedEye, *keys: str) -> list[str]:

@@ -29,6 +29,10 @@ from pinbase.errors import ArgumentError
 Method = Literal["signed-von-mises", "critical-plane", "fkm-p-ram"]
 SHOWN_PROBABILITIES = (0.1, 0.5, 0.9)  # of failure, at which lives are reported
 TRESCA_RATIO = 2.0 / 3.0**0.5  # largest ratio of Tresca's stress to von Mises stress
+# Of Findley's equivalent amplitude over the largest Tresca stress T, where a plane has its shear
+# stress, T/2, and its normal stress, T, at different instants: (1 + 2 k)/(k + sqrt(1 + k^2)), which
+# is largest at k = 3/4.
+FINDLEY_RATIO = 1.25
 MIN_SHOWN_AMPLITUDE = 0.01  # of the largest amplitude: smaller ones are not shown
 
 
@@ -178,13 +182,14 @@ def _method(
 
 
 def _harmless(largest: float, spectrum: Spectrum, material: FatigueMaterial) -> bool:
-    """Whether cycles of an amplitude, Pa, at stress ratio -1 do no damage."""
+    """Whether a history of any directions does no damage. largest: Tresca stress, Pa."""
     if spectrum.method == "fkm-p-ram":
         assert material.fkm is not None
         both = np.array([0.0, largest, -largest, 0.0])
         return p_ram_life(both, material.fkm, spectrum.probability or 0.5).infinite
     assert material.curve is not None
-    return not material.curve.life(spectrum.probability).damage(np.array([largest])).any()
+    most = np.array([FINDLEY_RATIO * largest])
+    return not material.curve.life(spectrum.probability).damage(most).any()
 
 
 def _life(damage: float) -> float | None:

@@ -49,8 +49,8 @@ def bending_arms(s: Situation, joint: Couple | None, model: str) -> BendingArms:
     )
 
 
-def layout(s: Situation) -> str:
-    """The layout of the bands at the first instant.
+def layout(s: Situation, instant: int = 0) -> str:
+    """The layout of the bands at an instant, by its number.
 
     It is "double shear" where the even moment is that of EN 1993-1-8, figure 3.11.
     """
@@ -58,7 +58,7 @@ def layout(s: Situation) -> str:
         return "clamped"
     bands = sorted((s.pin.band(n) for n in s.loads.surfaces), key=lambda b: b.z0)
     order = [s.loads.surfaces.index(b.name) for b in bands]
-    force = s.loads.forces[0, order, :2]
+    force = s.loads.forces[instant, order, :2]
     if len(bands) == 2:
         return "single shear"
     if len(bands) != 3 or not _opposed(force):

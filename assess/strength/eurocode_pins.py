@@ -170,15 +170,23 @@ def eurocode_contact_replaceable(text: CheckText, s: Situation) -> list[Margin]:
         return [text.lacks(s, *lacking)]
     lugs = [s.lug(name) for name in s.loads.surfaces]
     loose = [k for k, lug in enumerate(lugs) if lug is not None and lug.loosest > 0.0]
+    of_pin = f"pin.{key_part(s.pin.name)}.lug"
     if not loose:
-        return [text.lacks(s, f"a clearance in pin.{key_part(s.pin.name)}.lug")]
+        return [text.lacks(s, f"a clearance in {of_pin}")]
     holes = [_hole(s, s.loads.surfaces[k]) for k in loose]
     at = PinInHole(*(np.array(sizes) for sizes in zip(*holes, strict=True)))
     stress = contact_stress(s.across[:, loose], at)
     allowed = 2.5 / GAMMA_M6_SER * np.array(strengths)[loose]
     names = tuple(s.loads.surfaces[k] for k in loose)
     margin = text.worst(s, stress, allowed, names, "the factor is the root of that on loads")
-    return [replace(margin, factor=math.sqrt(margin.factor))]
+    margins = [replace(margin, factor=math.sqrt(margin.factor))]
+    bands = zip(s.loads.surfaces, lugs, s.across.T, strict=True)
+    unknown = [
+        f"{of_pin}.{key_part(name)}.clearance"
+        for name, lug, force in bands
+        if lug is None and force.any()
+    ]
+    return [*margins, text.lacks(s, *unknown)] if unknown else margins
 
 
 def _sheared(forces: SectionForces, ultimate: float) -> Floats:

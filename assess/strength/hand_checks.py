@@ -25,6 +25,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from operator import attrgetter
 from types import MappingProxyType
 
 import numpy as np
@@ -35,7 +36,6 @@ from assess.requirement import RequiredCheck
 from assess.situation import ForcesKind, NominalStress, Situation
 from assess.work import Work, wider, work
 from fea.beam.line_load import acting, shares
-from fea.beam.round_section import Circle
 from fea.beam.timoshenko import SHEAR, stepped_beam
 from fea.core.hardened import linear_strength
 from fea.core.material import Material
@@ -161,17 +161,12 @@ def _along(
     margins = text.at_levels(
         s, stress.stress, place, s.material, strength, ruptures, formula, basis
     )
-    shown, bends = _shown(stress, formula), formula == BENDING_FORMULA
-    at_axis = formula not in (BENDING_FORMULA, "V / A")
-
-    def resists(section: Circle) -> float:
-        if bends:
-            return section.modulus
-        return section.area / (section.vq_it if at_axis else 1.0)
-
-    power = 3.0 if bends else 2.0
+    shown = _shown(stress, formula)
+    resists, power = {BENDING_FORMULA: ("modulus", 3.0), "V / A": ("area", 2.0)}.get(
+        formula, ("axis_area", 2.0)
+    )
     return [
-        replace(m, work=(shown,), passing=wider(stress.section, m.used, power, resists))
+        replace(m, work=(shown,), passing=wider(stress.section, m.used, power, attrgetter(resists)))
         for m in margins
     ]
 

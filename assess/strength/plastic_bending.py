@@ -37,8 +37,7 @@ INTERACTION_RULE = "(M/M_pl)^2 + (V/V_pl)^2 <= 1, without axial force and torque
 
 def plastic_shear(section: Circle, strength: float) -> float:
     """V_pl, N, of a yield strength in Pa."""
-    area = section.area * max(2.0 / math.pi, 1.0 / section.vq_it)
-    return area * strength / math.sqrt(3.0)
+    return max(2.0 / math.pi * section.area, section.axis_area) * strength / math.sqrt(3.0)
 
 
 def _moment(s: Situation, z: float, section: Circle) -> float:

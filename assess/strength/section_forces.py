@@ -18,14 +18,13 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
-from typing import Literal
 
 import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from assess.margin import JOINT_MODEL_BASIS
-from assess.situation import NominalStress, SectionForces, Situation
+from assess.situation import NominalStress, Resists, SectionForces, Situation
 from fea.beam.line_load import acting, shares
 from fea.beam.round_section import thinnest_section
 from fea.beam.stress import sample
@@ -153,23 +152,16 @@ def _sized(
     )
 
 
-def _largest(
-    s: Situation, forces: InternalForces, c: Floats, quantity: Literal["shear", "moment"]
-) -> NominalStress:
-    """The largest mean shear stress or bending stress, whichever its plane.
+def _largest(s: Situation, forces: InternalForces, c: Floats, resists: Resists) -> NominalStress:
+    """The largest nominal stress that a property of the sections resists, whichever its plane.
 
     c: (T, 2, K) shares of the unit loads. The instant is found by samples; the place then exactly,
     as the square of V or M is a polynomial between two stations.
     """
-    component = SHEAR if quantity == "shear" else MOMENT
+    component = MOMENT if resists == "modulus" else SHEAR
     cells, z = sample(forces)
     values = np.einsum("sk,tpk->spt", forces.inside(cells, z)[:, component], c)
-    per = np.array(
-        [
-            1.0 / x.area if quantity == "shear" else x.outer / x.inertia  # Pa per N, or per N m
-            for x in forces.sections
-        ]
-    )
+    per = np.array([1.0 / getattr(x, resists) for x in forces.sections])  # Pa per N, or per N m
     size = np.hypot(values[:, 0], values[:, 1]) * per[cells, None]
     k, t = np.unravel_index(size.argmax(), size.shape)
     best = int(cells[k]), float(z[k]), float(size[k, t])

@@ -74,7 +74,7 @@ def _bent() -> str:
         lug, ring = _lug(head, width, length, thick), _ring(head, thick)
         usual = thick**3 / (12.0 * USUAL)
         outline = LugOutline("round", BORE, head, width, length, head / 2.0)
-        nominal = 6.0 / (outline.net_width * thick**2)
+        nominal = 6.0 / ((outline.width_at_bore - BORE) * thick**2)
         stiff, more = list[float](), list[str]()
         for end in (True, False):
             whole, eye = _tilted(lug, end, length), _tilted(ring, end, outer=head / 2.0)

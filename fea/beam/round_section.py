@@ -94,6 +94,11 @@ class Circle:
         a, b = self.outer, self.inner
         return 4.0 / 3.0 * (a * a + a * b + b * b) / (a * a + b * b)
 
+    @property
+    def axis_area(self) -> float:
+        """V over the shear stress at the neutral axis, I t / Q, m^2."""
+        return self.area / self.vq_it
+
 
 def circle(segment: Segment) -> Circle:
     """The section of a segment without cones."""

@@ -26,11 +26,11 @@ def bent(outline: LugOutline, load: LugLoad, angles: Floats) -> Floats:
 
     outline: of the lug, m.
     """
-    thick = load.length.sum()
+    thick, net_width = load.length.sum(), outline.width_at_bore - outline.hole
     along, across = load.along_shank.T
     size = np.hypot(along, across)
     pulled = np.where(size > 0.0, np.maximum(-along, 0.0) / np.where(size > 0.0, size, 1.0), 0.0)
-    per_depth = load.couple(outline.bore / 2.0) / (outline.net_width * thick**3 / 12.0)
+    per_depth = load.couple(outline.bore / 2.0) / (net_width * thick**3 / 12.0)
     slope = -SHARE * pulled * per_depth
     off = np.abs(np.abs(np.remainder(angles + math.pi, 2.0 * math.pi) - math.pi) - ANGLE)
     around = np.where(off < math.pi / 2.0, np.cos(off) ** 2, 0.0)

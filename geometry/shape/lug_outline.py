@@ -109,9 +109,12 @@ class LugOutline:
         return (self.centre + R * math.cos(turn), R * math.sin(turn)), (self.length, across)
 
     @property
-    def net_width(self) -> float:
-        """The width beside the hole, across the shank, m."""
-        return 2.0 * float(self._half_width(np.zeros(1))[0]) - self.hole
+    def width_at_bore(self) -> float:
+        """The width across the shank through the bore's centre, m, at most that of a round head: of
+        an eccentric one on a narrower shank it is less.
+        """
+        width = 2.0 * float(self._half_width(np.zeros(1))[0])
+        return width if self.shape == "square" else min(width, self.head)
 
     @property
     def bending(self) -> float:

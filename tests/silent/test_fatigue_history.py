@@ -127,6 +127,21 @@ def test_a_small_stress_is_harmless_in_every_direction() -> None:
     assert (found.damage, found.method) == (0.0, "fkm-p-ram")
 
 
+def test_tension_before_torsion_does_damage_below_the_knee() -> None:
+    """A tension of 0.86 of the knee, then torsion either way of as much von Mises stress: on the
+    plane across the tension f is that of 1.11 of the knee in alternating tension.
+    """
+    small, k = 0.86 * CURVE.knee[0], findley_k(0.25)
+    course = _component([small, 0.0, 0.0], ALONG)
+    course += _component([0.0, small / np.sqrt(3.0), -small / np.sqrt(3.0)], SHEAR)
+    found = _assessed(_history(both=course), "signed-von-mises")
+    least = 2.0 / (k + np.hypot(1.0, k)) * (small / np.sqrt(3.0) + k * small)
+    assert least > 1.1 * CURVE.knee[0]
+    assert found.amplitudes[0] >= 0.999 * least
+    assert found.method == "critical-plane"
+    assert found.damage > 0.0
+
+
 def test_a_proportional_history_stays_with_its_rule() -> None:
     rng = np.random.default_rng(2)
     courses = {name: rng.normal(size=7) * 300e6 for name in "abc"}

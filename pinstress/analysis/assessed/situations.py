@@ -69,7 +69,7 @@ def assessed(study: Study, task: Task, row: PinResult) -> PinResult:
     margins = [_of_core(s, margin) for margin in _with_ranges(s, margins_of(s))]
     margins = _without_cuts(task.pin, margins)
     counted = margins
-    if s.complete and (rigid or not s.across.any()):
+    if s.complete and (rigid or not s.loaded_across):
         counted = [m for m in margins if m.kind not in FORMULA_KINDS]
     return replace(
         row,

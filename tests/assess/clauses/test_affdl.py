@@ -15,15 +15,18 @@ import numpy as np
 import pytest
 
 from assess.checks import SETS, margins_of
-from assess.clauses.affdl_joint import DoubleShear
+from assess.clauses.affdl_joint import DoubleShear, joint_of
 from assess.clauses.affdl_lugs import net_section_load
+from assess.clauses.cozzone import cozzone_strength
 from assess.clauses.eye import PlateEye
 from assess.lug_factors import LugFactors
 from assess.margin import Margin
 from assess.situation import Situation
+from fea.beam.round_section import Circle
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.support.lugs.lug import Bushing, Lug, Shank
+from geometry import Pin
 from tests.support.each import each
 from tests.support.pins.plain_pins import double_shear
 
@@ -126,6 +129,63 @@ def test_the_diameter_that_would_pass() -> None:
         m for m in margins_of(replace(s, profile=thicker)) if m.method == "pin bending, rupture"
     )
     assert passing.used == pytest.approx(1.0)
+
+
+def test_a_joint_that_is_not_checked_leaves_bending_to_even_loads() -> None:
+    """Pulled across its shanks the joint has no clause: even bearing is then no comparison."""
+    s = joint_of_table()
+    lugs = tuple(
+        replace(x, shank=Shank("round", x.outer_diameter, 0.2, x.outer_diameter / 2.0, 1.0))
+        for x in s.lugs
+    )
+    margins = margins_of(replace(s, lugs=lugs, sized=lugs))
+    (joint,) = (m for m in margins if m.method == "AFFDL joint in double shear")
+    assert "force along the shank" in joint.needs
+    assert "pin bending, rupture" in {m.method for m in margins if m.governs}
+
+
+def test_a_joint_is_symmetrical_at_every_instant() -> None:
+    """One that loads one outer lug alone later on is no symmetrical double shear."""
+    s = joint_of_table()
+    later = np.array([[-0.8 * FORCE, 0, 0], [0.8 * FORCE, 0, 0], [0, 0, 0]])
+    forces = np.stack([s.loads.forces[0], later])
+    margins = margins_of(replace(s, loads=replace(s.loads, forces=forces, times=np.arange(2.0))))
+    (joint,) = (m for m in margins if m.method == "AFFDL joint in double shear")
+    assert "symmetrical double shear" in joint.needs
+    assert "pin bending, rupture" in {m.method for m in margins if m.governs}
+    slight = np.stack([s.loads.forces[0], 0.01 * later])
+    s = replace(s, loads=replace(s.loads, forces=slight, times=np.arange(2.0)))
+    assert ("AFFDL joint in double shear", "B") in named(margins_of(s))
+
+
+def test_bending_governs_where_the_section_carries_least() -> None:
+    """A tube in one gap and a solid waist in the other, both bent alike: stress is larger in the
+    waist, but a tube has less beyond yield, by the plastic over the elastic section modulus; and
+    the joint has its moment and its area.
+    """
+    s = joint_of_table()
+    segments, bore = list(s.pin.segments), 0.9 * DP
+    tube = Circle(DP / 2.0, bore / 2.0)
+    waist = Circle((0.95 * tube.modulus * 4.0 / math.pi) ** (1.0 / 3.0))
+    segments[1] = replace(segments[1], diameter=2.0 * waist.outer)
+    segments[3] = replace(segments[3], bore=bore)
+    steel = replace(s.material, ultimate_strain=0.12)
+    s = replace(s, profile=Pin("P", tuple(segments)), material=steel, bending_factor=None)
+    (bent,) = (m for m in margins_of(s) if m.method.startswith("pin bending, rupture"))
+    least = cozzone_strength(steel, tube, 0.12).result.value * tube.modulus
+    assert bent.at == "segment 4"
+    assert bent.allowable == pytest.approx(least)
+    joint = joint_of(s)
+    assert isinstance(joint, DoubleShear)
+    assert joint.moment == pytest.approx(least)
+    assert joint.shear == pytest.approx(2.0 * 82 * KSI * min(tube.area, waist.area))
+
+
+def test_required_checks_of_lugs_have_the_fitting_factor_of_the_code() -> None:
+    """The code "aircraft" makes no check of nominal bearing, which the study requires besides."""
+    s = replace(joint_of_table(), required=frozenset({("bearing", "limit")}))
+    bearing = named(margins_of(s))["lug, bearing", "B"]
+    assert (bearing.factor, bearing.code) == (1.15, "")
 
 
 def test_a_missing_factor_is_named() -> None:

@@ -34,18 +34,29 @@ def test_thickness_limits_the_width() -> None:
     )
 
 
-def test_a_study_of_the_plate() -> None:
-    """The example's load, 1.2 x 4 + 1.6 x 12 = 24 kips, passes bearing by 24.3 / 24."""
+def plate(shank: Shank) -> Situation:
+    """The example's plate under its load."""
     a36 = Material("A36", 29e3 * KSI, 0.3, None, *STRENGTHS)
-    shank = Shank("square", 4.25 * IN, 10.0 * IN, (2.25 + 0.515) * IN, 0.0)
     lug = Lug("B", 4.25 * IN, a36, clearance=0.03 * IN, shank=shank)
     F = 24.0 * KIP / 1.5
     forces = np.array([[[-F / 2, 0, 0], [F, 0, 0], [-F / 2, 0, 0]]])
-    s = Situation(
+    return Situation(
         double_shear(0.25 * IN, 0.02 * IN, 0.5 * IN, 1.0 * IN), a36,
         PinLoads("pull", ("A", "B", "C"), forces), lugs=(lug,), sized=(lug,), codes=("civil",),
     )  # fmt: skip
+
+
+def test_a_study_of_the_plate() -> None:
+    """The example's load, 1.2 x 4 + 1.6 x 12 = 24 kips, passes bearing by 24.3 / 24."""
+    s = plate(Shank("square", 4.25 * IN, 10.0 * IN, (2.25 + 0.515) * IN, 0.0))
     margins = {m.method: m for m in margins_of(s)}
     assert margins["AISC bearing"].used == pytest.approx(24.0 / 24.3, rel=1e-6)
     assert margins["AISC tensile rupture"].allowable == pytest.approx(0.75 * 93.38 * KIP, rel=1e-4)
     assert "EN 1993 bending" in margins
+
+
+def test_a_narrow_shank_yields_before_its_head() -> None:
+    """A round head of 4.25 in on a shank of 2 in: 0.9 x 36 x 2 x 0.5 = 32.4 kips."""
+    s = plate(Shank("round", 2.0 * IN, 10.0 * IN, 4.25 / 2.0 * IN, 0.0))
+    (yielding,) = (m for m in margins_of(s) if m.method == "AISC yielding")
+    assert yielding.allowable == pytest.approx(32.4 * KIP, rel=1e-6)

@@ -23,7 +23,7 @@ from assess.situation import Situation
 from assess.work import Work
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.support.lugs.lug import Bushing, Lug
+from fea.support.lugs.lug import Bushing, Lug, Shank
 from geometry import ArgumentError, Pin
 from tests.support.each import each
 from tests.support.errors import raises
@@ -65,6 +65,20 @@ def test_a_printed_net_section() -> None:
     assert stress(net_section_stress(2.4 * 49.30, 58.0 / 36.0, plate)) == pytest.approx(
         58.0, rel=3e-4
     )
+
+
+@each(("end", "width"), [(0.025, 0.05), (0.018, 0.048), (0.032, 0.048), (0.038, 0.046)])
+def test_the_net_section_of_an_eccentric_head(end: float, width: float) -> None:
+    """A head of 50 whose centre is 7 before or behind the bore is 2 sqrt(25^2 - 7^2) = 48 wide
+    there; one 13 before it leaves the bore in the shank, which is 46 wide.
+    """
+    shank = Shank("round", 0.046, 0.08, end, 0.0)
+    lug = Lug("B", W, Material("steel", 210e9, 0.3, None, 4e8), shank=shank)
+    net = next(m for m in lug_checks(PIN, [lug], LOADS) if m.method == "lug, net section")
+    b = (width - D) / 2.0
+    used = 0.6 * math.sqrt(D / b) * b
+    assert net.demand == pytest.approx(F / (2.0 * 2.0 * T * used), rel=1e-6)
+    assert (net.passing is None) == (end != 0.025)
 
 
 def test_shear_out_on_paper() -> None:

@@ -30,6 +30,7 @@ from fea.core.pin_loads import PinLoads
 from fea.lug.in_joint import ShankAngle
 from fea.support.lugs.lug import Bushing, Lug, Shank
 from geometry import ArgumentError
+from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.pins.plain_pins import double_shear
 
@@ -109,6 +110,17 @@ def test_a_study_at_45_degrees() -> None:
         assert m.allowable == pytest.approx(load * KIP, rel=1e-3), method
         assert m.demand == pytest.approx(part * KIP / 1.5, rel=1e-9), method
     assert "AFFDL lug bearing" not in margins  # k_br is given instead of K
+
+
+@each("only", ["k_br", "k_t"])
+def test_yield_names_the_factor_that_is_missing(only: str) -> None:
+    """With one of both factors for pulls the yield load is asked for, not left out."""
+    given = LugFactors(**{only: 0.9}, C=1.1, k_tru=0.5, k_try=0.8)
+    s = replace(lug_at(45.0), lug_factors={"B": given})
+    needs = {m.method: m.needs for m in margins_of(s)}
+    missing = {"k_br": "factors.k_t", "k_t": "factors.k_br"}[only]
+    assert needs["Melcon-Hoblit yield"] == f"pin.P.lug.B.{missing}"
+    assert needs["Melcon-Hoblit oblique yield"] == f"pin.P.lug.B.{missing}"
 
 
 def test_a_study_along_and_across() -> None:

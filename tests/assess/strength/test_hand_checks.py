@@ -127,6 +127,23 @@ def test_a_tube_in_shear(steel: Material) -> None:
     assert peak.formula == "V Q / (I t)"
 
 
+def test_shear_at_the_neutral_axis_is_largest_where_a_tube_shares_the_mean(steel: Material) -> None:
+    """A solid gap and a hollow one with a little more area: the mean is largest in the first, V Q /
+    (I t) in the second.
+    """
+    segments, bore = list(LUGS.segments), 0.008
+    segments[1] = Segment(g, 0.018)
+    segments[3] = Segment(g, d, bore=bore)
+    checks = hand_checks(Pin("P", tuple(segments)), steel, lugs((F, 0.0)))
+    found = {x.method: x for x in checks}
+    assert found["single shear, mean"].at == "segment 2"
+    peak = found["single shear, at the neutral axis"]
+    tube = 4 / 3 * (d**2 + d * bore + bore**2) / (d**2 + bore**2)
+    assert peak.at == "segment 4"
+    assert peak.demand == pytest.approx(tube * F / 2 / (math.pi / 4 * (d**2 - bore**2)))
+    assert peak.formula == "V Q / (I t)"
+
+
 def test_a_moment_between_samples_is_found_exactly(steel: Material) -> None:
     """In balance under three unequal bands, in two planes at once: against sums over 150,000 slices
     of what acts, the closing traction included. (Of two bands both unit loads have the same shape,

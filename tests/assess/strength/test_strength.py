@@ -148,6 +148,16 @@ def test_eurocode_margins_on_paper() -> None:
     assert thick == pytest.approx([72e3])
 
 
+def test_contact_in_a_lug_that_is_not_given_is_named() -> None:
+    """With the clearance of the middle lug alone, the outer ones are not passed over."""
+    s = replace(in_double_shear(0.008, 0.001, 0.015, 0.016, 5000.0), replaceable=True,
+                lugs=(Lug("B", 0.04, S235, clearance=0.5e-3),))  # fmt: skip
+    of_contact = [m for m in margins_of(s) if m.method == "EN 1993 contact, replaceable"]
+    assert [m.at for m in of_contact if not m.needs] == ["B"]
+    (lacking,) = (m.needs for m in of_contact if m.needs)
+    assert lacking == "pin.P.lug.A.clearance, pin.P.lug.C.clearance"
+
+
 def test_contact_stress_rises_as_the_root_of_the_force() -> None:
     """Its margin at a limit factor of 4 is that of the stress at four times the force."""
     lugs = tuple(Lug(name, 0.04, S235, clearance=0.5e-3) for name in "ABC")

@@ -64,6 +64,20 @@ def test_results_in_the_units_of_the_study() -> None:
     assert rupture.margin == pytest.approx(210.0 / (1.5 * 2500.0 / (math.pi * 64.0)) - 1.0)
 
 
+def test_couples_alone_bend_a_pin() -> None:
+    """Opposite moments of two links without forces: Mc / I between them, and no bearing."""
+    case = {
+        "kind": "given",
+        "forces": {"L": [0, 0], "R": [0, 0]},
+        "moments": {"L": [0, 50_000, 0], "R": [0, -50_000, 0]},
+    }
+    results = run(study_from(study() | {"case": {"twist": case}}))
+    found = {m.margin.method: m.margin for m in results.margins if not m.margin.needs}
+    assert found["bending"].demand == pytest.approx(50_000.0 / (math.pi / 32.0 * 16.0**3), rel=1e-3)
+    assert "EN 1993 bending" in found
+    assert "bearing" not in found
+
+
 def test_fitting_factor_divides_and_is_not_an_assumption_when_given() -> None:
     plain = run(study_from(study()))
     fitted = run(study_from(study(limit_factor=1.0, ultimate_factor=1.5, fitting_factor=1.15)))
