@@ -9,6 +9,7 @@ from pathlib import Path
 
 import click
 
+from assess.judgement import FAILS, NOT_DECIDED
 from pinbase.keys import key_part
 from pinbase.processes.pool import processes
 from pinstress.cli.new_file import write_new
@@ -167,7 +168,9 @@ def _row(
         solved=lightest.solved,
         why=lightest.why if judged is None else judged.why or unlikely,
         way=lightest.way,
-        depends=judged is not None and judged.depends and not unlikely,
+        outcome=judged.outcome
+        if judged is not None and (judged.outcome == FAILS or not unlikely)
+        else NOT_DECIDED,
     )
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from assess.judgement import NOT_DECIDED
 from pinbase.grouped import grouped
 from pinbase.processes.pool import preload, processes
 from pinstress.analysis.gather.gather import units_of
@@ -266,7 +267,7 @@ def _row(study: Study, new: Study, sized: SizingResult) -> SizeRow:
         slenderness=slenderness(pin_of(new, sized.pin)),
         why=sized.why or (judged.why if judged else ""),
         limited=sized.limited,
-        depends=not sized.why and judged is not None and judged.depends,
+        outcome=NOT_DECIDED if sized.why or judged is None else judged.outcome,
     )
 
 

@@ -243,7 +243,7 @@ def _failing_pin(check: JudgedCheck, with_case: bool) -> str:
     if check.lug:
         more += [f"lug {check.lug}"]
     elif check.row is None:
-        more += [_margin_words(replace(check, case=""))]
+        more += [margin_words(replace(check, case=""))]
     return f"{check.pin} ({', '.join(more)})" if more else check.pin
 
 
@@ -264,7 +264,7 @@ def _all_safe(results: Results, least: JudgedCheck, pins: int) -> str:
     safe = row.outcome == SAFE
     every = "Both pins" if pins == 2 else f"All {pins} pins"
     loaded = least.row is None and least.used != 0.0
-    other = f"; {_margin_words(least)}, pin {least.pin}" if loaded else ""
+    other = f"; {margin_words(least)}, pin {least.pin}" if loaded else ""
     if row.max_von_mises == 0.0:
         who = f"Pin {row.pin} is" if pins == 1 else f"{every} are"
         return f"{who} safe: no load stresses {'it' if pins == 1 else 'them'}{other}."
@@ -278,18 +278,19 @@ def _all_safe(results: Results, least: JudgedCheck, pins: int) -> str:
 def _of_margin(check: JudgedCheck) -> str:
     """Return the sentence on a check other than that of the model's stress against yield."""
     if check.outcome == FAILS:
-        return f"Pin {check.pin} fails: {_margin_words(check)}."
+        return f"Pin {check.pin} fails: {margin_words(check)}."
     if check.outcome == DEPENDS:
         over = f"range of the {check.reason}" if check.reason else "study's ranges"
         return (
             f"Pin {check.pin} is safe as described, but within the {over} it may fail: "
-            f"{_margin_words(check)}."
+            f"{margin_words(check)}."
         )
-    why = f"{check.check}: {check.reason}" if check.reason else _margin_words(check)
+    why = f"{check.check}: {check.reason}" if check.reason else margin_words(check)
     return f"Whether pin {check.pin} is safe is not decided: {why}."
 
 
-def _margin_words(check: JudgedCheck) -> str:
+def margin_words(check: JudgedCheck) -> str:
+    """Return a check with its margin of safety or its required factor, and its case."""
     case = f" ({check.case})" if check.case else ""
     name = "" if check.stated else "margin of safety "
     return f"{check.check}, {name}{spare_words(check)}{case}"

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from assess.judgement import DEPENDS, NOT_DECIDED, SAFE
 from reports.format.numbers import DASH, engineering, short
 from reports.tables.column import Column, Table, read_only, texts
 from reports.text.fitted_table import fitted_table
@@ -38,7 +39,7 @@ class LightRow:
     requested.
     bands: those that changed. solved: number of designs. why: reason why the factor is not shown to
     be reached. way: a note on a search that was not run or did not end.
-    depends: whether it is reached as described, but not over all ranges of the study.
+    outcome: with such a reason, what the new study shows (assess.judgement).
     """
 
     pin: str
@@ -54,14 +55,12 @@ class LightRow:
     solved: int
     why: str = ""
     way: str = ""
-    depends: bool = False
+    outcome: str = NOT_DECIDED
 
     @property
     def result(self) -> str:
         """The outcome in words."""
-        if self.depends:
-            return "depends"
-        return "not decided" if self.why else "safe"
+        return self.outcome if self.why else SAFE
 
     @property
     def saved(self) -> float | None:
@@ -121,7 +120,7 @@ def _residual(residual: float | None) -> str:
 
 
 def _total(rows: Sequence[LightRow], required: float | None, what: str, unit: str) -> Iterator[str]:
-    whys, depending = [row.why for row in rows], sum(row.depends for row in rows)
+    whys, depending = [row.why for row in rows], sum(row.result == DEPENDS for row in rows)
     text = reached(whys, depending, required, "in a run of the new study")
     yield f"{text}, with the error of its stress."
     known = [row for row in rows if row.saved is not None]

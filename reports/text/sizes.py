@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from assess.judgement import DEPENDS, NOT_DECIDED, SAFE
 from reports.data.row import Units
 from reports.format.numbers import DASH, engineering, short
 from reports.tables.column import Column, Table, read_only, texts
@@ -27,7 +28,7 @@ class SizeRow:
     slenderness: length over largest diameter under a link.
     why: the reason why the required factor is not reached, if it is not.
     limited: whether limits of the study forbid it.
-    depends: whether it is reached as described, but not over all ranges of the study.
+    outcome: with such a reason, what the new study shows (assess.judgement).
     stricter: a hand check with a smaller factor, if any.
     """
 
@@ -42,16 +43,14 @@ class SizeRow:
     why: str = ""
     stricter: str = ""
     limited: bool = False
-    depends: bool = False
+    outcome: str = NOT_DECIDED
 
     @property
     def result(self) -> str:
         """The outcome in words."""
         if self.limited:
             return "not reached"
-        if self.depends:
-            return "depends"
-        return "not decided" if self.why else "safe"
+        return self.outcome if self.why else SAFE
 
 
 def print_sizes(
@@ -70,7 +69,7 @@ def print_sizes(
 
     tints = {"Result": ["yellow" if row.why else "green" for row in rows]}
     console.print(fitted_table(sizes_table(rows), units, console.width, tints))
-    whys, depending = [row.why for row in rows], sum(row.depends for row in rows)
+    whys, depending = [row.why for row in rows], sum(row.result == DEPENDS for row in rows)
     outcome = reached(whys, depending, required, "in the new study" if written else "")
     unchanged = (
         " Lengths and the weights of links are unchanged; check that the links have room for the "

@@ -12,7 +12,7 @@ from reports.data.results import Results
 from reports.data.row import PinResult
 from reports.format.numbers import DASH, engineering
 from reports.format.ranges import factor_range
-from reports.format.words import over_words
+from reports.format.words import margin_words, over_words
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class JudgedPin:
     governs: its case, and beneath contact if that is where it is.
     stricter: a hand check with a smaller factor, if any.
     why: the reason why the factor is not shown to be reached, empty if it is.
-    depends: whether it is reached as described, but not over all ranges of the study.
+    outcome: one of assess.judgement, over all checks of the pin.
     cases: the factor that counts in each case, with its error.
     """
 
@@ -31,7 +31,7 @@ class JudgedPin:
     governs: str
     stricter: str
     why: str
-    depends: bool
+    outcome: str
     cases: tuple[tuple[str, float], ...]
 
 
@@ -44,11 +44,23 @@ def judged_pin(results: Results, pin: str) -> JudgedPin:
         *_lowest(worst),
         "" if worst is None else _stricter(worst),
         why,
-        bool(why)
-        and all(p.outcome in (SAFE, DEPENDS) for p in rows)
-        and not _strict_check(results, pin),
+        _outcome(results, pin, why),
         tuple((p.case, factor) for p in rows if (factor := _counted(p)) is not None),
     )
+
+
+def _outcome(results: Results, pin: str, why: str) -> str:
+    """Return the outcome of a pin whose factor, for the reason `why`, is not shown to be reached;
+    of one without a reason, SAFE.
+    """
+    if not why:
+        return SAFE
+    rows = {p.outcome for p in results.pins if p.pin == pin and p.safety_factor is not None}
+    if FAILS in rows or _strict_check(results, pin):
+        return FAILS
+    worst = worst_checks(results)[pin]
+    open_ = not rows <= {SAFE, DEPENDS} or (worst.stated and worst.outcome == NOT_DECIDED)
+    return NOT_DECIDED if open_ else DEPENDS
 
 
 def _lowest(worst: PinResult | None) -> tuple[str, str]:
@@ -104,7 +116,7 @@ def why_missed(results: Results, pin: str) -> str:
     if loose:
         return f"in {', '.join(loose)} the error of the stress leaves it open"
     if check := _strict_check(results, pin):
-        return f"{check.check} has a margin of safety of {1.0 / check.used - 1.0:.3g}"
+        return margin_words(check)
     worst = worst_checks(results)[pin]
     if worst.stated and worst.outcome == NOT_DECIDED:
         reason = f", which {worst.reason}" if worst.reason else ""

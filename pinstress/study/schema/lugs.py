@@ -3,10 +3,11 @@
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, Tag
 
 from pinstress.study.schema.iso286 import classes_of
 from pinstress.study.schema.types import (
+    ONE_OR_BOTH,
     Angle,
     Length,
     Name,
@@ -134,7 +135,12 @@ class LugTable(StrictTable):
     friction: Friction = 0.0
     """Coefficient of Coulomb friction between pin and bore, for bounds of the torque and of the
     stress. It does not act on the mechanism, as `friction` of a joint does."""
-    axial: str | tuple[str, str] | None = None
+    axial: (
+        Annotated[
+            Annotated[str, Tag("<one>")] | Annotated[tuple[str, str], Tag("<both>")], ONE_OR_BOTH
+        ]
+        | None
+    ) = None
     """Segment of the pin, by its name, that takes the link's force along the axis both ways; or
     two: [towards the start of the pin, towards its end], as a head and a nut. Default: the next
     shoulder on that side, if no other lug is between, else the band itself."""

@@ -29,6 +29,7 @@ from pinstress.study.schema.size import SizeTable
 from pinstress.study.schema.space import SpaceMechanismTable
 from pinstress.study.schema.types import (
     ANY_CASE,
+    ONE_OR_BOTH,
     CaseName,
     LimitLoads,
     Name,
@@ -95,7 +96,10 @@ class AnalysisTable(StrictTable):
     fitting_factor: Annotated[Number, Field(ge=1.0)] = 1.0
     """Additional factor of all checks of margins, for fittings whose strength no test proves; 14
     CFR 25.625 demands 1.15, which is the default of the code "aircraft"."""
-    code: Code | Annotated[list[Code], Field(min_length=1)] = "general"
+    code: Annotated[
+        Annotated[Code, Tag("<one>")] | Annotated[list[Code], Field(min_length=1), Tag("<both>")],
+        ONE_OR_BOTH,
+    ] = "general"
     """Which checks of strength are made of pins and lugs: textbooks and EN 1993-1-8 ("general");
     AFFDL-TR-69-42, Melcon and Hoblit, Ekvall, Cozzone ("aircraft"); ASME BTH-1 ("lifting");
     EN 1993-1-8 and ANSI/AISC 360, D5 ("civil"). A list shows them side by side."""

@@ -202,15 +202,16 @@ def _one_or_both(value: object) -> str:
     return "<both>" if isinstance(value, list | tuple) else "<one>"
 
 
+ONE_OR_BOTH = Discriminator(_one_or_both)
 Tapered = Annotated[
     Annotated[PositiveLength, Tag("<one>")]
     | Annotated[tuple[PositiveLength, PositiveLength], Tag("<both>")],
-    Discriminator(_one_or_both),
+    ONE_OR_BOTH,
 ]
 NotNegativeAtEnds = Annotated[
     Annotated[NotNegativeLength, Tag("<one>")]
     | Annotated[tuple[NotNegativeLength, NotNegativeLength], Tag("<both>")],
-    Discriminator(_one_or_both),
+    ONE_OR_BOTH,
 ]
 Stress = Annotated[Annotated[float, Quantity("stress")], POSITIVE]
 Density = Annotated[Annotated[float, Quantity("density")], POSITIVE]

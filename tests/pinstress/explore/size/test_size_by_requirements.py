@@ -11,11 +11,14 @@ from typing import Any
 
 import pytest
 
+from assess.judgement import FAILS, NOT_DECIDED
 from pinstress import load_study, run
 from pinstress.cli.commands import run_command_line
 from pinstress.cli.size import require_wish
+from pinstress.explore.size.judged_pin import judged_pin
 from pinstress.study.reading.errors import InputError
 from reports.data.decision import factor_ends
+from reports.data.headline import worst_checks
 from tests.pinstress.analysis.test_margins import STUDY
 
 LONG = [
@@ -118,3 +121,20 @@ def test_the_least_weight_where_only_one_case_has_a_factor(tmp_path: Path) -> No
     found = sized(path, "--least-weight")
     assert 3.0 <= found["often"][0] <= 3.0 * 1.02
     assert found["seldom"][0] < 1.6
+
+
+def test_a_size_says_what_a_run_says_of_checks_besides_yield(tmp_path: Path) -> None:
+    """What is missed was "not decided", and what is not decided "depends"."""
+    stress = max(row.max_von_mises or 0.0 for row in run(load_study(file(tmp_path))).pins)
+    requirements = {
+        FAILS: {"check": "bearing", "factor": 1e3},
+        NOT_DECIDED: {"check": "rupture", "factor": 500.0 / stress},  # within the error
+    }
+    for outcome, requirement in requirements.items():
+        path = file(tmp_path, requirement, required_safety_factor=1.5)
+        results = run(load_study(path))
+        judged = judged_pin(results, "P")
+        assert worst_checks(results)["P"].outcome == judged.outcome == outcome
+        assert judged.why.startswith(str(requirement["check"]))
+        if outcome == FAILS:  # it was a margin against the required factor, as no run states it
+            assert judged.why.endswith(", 1,000 required (seldom)")

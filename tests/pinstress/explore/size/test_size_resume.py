@@ -216,7 +216,7 @@ def test_loads_that_follow_from_weights_of_pins() -> None:
     def result(pin: str, retract: float) -> SizingResult:
         from pinstress.explore.size.judged_pin import JudgedPin
 
-        judged = JudgedPin("", "landing", "", "", False, (("retract", retract), ("landing", 10.1)))
+        judged = JudgedPin("", "landing", "", "", "safe", (("retract", retract), ("landing", 10.1)))
         return SizingResult(pin, 3.0, 2.0, 10.1, "converged", judged=judged)
 
     assert loaded_more(plan, goal, [result("J", 1e3), result("E", 1e3)]) == []
