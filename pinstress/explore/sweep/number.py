@@ -194,7 +194,8 @@ def unit_of(system: UnitSystem, dimension: str) -> str:
         " ".join(f"{n}^{abs(e)}" if abs(e) > 1 else n for n, e in powers if e * sign > 0)
         for sign in (1, -1)
     )
-    return f"{above or '1'}/{below}" if below else above
+    per = [below] * bool(below) + ["rad"] * dimension.startswith("torsional")
+    return "/".join([above or "1", *per])
 
 
 def _dimension(study: Study, raw: dict[str, Any], path: Path) -> str:

@@ -282,7 +282,8 @@ def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Mater
     outer = given.outer_diameter or EYE_DIAMETER_RATIO * 2.0 * band.radius
     made_of = of_pin if given.material is None else material(study, given.material)
     fit = None if given.fit is None else _fit(connection, given.fit, 2.0 * band.radius)
-    middle = 0.0 if fit is None else sum(fit) / 2.0
+    low, high = fit or given.range.clearance or (0.0, 0.0)
+    middle = 0.0 if fit is None and low <= 0.0 <= high else (low + high) / 2.0
     bushing, pressed = _bushing(study, connection, given, 2.0 * band.radius)
     lug = Lug(
         connection,

@@ -1,8 +1,11 @@
-"""Keys of a study that have no effect: a warning, as sweeps and other choices may need them."""
+"""Keys of a study that have no effect or contradict another: a warning, as sweeps and other choices
+may need them.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import inf
 
 from pinbase.keys import key_part
 from pinstress.study.schema.lugs import LugTable
@@ -10,7 +13,7 @@ from pinstress.study.schema.tables import StudyTable
 
 
 def unused(table: StudyTable) -> Iterator[str]:
-    """Yield a sentence on every key without an effect, after the key."""
+    """Yield a sentence on every key without an effect or against another, after the key."""
     lugs = {
         f"pin.{key_part(name)}.lug.{key_part(connection)}": lug
         for name, pin in table.pin.items()
@@ -24,6 +27,13 @@ def unused(table: StudyTable) -> Iterator[str]:
                     "along the axis act on the bands of the links; use other joints, or remove it"
                 )
     yield from _of_codes(table)
+    for key, lug in lugs.items():
+        low, high = lug.range.clearance or (-inf, inf)
+        if lug.clearance is not None and not low <= lug.clearance <= high:
+            yield (
+                f"{key}.clearance: is not within its range.clearance, which is solved besides; "
+                "change one of both"
+            )
     if lugs or not table.pin:
         return
     if table.lug_defaults is not None:

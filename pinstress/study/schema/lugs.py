@@ -119,7 +119,7 @@ class LugTable(StrictTable):
     """Name of a `[material]`. Default: the pin's material."""
     clearance: Length | None = None
     """Diameter of the bore minus that of the pin; negative for interference. Default: the middle of
-    the `fit`, else 0."""
+    the `fit`, or of a `range.clearance` that leaves 0 out, else 0."""
     fit: Fit | None = None
     """Tolerance classes of bore and pin by ISO 286-1, as "H7/f7", at the diameter of the band. Not
     with `clearance`."""

@@ -96,6 +96,23 @@ def test_what_is_not_given(tmp_path: Path) -> None:
     assert middle.tilt == pytest.approx(8.0 * left.tilt)
 
 
+def test_a_range_of_clearance_that_leaves_zero_out_is_solved_in_its_middle(tmp_path: Path) -> None:
+    """It was solved without clearance, which the range excludes."""
+    ranges = """
+[pin.P.lug.L]
+range = { clearance = [0.03, 0.06] }
+[pin.P.lug.M]
+range = { clearance = [-0.01, 0.06] }
+[pin.P.lug.R]
+fit = "H7/f7"
+range = { clearance = [0.03, 0.06] }
+"""
+    left, middle, right = lugs(tmp_path, ranges)
+    assert left.clearance == pytest.approx(4.5e-5)
+    assert middle.clearance == 0.0
+    assert right.clearance == pytest.approx(0.5 * (20e-6 + 62e-6))
+
+
 def test_a_lug_bends_as_far_as_its_shank_is_held(tmp_path: Path) -> None:
     """A shank 30 wide and held 100 away bends four times as much as the default says."""
     shanks = """

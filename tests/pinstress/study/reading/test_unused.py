@@ -76,3 +76,10 @@ def test_keys_without_effect_have_a_warning(
     warnings = study_from(text(pin, defaults, case, analysis)).warnings
     assert ["has no effect" in x for x in warnings] == [True] * bool(key)
     assert all(f": {key}: has" in x for x in warnings)
+
+
+def test_a_clearance_outside_of_its_range_has_a_warning() -> None:
+    for clearance, contradicts in ((0.02, True), (0.05, False)):
+        lug = f"lug.L = {{ clearance = {clearance}, range = {{ clearance = [0.03, 0.06] }} }}"
+        warned = [x for x in study_from(text(lug)).warnings if "L.clearance: is not within" in x]
+        assert len(warned) == contradicts
