@@ -12,3 +12,8 @@ def key_part(name: str) -> str:
     if PLAIN_NAME_PATTERN.fullmatch(name):
         return name
     return f"'{name}'" if '"' in name else f'"{name}"'
+
+
+def lug_key(pin: str, connection: str, *parts: str) -> str:
+    """Return the key of the lug of a connection on a pin, or of parts of its table."""
+    return ".".join(["pin", key_part(pin), "lug", key_part(connection), *parts])

@@ -25,7 +25,7 @@ import numpy as np
 from fea.core.pin_loads import PinLoads
 from geometry import PinLike
 from pinbase.arrays import Floats
-from pinbase.keys import key_part
+from pinbase.keys import key_part, lug_key
 
 # Both limits are chosen by judgement, as parts of the largest force or torque.
 MIN_WARNED_IMBALANCE = 0.01  # less is round-off of numbers that were typed
@@ -184,7 +184,7 @@ def _structure(pin: PinLike) -> str:
     """The advice to let a structure hold a pin, by its named segments on which no link bears."""
     segments = () if pin.profile is None else pin.profile.segments
     idle = [s.name for s in segments if s.name and s.name not in pin.connections]
-    lugs = ", ".join(f"pin.{key_part(pin.name)}.lug.{key_part(name)}" for name in idle)
+    lugs = ", ".join(lug_key(pin.name, name) for name in idle)
     if lugs:
         return f"add a lug for each segment that a structure holds: {lugs}"
     return (

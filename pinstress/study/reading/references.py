@@ -10,7 +10,7 @@ from assess.fatigue.flight import flight
 from assess.requirement import LEVELS_OF_CHECK
 from geometry.shape.pin import END_FACES
 from pinbase.errors import ArgumentError
-from pinbase.keys import key_part
+from pinbase.keys import key_part, lug_key
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.mechanism_references import of_its_cases, of_pins, of_plane
 from pinstress.study.reading.names import known_name, known_names
@@ -51,7 +51,7 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
         surfaces |= dict.fromkeys(s.name for s in pin.profile or () if s.name)
         surfaces |= dict.fromkeys(pin.band)
         for connection, lug in pin.lug.items():
-            key = f"pin.{key_part(name)}.lug.{key_part(connection)}"
+            key = lug_key(name, connection)
             yield from known_name(key, "connection or segment", connection, surfaces)
             for at, made_of in _materials(lug).items():
                 if made_of not in common.values():
