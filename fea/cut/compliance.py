@@ -19,11 +19,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.core.few_columns import combinations
 from fea.core.local_fit import continuation
 from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
 from fea.cut.evaluate import fine_about
+from fea.cut.few_columns import combinations
 from fea.cut.frames import cartesian, turn_of
 from fea.cut.local_model import LocalModel
 from fea.cut.local_solution import LocalFineness, LocalMesh, section_points

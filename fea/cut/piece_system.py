@@ -9,9 +9,9 @@ import numpy as np
 import scipy.linalg
 import scipy.sparse as sp
 
-from fea.core.few_columns import combinations
 from fea.core.linear_solver import ConstrainedSystem, SolveError
 from fea.core.material import Material
+from fea.cut.few_columns import combinations
 from fea.cut.parity import Parities
 from fea.cut.two_level import ENERGY_TOLERANCE, MAX_FACTORED_UNKNOWNS, TwoLevel
 from fea.solid.assembly import Discretisation
