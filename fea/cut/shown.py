@@ -155,14 +155,12 @@ def _revolved(
     stress, moved = (
         along(x[: fields.skin])[..., columns] for x in (fields.stress, fields.displacement)
     )
-    angle = np.arange(CUT_VIEW_SECTORS) * 2.0 * np.pi / CUT_VIEW_SECTORS
+    sectors = np.arange(CUT_VIEW_SECTORS)
+    angle = sectors * 2.0 * np.pi / CUT_VIEW_SECTORS
     heights = np.broadcast_to(z[:, None], (len(z), CUT_VIEW_SECTORS))
     points = np.stack([r[:, None] * np.cos(angle), r[:, None] * np.sin(angle), heights], axis=2)
-    first, sector = (
-        CUT_VIEW_SECTORS * 2 * np.arange(len(rows))[:, None],
-        np.arange(CUT_VIEW_SECTORS),
-    )
-    i, j = first + sector, first + (sector + 1) % CUT_VIEW_SECTORS
+    first = CUT_VIEW_SECTORS * 2 * np.arange(len(rows))[:, None]
+    i, j = first + sectors, first + (sectors + 1) % CUT_VIEW_SECTORS
     quads = np.stack([i, j, j + CUT_VIEW_SECTORS, i + CUT_VIEW_SECTORS], axis=2).reshape(-1, 4)
     everywhere = np.ones(len(a) * CUT_VIEW_SECTORS, dtype=bool)
     return ShownCut(
