@@ -188,7 +188,7 @@ def _structure(pin: PinLike) -> str:
     if lugs:
         return f"add a lug for each segment that a structure holds: {lugs}"
     return (
-        f"name a segment that a structure holds, and give it a lug "
+        "name a segment that a structure holds, and give it a lug "
         f"(pin.{key_part(pin.name)}.lug.NAME)"
     )
 

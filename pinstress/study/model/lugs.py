@@ -315,9 +315,8 @@ def _bushing(
         if ends is None:
             return None, None
         raise ArgumentError(
-            f"{what}: range.interference is of a bushing; give "
-            f"lug.{key_part(connection)}.bushing, or a "
-            "negative clearance where the pin itself is pressed in",
+            f"{what}: range.interference is of a bushing; give lug.{key_part(connection)}.bushing, "
+            "or a negative clearance where the pin itself is pressed in",
             "no-bushing",
         )
     if given.fit is not None:
