@@ -163,20 +163,16 @@ def _refusal(pin: PinLike, shares: tuple[float, ...], carried: Carried) -> tuple
     if torque > MAX_IMBALANCE:
         said = f"their torque about the axis is {torque:.2g} of the largest applied (its {react} "
         return f"{loose}{said}at most {MAX_IMBALANCE:g}); {clamp}", "torque-imbalance"
+    said = f"their couple across the axis is {couple:.2g} of the largest force times the length of "
     most = MAX_IMBALANCE if carried.moments else MAX_FREE_COUPLE + force / 2.0  # links share force
     if carried.lugs and couple > most:
-        said = f"their couple across the axis is {couple:.2g} of the largest force times the "
-        said += "length of the pin, which no lug reacts, since all "
+        said += "the pin, which no lug reacts, since all "
         said += "links state moments or " if carried.moments else ""
         said += "are free to tilt; "
         return f"{loose}{said}give a lug the stiffness of its tilt", "couple-imbalance"
     if couple > MAX_IMBALANCE:
-        said = f"their couple across the axis is {couple:.2g} of the largest force times the "
-        said += f"length of the pin (its bands react at most {MAX_IMBALANCE:g}); give it lugs, "
-        return (
-            f"{loose}{said}whose tilt carries couples ({name}.lug), or {clamp}",
-            "couple-imbalance",
-        )
+        said += f"the pin (its bands react at most {MAX_IMBALANCE:g}); give it lugs, whose tilt "
+        return f"{loose}{said}carries couples ({name}.lug), or {clamp}", "couple-imbalance"
     return None, ""
 
 
