@@ -151,10 +151,7 @@ def _between(
 
 
 def _piece(
-    fields: MeridianFields,
-    piece: LocalFields,
-    amounts: Floats,
-    ends: tuple[float, float],
+    fields: MeridianFields, piece: LocalFields, amounts: Floats, ends: tuple[float, float]
 ) -> BodyPart:
     """A piece between two z, m, displaced by the loads and its own cuts."""
     turn, inner = turn_of(piece.piece.angle), piece.inner.whole(amounts)

@@ -134,11 +134,7 @@ def _around(fields: MeridianFields, loads: Loads) -> Circumference:
 
 
 def depths(
-    fields: MeridianFields,
-    loads: PinLoads,
-    instant: int,
-    zones: tuple[Zone, ...],
-    least: float,
+    fields: MeridianFields, loads: PinLoads, instant: int, zones: tuple[Zone, ...], least: float
 ) -> Steps:
     """Pairs of a stress, Pa, and the distance, m, from pressed cells that it reaches at an instant.
 

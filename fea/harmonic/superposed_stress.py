@@ -25,12 +25,7 @@ import numpy as np
 from fea.core.pin_loads import Loads, require_solved
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.five_numbers import COS, COSINE_COMPONENTS, SIN, numbers
-from fea.harmonic.sampled_waves import (
-    crest_all_round,
-    crest_where_read,
-    sampled,
-    steady_crests,
-)
+from fea.harmonic.sampled_waves import crest_all_round, crest_where_read, sampled, steady_crests
 from fea.harmonic.trigonometric_maximum import form_maximum, one_wave
 from pinbase.arrays import Floats, Ints, Mask
 

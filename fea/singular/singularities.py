@@ -27,11 +27,7 @@ STRAIGHT_ARC_SHARE = 0.25
 
 @lru_cache(256)
 def find_singularities(
-    pin: Pin,
-    clamps: tuple[str, ...],
-    loaded: tuple[str, ...],
-    nu: float,
-    distance: float = 0.1,
+    pin: Pin, clamps: tuple[str, ...], loaded: tuple[str, ...], nu: float, distance: float = 0.1
 ) -> tuple[Zone, ...]:
     """Every stress singularity of a pin, in the order of `vertices`.
 
