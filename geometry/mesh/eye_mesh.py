@@ -7,9 +7,9 @@ from itertools import pairwise
 import numpy as np
 from skfem import MeshQuad, MeshTri2
 
-from fea.core.pin_loads import Floats
-from geometry import Pin
 from geometry.mesh.section_mesh import MeridianMesh
+from geometry.shape.pin import Pin
+from pinbase.arrays import Floats
 
 LAYER_GROWTH = 1.6  # of each layer over the one before, from the bore outwards
 MIN_WALL_ELEMENTS = 2.0  # with one element pressure at a rounded edge is 6 % high, at a bushing 3 %
