@@ -23,11 +23,11 @@ from fea.core.local_fit import continuation
 from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
 from fea.cut.evaluate import fine_about
-from fea.cut.few_columns import combinations
 from fea.cut.frames import cartesian, turn_of
 from fea.cut.local_model import LocalModel
 from fea.cut.local_solution import LocalFineness, LocalMesh, section_points
 from fea.cut.movement import of_units
+from fea.cut.piece_system import combinations
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.model import HarmonicModel
 from fea.harmonic.section_solution import FIRST_MESH_SIZE, finer_at_rings
