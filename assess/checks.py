@@ -12,15 +12,7 @@ from itertools import groupby
 from types import MappingProxyType
 
 from assess.check import Check, Scope
-from assess.clauses import (
-    affdl_joint,
-    affdl_lugs,
-    affdl_pins,
-    aisc_d5,
-    bth1,
-    ekvall,
-    melcon_hoblit,
-)
+from assess.clauses import affdl_joint, affdl_lugs, affdl_pins, aisc_d5, bth1, ekvall, melcon_hoblit
 from assess.clauses.lug_checks import lug_checks, required_lug_checks
 from assess.clauses.lug_collapse import lug_collapse, lug_rupture
 from assess.clauses.lug_out_of_plane import lug_out_of_plane

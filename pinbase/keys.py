@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 PLAIN_NAME_PATTERN = re.compile(r"[A-Za-z0-9_-]+")  # that TOML needs no quotes for
+NAME_PATTERN = re.compile(r'"([^"]*)"|\'([^\']*)\'|[^."\']+')  # a part of a key
 
 
 def key_part(name: str) -> str:
@@ -12,3 +13,13 @@ def key_part(name: str) -> str:
     if PLAIN_NAME_PATTERN.fullmatch(name):
         return name
     return f"'{name}'" if '"' in name else f'"{name}"'
+
+
+def names_in(key: str) -> list[str]:
+    """Return the names that are the parts of a key, without their quotes."""
+    return [part[part.lastindex or 0] for part in NAME_PATTERN.finditer(key)]
+
+
+def lug_key(pin: str, connection: str, *parts: str) -> str:
+    """Return the key of the lug of a connection on a pin, or of parts of its table."""
+    return ".".join(["pin", key_part(pin), "lug", key_part(connection), *parts])

@@ -11,11 +11,9 @@ import numpy as np
 
 T = TypeVar("T")
 # As tuples, since unions of types take twice as long to tell, and a memo asks a million times.
-SCALARS, TEXTS, COLLECTIONS = (
-    (int, float, type, NoneType),
-    (bytes, str),
-    (list, tuple, set, frozenset),
-)
+SCALARS = (int, float, type, NoneType)
+TEXTS = (bytes, str)
+COLLECTIONS = (list, tuple, set, frozenset)
 
 # Bytes: the flexibilities and meshes of two or three pins in contact (about 150 MB each).
 MAX_MEMO_SIZE = 4 * 10**8

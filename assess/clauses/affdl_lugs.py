@@ -23,16 +23,11 @@ from functools import partial
 
 from assess.check import CheckText, check
 from assess.clauses.eye import LoadedEye, PlateEye, loaded_eyes
-from assess.clauses.eye_margin import (
-    EyeCapacity,
-    eye_margin,
-    lug_key,
-    not_axial,
-    strengths_of,
-)
+from assess.clauses.eye_margin import EyeCapacity, eye_margin, not_axial, strengths_of
 from assess.margin import Margin, strength_key
 from assess.situation import Situation
 from assess.work import Work, work
+from pinbase.keys import lug_key
 
 MANUAL = "AFFDL-TR-69-42"
 ULTIMATE_OVER_YIELD = 1.304  # 1.5 / 1.15 as the manual has it
@@ -136,7 +131,7 @@ def _capacity(
     """key: of the efficiency factor of a load."""
     factor, strengths = getattr(s.factors_of(x.connection), key), strengths_of(x.lug)
     if factor is None or strengths.missing:
-        named = [lug_key(s, x.connection, f"factors.{key}")] if factor is None else []
+        named = [lug_key(s.pin.name, x.connection, "factors", key)] if factor is None else []
         return [*named, *strengths.missing]
     return lambda eye: load(eye, factor, strengths.yields, strengths.ultimate)
 

@@ -13,7 +13,6 @@ from assess.situation import Situation
 from assess.work import Work, WorkQuantity
 from fea.core.material import Material
 from pinbase.arrays import Floats
-from pinbase.keys import key_part
 
 EyeCapacity = Callable[[PlateEye], Work]  # the force that an eye carries, N
 MAX_TRANSVERSE_RATIO = 0.05  # of the force, up to which a clause for axial loads is applied
@@ -34,11 +33,6 @@ def strengths_of(material: Material) -> Strengths:
     both = {"yield": material.yield_strength, "ultimate": material.ultimate_strength}
     missing = tuple(strength_key(material.name, w) for w, x in both.items() if x is None)
     return Strengths(both["yield"] or 0.0, both["ultimate"] or 0.0, missing)
-
-
-def lug_key(s: Situation, connection: str, key: str) -> str:
-    """A key of a lug as a study writes it."""
-    return f"pin.{key_part(s.pin.name)}.lug.{key_part(connection)}.{key}"
 
 
 def not_axial(text: CheckText, s: Situation, loaded: LoadedEye) -> Margin | None:

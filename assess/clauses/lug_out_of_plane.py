@@ -22,7 +22,7 @@ from assess.situation import Situation
 from assess.work import Work, WorkQuantity, work, would_pass
 from fea.support.lugs.lug import Lug, Shank
 from pinbase.arrays import Floats
-from pinbase.keys import key_part
+from pinbase.keys import lug_key
 
 STRUCTURE_NEED = "the share of each lug of the structure in forces along the pin and moments"
 MIN_SHARE = 1e-6  # of the largest force (times the pin's length): smaller loads are round-off
@@ -45,9 +45,9 @@ def lug_out_of_plane(text: CheckText, s: Situation) -> list[Margin]:
     for k, lug in bent:
         angle = shank_angle(s, lug)
         if lug.shank is None:
-            lacking.append(f"lug.{key_part(lug.connection)}.shank")
+            lacking.append(lug_key(s.pin.name, lug.connection, "shank"))
         elif angle is None:
-            lacking.append(f"lug.{key_part(lug.connection)}.shank.angle")
+            lacking.append(lug_key(s.pin.name, lug.connection, "shank", "angle"))
         else:
             margins += _of_lug(text, s, lug, lug.shank, _Actions.on(s, k, angle))
     if bent and _structure_reacts(s):

@@ -26,11 +26,12 @@ import numpy as np
 
 from assess.check import CheckText, check
 from assess.clauses.eye import LoadedEye, PlateEye, loaded_eyes, place_of
-from assess.clauses.eye_margin import eye_margin, lug_key, strengths_of
+from assess.clauses.eye_margin import eye_margin, strengths_of
 from assess.margin import RATIO_DIMENSION, Margin, strength_key
 from assess.situation import Situation
 from assess.work import Work, work
 from pinbase.arrays import Floats
+from pinbase.keys import lug_key
 
 NIU = "Niu, Airframe Stress Analysis, 9.8, after Melcon & Hoblit"
 OBLIQUE_EXPONENT = 1.6  # of the interaction; 0.625 is its inverse
@@ -239,7 +240,9 @@ def _axial_given(s: Situation, x: LoadedEye) -> bool:
 def _lacking(s: Situation, x: LoadedEye, *keys: str) -> list[str]:
     factors = s.factors_of(x.connection)
     return [
-        lug_key(s, x.connection, f"factors.{key}") for key in keys if getattr(factors, key) is None
+        lug_key(s.pin.name, x.connection, "factors", key)
+        for key in keys
+        if getattr(factors, key) is None
     ]
 
 

@@ -170,10 +170,8 @@ class _InLugs:
                 continue
             if any(one.rings != model.rings for one in models):
                 continue
-            change, pins = (
-                JointStep(key, models, step, None),
-                tuple(one.pin for one in models),
-            )
+            change = JointStep(key, models, step, None)
+            pins = tuple(one.pin for one in models)
             try:
                 if any(pin != model.pin for pin in pins):
                     change = replace(change, flexible=self._flexible.among(key, pins, step))

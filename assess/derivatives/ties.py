@@ -16,10 +16,7 @@ from fea.harmonic.superposition import Circumference, Crest
 
 
 def competing_places(
-    around: Circumference,
-    zones: Iterable[Zone],
-    top: Crest,
-    error: float,
+    around: Circumference, zones: Iterable[Zone], top: Crest, error: float
 ) -> tuple[tuple[float, float], ...]:
     """Well separated places (r, z), m, with nearly the maximum at the governing instant.
 

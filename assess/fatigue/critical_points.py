@@ -77,12 +77,7 @@ def stress_histories(pin: str, solutions: Sequence[Solution]) -> tuple[PointHist
         return ()
     return tuple(
         PointHistory(
-            pin,
-            k,
-            _tuple(place.location),
-            place.chosen,
-            _at(place, cases),
-            cases[0].known.revolved,
+            pin, k, _tuple(place.location), place.chosen, _at(place, cases), cases[0].known.revolved
         )
         for k, place in enumerate(_places(cases), 1)
     )

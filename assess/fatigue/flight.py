@@ -81,9 +81,8 @@ def flight(occurrences: Sequence[float]) -> Flight:
     )
     if off or units > MAX_REPEAT_UNITS:
         raise ArgumentError(
-            f"the spectrum must repeat itself after at most {MAX_REPEAT_UNITS:,} units: give "
-            f"whole numbers "
-            "and fractions such as 0.5, 0.05 or 0.001",
+            f"the spectrum must repeat itself after at most {MAX_REPEAT_UNITS:,} units: give whole "
+            "numbers and fractions such as 0.5, 0.05 or 0.001",
             "not-a-fraction",
         )
     if sum(exact) * units > MAX_SEQUENCE_CASES:

@@ -80,11 +80,7 @@ def deck_opinion(pin: Pin, deck: JointDeck, angle: float, scale: float) -> Joint
 
 
 def joint_deck(
-    pin: Pin,
-    material: Material,
-    lugs: Sequence[Lug],
-    loads: PinLoads,
-    fineness: Fineness,
+    pin: Pin, material: Material, lugs: Sequence[Lug], loads: PinLoads, fineness: Fineness
 ) -> tuple[JointDeck, float]:
     """The deck, and the angle, rad, by which its axes are turned about the pin's.
 

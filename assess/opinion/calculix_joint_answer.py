@@ -10,10 +10,7 @@ import numpy as np
 
 from assess.opinion import calculix
 from assess.opinion.calculix_joint_deck import JointDeck, slave
-from assess.opinion.calculix_joint_mesh import (
-    natural_coordinates,
-    trilinear,
-)
+from assess.opinion.calculix_joint_mesh import natural_coordinates, trilinear
 from fea.core.pin_loads import Floats
 from fea.core.voigt import von_mises
 from fea.cut.free_points import relieved

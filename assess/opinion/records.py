@@ -6,16 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pinbase.dimensions import (
-    Floats,
-    Force,
-    Forces,
-    Length,
-    Lengths,
-    Moments,
-    Stress,
-    Stresses,
-)
+from pinbase.dimensions import Floats, Force, Forces, Length, Lengths, Moments, Stress, Stresses
 
 COMPARISON_WINDOW = (0.3, 0.8)  # of the loaded length: away from the root and from the load's end
 

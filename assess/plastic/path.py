@@ -115,8 +115,8 @@ class EquilibriumPath:
                 return State(float(factor), u, work, flow, tuple(residuals))
             u, flow = self._search(u, a + factor * b, now.flow)
         raise SolveError(
-            "the equilibrium of the flowing pin was not found: after "
-            f"{MAX_NEWTON_ITERATIONS} iterations {residuals[-1]:.1e} of the loads is unbalanced",
+            f"the equilibrium of the flowing pin was not found: after {MAX_NEWTON_ITERATIONS} "
+            f"iterations {residuals[-1]:.1e} of the loads is unbalanced",
             "no-convergence",
         )
 

@@ -40,7 +40,7 @@ def bending_arms(s: Situation, joint: Couple | None, model: str) -> BendingArms:
     return BendingArms(
         s.pin.name,
         s.loads.case,
-        None if s.loads.times is None else float(s.loads.times[0]),
+        s.loads.time(),
         layout(s),
         float(even.moment.max()),
         float(concentrated.moment.max()),

@@ -26,9 +26,7 @@ def crushed_case(text: CheckText, s: Situation) -> list[Margin]:
     crushing = places.contact.crushing if places and places.contact else None
     if crushing is None:
         return []
-    place, basis = (
-        WorstPlace(crushing.band, crushing.z),
-        "core beneath the case, by the pressure alone",
-    )
+    place = WorstPlace(crushing.band, crushing.z)
+    basis = "core beneath the case, by the pressure alone"
     demand, allowable = crushing.max_von_mises, crushing.strength
     return [text.margin(s, demand, allowable, place, s.material.name, basis)]

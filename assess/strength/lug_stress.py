@@ -17,7 +17,7 @@ from assess.strength.model_stress import CLAUSE
 from fea.core.material import Material
 from fea.support.lugs.lug import Lug
 from fea.support.records import LugStress
-from pinbase.keys import key_part
+from pinbase.keys import lug_key
 
 CONTACT_NEED = "the contact of the pin with its lugs, solved in full"
 METHOD = "lug, von Mises stress at the bore"
@@ -32,7 +32,7 @@ def lug_stress(text: CheckText, s: Situation) -> list[Margin]:
         for stress in s.lug_stresses
         for margin in _margins(text, s, stress, by_name[stress.connection])
     ]
-    lacking = [f"lug.{key_part(lug.connection)}.shank" for lug in s.sized if lug.shank is None]
+    lacking = [lug_key(s.pin.name, lug.connection, "shank") for lug in s.sized if lug.shank is None]
     if lacking and s.joint is not None:
         margins.append(text.lacks(s, *lacking))
     if not s.lug_stresses and any(lug.shank for lug in s.lugs) and s.across.any():

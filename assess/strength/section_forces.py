@@ -178,5 +178,4 @@ def _largest(s: Situation, forces: InternalForces, c: Floats, resists: Resists) 
     cell, at, stress = best
     middle = 0.5 * (forces.stations[cell] + forces.stations[cell + 1])
     label = s.pin.labels[int(np.searchsorted(s.pin.stations[1:-1], middle, side="right"))]
-    time = None if s.loads.times is None else float(s.loads.times[t])
-    return NominalStress(stress, label, at, time, forces.sections[cell])
+    return NominalStress(stress, label, at, s.loads.time(t), forces.sections[cell])

@@ -44,7 +44,7 @@ def model(ratio: float) -> LocalModel:
 
 def uncut(of: LocalModel, load: str) -> Floats:
     """Stress (G, P, 6, 1) of the bar, one at the extreme fibre."""
-    x, y, _ = np.moveaxis(of.images, -1, 0)
+    x, y, _ = np.moveaxis(of.faces.images, -1, 0)
     out = np.zeros((*x.shape, 6, 1))
     if load == "torsion":
         out[..., 3, 0], out[..., 4, 0] = 2.0 * x / D, -2.0 * y / D
@@ -63,7 +63,7 @@ def cut_scatter() -> str:
     def maxima(ratio: float, fine: float) -> Floats:
         (piece,) = pieces(CutPin(BAR, (Hole(0.08, ratio * D),)), ())
         of = LocalModel(piece, piece_mesh(piece, fine), STEEL)
-        x, y, _ = np.moveaxis(of.images * 2.0 / D, -1, 0)
+        x, y, _ = np.moveaxis(of.faces.images * 2.0 / D, -1, 0)
         stress = np.zeros((*x.shape, 6, 4))
         stress[..., 2, :3] = np.stack([np.ones_like(x), x, y], axis=-1)
         stress[..., 3, 3], stress[..., 4, 3] = x, -y

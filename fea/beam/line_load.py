@@ -14,8 +14,8 @@ import numpy as np
 from fea.beam.round_section import Circle
 from fea.core.material import Material
 from fea.core.pin_loads import Loads, UnitLoad, require_solved
-from fea.core.tractions import Traction, closing_tractions, tractions_of
-from geometry import ArgumentError, Pin
+from fea.core.tractions import Traction, closing_tractions, density_of, tractions_of
+from geometry import Pin
 from pinbase.arrays import Floats
 
 
@@ -61,12 +61,7 @@ def line_loads(
     out = np.zeros((len(sections), 3, len(loads)))
     for k, load in enumerate(loads):
         if load.kind == "body":
-            if material.density is None:
-                raise ArgumentError(
-                    f"material {material.name} has no density, which weight and inertia need",
-                    "no-density",
-                )
-            out[:, 0, k] = [material.density * section.area for section in sections]
+            out[:, 0, k] = [density_of(material) * section.area for section in sections]
         elif loads_sections(load):
             out[..., k] = _spread(pin, stations, tractions_of(pin, load), load.n, load.phases[0])
     if closed:
@@ -132,11 +127,6 @@ def _close(
 
     couples: by which each load turns the pin besides, (K,) N m.
     """
-    if not pin.connections:
-        raise ArgumentError(
-            f"pin {pin.name}: it is not clamped and no connection bears on it; add either",
-            "unconstrained",
-        )
     for n, phase in ((1, 0), (0, 0), (0, 1)):
         columns = [k for k, u in enumerate(loads) if u.n == n and (n or u.phases[0] == phase)]
         if not columns:

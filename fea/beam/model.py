@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from functools import cached_property
 
@@ -13,7 +12,7 @@ from fea.beam.line_load import acting
 from fea.beam.maximum import harmonics, stress_points, von_mises_maxima
 from fea.beam.stress import BeamStress, beam_stress
 from fea.core.material import Material
-from fea.core.mesh_result import MeshMaximum
+from fea.core.mesh_result import MeshMaximum, at_angle
 from fea.core.peak import ErrorParts, Reason, Refinement
 from fea.core.pin_loads import LoadAmounts, Loads, PinLoads
 from fea.core.solution import StressPoints
@@ -54,8 +53,7 @@ class BeamField:
         r, z = self._beam.points.T
         value = np.where(outside(singularities, r, z)[:, None], maxima.von_mises, 0.0)
         point, instant = (int(i) for i in np.unravel_index(value.argmax(), value.shape))
-        at, theta = float(r[point]), float(maxima.theta[point, instant])
-        location = (at * math.cos(theta), at * math.sin(theta), float(z[point]))
+        location = at_angle(self._beam.points[point], maxima.theta[point, instant])
         return MeshMaximum(0, float(value[point, instant]), instant, location)
 
     def points(self, loads: PinLoads) -> StressPoints:
@@ -87,7 +85,6 @@ class BeamField:
         rise: how much the maximum may be higher between instants, Pa.
         """
         estimate, doubt = self.estimate, None
-        r, z = estimate.place
         whole = estimate.maximum if estimate.error is None else estimate.error
         if estimate.without_factor:
             notches = ", ".join(estimate.without_factor)
@@ -101,7 +98,7 @@ class BeamField:
             model="beam",
             value=estimate.maximum,
             parts=ErrorParts(mesh=0.0, time=rise, model=whole),
-            location=(r * math.cos(estimate.theta), r * math.sin(estimate.theta), z),
+            location=at_angle(estimate.place, estimate.theta),
             history=(Refinement(0, estimate.maximum, seconds, self.strain_energy),),
             doubt=doubt,
             omissions=Reason(f". {estimate.leaves_out.rstrip('.')}"),

@@ -71,10 +71,8 @@ def plastic_use(
     rings: of the section from outside, with their yield strengths, Pa.
     shear, moment, axial, torque: N and N m, not negative.
     """
-    M, N = (
-        np.array([moment / sum(strength * ring.plastic_modulus for ring, strength in rings)]),
-        np.array([axial / sum(strength * ring.area for ring, strength in rings)]),
-    )
+    M = np.array([moment / sum(strength * ring.plastic_modulus for ring, strength in rings)])
+    N = np.array([axial / sum(strength * ring.area for ring, strength in rings)])
     bent = float(_use(rings, M, N)[0][0]) if moment or axial else 0.0
     section = Circle(rings[0][0].outer, rings[-1][0].inner)
     in_shear = min(strength for _, strength in rings) / math.sqrt(3.0)

@@ -25,7 +25,7 @@ import numpy as np
 from fea.core.pin_loads import PinLoads
 from geometry import PinLike
 from pinbase.arrays import Floats
-from pinbase.keys import key_part
+from pinbase.keys import key_part, lug_key
 
 # Both limits are chosen by judgement, as parts of the largest force or torque.
 MIN_WARNED_IMBALANCE = 0.01  # less is round-off of numbers that were typed
@@ -163,20 +163,16 @@ def _refusal(pin: PinLike, shares: tuple[float, ...], carried: Carried) -> tuple
     if torque > MAX_IMBALANCE:
         said = f"their torque about the axis is {torque:.2g} of the largest applied (its {react} "
         return f"{loose}{said}at most {MAX_IMBALANCE:g}); {clamp}", "torque-imbalance"
+    said = f"their couple across the axis is {couple:.2g} of the largest force times the length of "
     most = MAX_IMBALANCE if carried.moments else MAX_FREE_COUPLE + force / 2.0  # links share force
     if carried.lugs and couple > most:
-        said = f"their couple across the axis is {couple:.2g} of the largest force times the "
-        said += "length of the pin, which no lug reacts, since all "
+        said += "the pin, which no lug reacts, since all "
         said += "links state moments or " if carried.moments else ""
         said += "are free to tilt; "
         return f"{loose}{said}give a lug the stiffness of its tilt", "couple-imbalance"
     if couple > MAX_IMBALANCE:
-        said = f"their couple across the axis is {couple:.2g} of the largest force times the "
-        said += f"length of the pin (its bands react at most {MAX_IMBALANCE:g}); give it lugs, "
-        return (
-            f"{loose}{said}whose tilt carries couples ({name}.lug), or {clamp}",
-            "couple-imbalance",
-        )
+        said += f"the pin (its bands react at most {MAX_IMBALANCE:g}); give it lugs, whose tilt "
+        return f"{loose}{said}carries couples ({name}.lug), or {clamp}", "couple-imbalance"
     return None, ""
 
 
@@ -184,11 +180,11 @@ def _structure(pin: PinLike) -> str:
     """The advice to let a structure hold a pin, by its named segments on which no link bears."""
     segments = () if pin.profile is None else pin.profile.segments
     idle = [s.name for s in segments if s.name and s.name not in pin.connections]
-    lugs = ", ".join(f"pin.{key_part(pin.name)}.lug.{key_part(name)}" for name in idle)
+    lugs = ", ".join(lug_key(pin.name, name) for name in idle)
     if lugs:
         return f"add a lug for each segment that a structure holds: {lugs}"
     return (
-        f"name a segment that a structure holds, and give it a lug "
+        "name a segment that a structure holds, and give it a lug "
         f"(pin.{key_part(pin.name)}.lug.NAME)"
     )
 

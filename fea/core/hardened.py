@@ -20,7 +20,7 @@ from typing import Literal
 
 import numpy as np
 
-from geometry import Arc, ArgumentError, Edge, Pin, meridian
+from geometry import ArgumentError, Edge, Pin, meridian
 from pinbase.arrays import Floats, Mask
 
 Part = Literal["case", "core", "unhardened"]
@@ -139,32 +139,8 @@ def hardened_edges(pin: Pin, case: Hardened) -> tuple[Edge, ...]:
 
 def depth_below(edges: tuple[Edge, ...], points: Floats) -> Floats:
     """The distance (P,), m, of points (P, 2), r and z in m, to the nearest of some edges."""
-    depth = np.full(len(points), np.inf)
-    for edge in edges:
-        depth = np.minimum(depth, _distance(edge, points))
-    return depth
-
-
-def _distance(edge: Edge, points: Floats) -> Floats:
-    start, end = np.array(edge.start), np.array(edge.end)
-    if not isinstance(edge, Arc):
-        along = end - start
-        part = np.clip((points - start) @ along / (along @ along), 0.0, 1.0)
-        return np.asarray(np.hypot(*(points - start - part[:, None] * along).T))
-    ends = np.minimum(np.hypot(*(points - start).T), np.hypot(*(points - end).T))
-    away = points - np.array(edge.centre)
-    middle = _on_arc(edge, np.array([0.5]))[0] - np.array(edge.centre)
-    size = np.hypot(*away.T)
-    facing = away @ middle >= size * edge.radius * math.cos(0.5 * edge.turn)
-    return np.asarray(np.where(facing, np.abs(size - edge.radius), ends), np.float64)
-
-
-def _on_arc(arc: Arc, parts: Floats) -> Floats:
-    """Points (P, 2) at parts (P,) of the way along an arc."""
-    first = math.atan2(arc.start[1] - arc.centre[1], arc.start[0] - arc.centre[0])
-    turn = first + parts * arc.turn
-    circle = arc.radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
-    return np.asarray(circle + np.array(arc.centre), np.float64)
+    far = np.full(len(points), np.inf)
+    return np.asarray(np.min([far, *(edge.distance(points) for edge in edges)], axis=0))
 
 
 def core_boundary(pin: Pin, hardened: tuple[Hardened, ...]) -> Floats:
@@ -184,17 +160,6 @@ def core_boundary(pin: Pin, hardened: tuple[Hardened, ...]) -> Floats:
 
 
 def _inwards(edge: Edge, depth: float, pin: Pin) -> Floats:
-    """Points (P, 2), m, along an edge, moved into the pin by a depth, m."""
-    length = math.dist(edge.start, edge.end)
-    if isinstance(edge, Arc):
-        length = abs(edge.turn) * edge.radius
-    step = min(DIAMETER_SPACING * pin.smallest_diameter, EDGE_SPACING * length)
-    parts = np.linspace(0.0, 1.0, math.ceil(length / step) + 1)
-    if isinstance(edge, Arc):
-        away = (_on_arc(edge, parts) - np.array(edge.centre)) / edge.radius
-        # The outline has the pin on its left: inside the circle of an arc that turns left.
-        return np.asarray(_on_arc(edge, parts) - math.copysign(depth, edge.turn) * away)
-    along = (np.array(edge.end) - np.array(edge.start)) / length
-    on_edge = np.array(edge.start) + length * parts[:, None] * along
-    inwards: Floats = on_edge + depth * np.array([-along[1], along[0]])
-    return inwards
+    """Points (P, 2), m, along an edge, moved into the pin, which is to its left, by a depth, m."""
+    step = min(DIAMETER_SPACING * pin.smallest_diameter, EDGE_SPACING * edge.length)
+    return edge.beside(np.linspace(0.0, 1.0, math.ceil(edge.length / step) + 1), depth)

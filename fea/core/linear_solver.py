@@ -123,8 +123,7 @@ def _check_solution(K: sp.csr_matrix, x: Floats, b: Floats, solve: Solve) -> Non
         raise SolveError(
             f"round-off changes the solution by a fraction of {change:.1e} (limit "
             f"{MAX_REFINEMENT_CHANGE:.0e}): the pin is not fully constrained, is too slender or "
-            f"too "
-            "thin-walled for this model, or its Poisson's ratio is too close to 0.5",
+            "too thin-walled for this model, or its Poisson's ratio is too close to 0.5",
             "ill-conditioned",
         )
 

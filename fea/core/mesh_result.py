@@ -5,12 +5,21 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Annotated
 
+import numpy as np
+
 from fea.core.strain_energy import StrainEnergy
+from pinbase.arrays import Floats
 
 Point = tuple[float, float, float]
 
 # Of a feature: a singularity governs if the stress at this distance is the largest
 FEATURE_READING_DISTANCE = 0.1
+
+
+def at_angle(place: Floats | tuple[float, float], angle: float) -> Point:
+    """The point (x, y, z), m, at a place (r, z), m, of the half plane at an angle, rad."""
+    r, z = place
+    return float(r * np.cos(angle)), float(r * np.sin(angle)), float(z)
 
 
 @dataclass(frozen=True)

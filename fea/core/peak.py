@@ -141,9 +141,7 @@ class Maximum:
     @property
     def time(self) -> float | None:
         """The time of the governing instant, s; None without a motion."""
-        if self.governing is None or self.governing.times is None:
-            return None
-        return float(self.governing.times[0])
+        return None if self.governing is None else self.governing.time()
 
     def with_reason(self, why: Reason) -> Maximum:
         """The maximum with the reason for its model."""

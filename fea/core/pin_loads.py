@@ -148,6 +148,10 @@ class PinLoads:
     def __len__(self) -> int:
         return len(self.forces)
 
+    def time(self, instant: int = 0) -> float | None:
+        """The time of an instant, by its number, s; None without a motion."""
+        return None if self.times is None else float(self.times[instant])
+
     @property
     def links(self) -> PinLoads:
         """The loads of the links: these loads themselves, unless contact carries them."""

@@ -92,11 +92,11 @@ def decided(requirement: Requirement, material: Material, low: float, high: floa
     """Return whether a maximum between two stresses, Pa, decides if the required factor is
     reached.
     """
-    limit = _limit(requirement, material)
+    limit = limit_of(requirement, material)
     return limit is not None and (high < limit or low > limit)
 
 
-def _limit(requirement: Requirement, material: Material) -> float | None:
+def limit_of(requirement: Requirement, material: Material) -> float | None:
     """The maximum, Pa, that gives the required factor; None unless the goal is to decide it."""
     strength, required = material.yield_strength, requirement.required
     if requirement.goal != "decide" or strength is None or required is None:

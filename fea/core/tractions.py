@@ -18,6 +18,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from fea.core.linear_solver import SolveError
+from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
 from geometry import Band, PinLike
 from pinbase.arrays import Floats
@@ -108,6 +110,18 @@ def pressure_amplitude(n: int, band: Band) -> float:
     return float(2.0 * highest / math.pi * (-1.0) ** (n // 2 + 1) / (n * n - 1.0))
 
 
+def density_of(material: Material) -> float:
+    """The density of a material, kg/m^3.
+
+    Raises: SolveError for one without a density.
+    """
+    if material.density is None:
+        raise SolveError(
+            f"material {material.name} has no density, which weight and inertia need", "no-density"
+        )
+    return material.density
+
+
 def closing_tractions(
     pin: PinLike, n: int, phase: int, pressure: bool = False
 ) -> tuple[tuple[Traction, ...], ...]:
@@ -119,6 +133,11 @@ def closing_tractions(
     links but for the imbalance, these have the least mean square.
     pressure: use pressures instead, which have no shear that would jump at a band's edge.
     """
+    if not pin.connections:
+        raise SolveError(
+            f"pin {pin.name}: it is not clamped and no connection bears on it; add either",
+            "unconstrained",
+        )
     bands = [pin.band(name) for name in pin.connections]
 
     def everywhere(mean: Floats, slope: Floats) -> tuple[Traction, ...]:

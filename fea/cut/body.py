@@ -14,7 +14,6 @@ from scipy.spatial import cKDTree
 from fea.core.pin_loads import PinLoads
 from fea.core.solution import Picture
 from fea.core.voigt import rotation
-from fea.cut.clip import EIGHT_TETRAHEDRA, clipped, gaps, halved, upright
 from fea.cut.frames import cartesian, turn_of
 from fea.cut.local_fields import LocalFields
 from fea.cut.movement import of_units, rigid
@@ -25,6 +24,7 @@ from fea.harmonic.fields import MeridianFields
 from fea.harmonic.revolve import revolve_solid
 from fea.solid.boundary import QUARTER_TRIANGLES
 from fea.solid.nodal_loads import Unit
+from geometry.mesh.clip import EIGHT_TETRAHEDRA, clipped, gaps, halved, upright
 from pinbase.arrays import Floats, Ints
 
 NEAR_TRIANGLES = 16, 400  # triangles nearest to a point, among which is the one that has it
@@ -151,10 +151,7 @@ def _between(
 
 
 def _piece(
-    fields: MeridianFields,
-    piece: LocalFields,
-    amounts: Floats,
-    ends: tuple[float, float],
+    fields: MeridianFields, piece: LocalFields, amounts: Floats, ends: tuple[float, float]
 ) -> BodyPart:
     """A piece between two z, m, displaced by the loads and its own cuts."""
     turn, inner = turn_of(piece.piece.angle), piece.inner.whole(amounts)

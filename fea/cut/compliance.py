@@ -19,7 +19,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.core.few_columns import combinations
 from fea.core.local_fit import continuation
 from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
@@ -28,6 +27,7 @@ from fea.cut.frames import cartesian, turn_of
 from fea.cut.local_model import LocalModel
 from fea.cut.local_solution import LocalFineness, LocalMesh, section_points
 from fea.cut.movement import of_units
+from fea.cut.piece_system import combinations
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.model import HarmonicModel
 from fea.harmonic.section_solution import FIRST_MESH_SIZE, finer_at_rings
@@ -51,7 +51,7 @@ WORK_TOLERANCE = 1e-4  # of the response to relieving forces, of the largest (fe
 class _Reliefs:
     """The forces that relieve the cuts of loads, of one class, as sums of a few.
 
-    basis: (3 S, B) orthonormal, at the unknowns on which forces act (LocalModel.loaded).
+    basis: (3 S, B) orthonormal, at the unknowns on which forces act (PieceFaces.loaded).
     amounts: (B, K) of each for every load so far.
     sizes: (B,) N, of the forces for which each was needed.
     largest: of all forces so far, N.
@@ -140,7 +140,7 @@ def _of_piece(
     parts: fields and unit loads, harmonic by harmonic.
     """
     classes = model.parities.classes
-    none = np.zeros((len(model.loaded), 0))
+    none = np.zeros((len(model.faces.loaded), 0))
     reliefs = [_Reliefs(none, np.zeros((0, 0)), np.zeros(0)) for _ in classes]
     for stress, shares in _on_cuts(model, here, parts):
         by_class = model.reliefs(stress) if len(shares) else [none] * len(classes)
@@ -171,7 +171,7 @@ def _on_cuts(
 
     Few combinations of pressures on rings reach a cut, the fewer the higher their harmonic.
     """
-    x = model.images
+    x = model.faces.images
     angle = np.arctan2(x[..., 1], x[..., 0])
     combined = []
     for fields, units in parts:
@@ -185,7 +185,7 @@ def _on_cuts(
         some = size > STRESS_TOLERANCE * largest
         amplitude = np.zeros((*x.shape[:2], 6, some.sum()))
         at_cut = at @ of_loads[some].T
-        amplitude[:, model.cut] = at_cut.reshape(len(x), model.cut.sum(), 6, some.sum())
+        amplitude[:, model.faces.cut] = at_cut.reshape(len(x), model.faces.cut.sum(), 6, some.sum())
         load = units[0][0]
         every = tuple((load, phase) for _ in range(some.sum()) for phase in load.phases)
         twice = np.repeat(amplitude, len(load.phases), axis=-1)
@@ -199,7 +199,7 @@ def _displaced(
     """The displacement (G, N, 3, L) of the uncut pin at the images of the model's nodes on its
     faces, along the axes of the piece.
     """
-    nodes = model.space.nodes[model.nodes_once]
+    nodes = model.space.nodes[model.faces.nodes_once]
     x = model.parities.images[:, None] * nodes
     at = np.stack([np.hypot(x[..., 0], x[..., 1]), x[..., 2] + model.piece.origin], axis=2)
     angle = (np.arctan2(x[..., 1], x[..., 0]) + model.piece.angle).ravel()

@@ -24,10 +24,14 @@ def in_pin(moved: Floats, piece: Piece) -> Floats:
     return np.concatenate([shift, spin], axis=1)
 
 
-def turn_of(angle: float) -> Floats:
-    """The rotation matrix (3, 3) about z by an angle (rad)."""
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+def turn_of(angle: float | Floats) -> Floats:
+    """The rotation matrices (.., 3, 3) about z by angles (..), rad."""
+    turn = np.zeros((*np.shape(angle), 3, 3))
+    turn[..., 0, 0] = turn[..., 1, 1] = np.cos(angle)
+    turn[..., 1, 0] = np.sin(angle)
+    turn[..., 0, 1] = -turn[..., 1, 0]
+    turn[..., 2, 2] = 1.0
+    return turn
 
 
 def on_skin(fields: MeridianFields, r: Floats, z: Floats) -> Floats:
@@ -65,9 +69,4 @@ def cartesian(amplitude: Floats, angle: Floats, turned: float, units: tuple[Unit
     psi = n * (angle[..., None] + turned) - phase * np.pi / 2.0
     shears = np.array([False, False, False, True, False, True])[:, None]
     polar = amplitude * np.where(shears, np.sin(psi)[..., None, :], np.cos(psi)[..., None, :])
-    turn = np.zeros((*angle.shape, 3, 3))
-    turn[..., 0, 0] = turn[..., 1, 1] = np.cos(angle)
-    turn[..., 1, 0] = np.sin(angle)
-    turn[..., 0, 1] = -np.sin(angle)
-    turn[..., 2, 2] = 1.0
-    return np.asarray(rotation(turn) @ polar)
+    return np.asarray(rotation(turn_of(angle)) @ polar)

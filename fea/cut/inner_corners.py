@@ -71,13 +71,13 @@ def _lines(model: LocalModel) -> dict[tuple[str, str], tuple[Ints, float]]:
 
     They are sorted by the names of the two faces that meet; the angle of a cone's tip is nan.
     """
-    names = np.full(len(model.surface.facets), -1)
+    names = np.full(len(model.faces.surface.facets), -1)
     boundaries = list(model.space.mesh.boundaries)
     for k, name in enumerate(boundaries):
-        names[model.surface.on(model.space, (name,))] = k
-    mirror = np.array([model.mirrored(name) for name in boundaries])
+        names[model.faces.surface.on(model.space, (name,))] = k
+    mirror = np.array([model.faces.mirrored(name) for name in boundaries])
     cut = np.array([model.piece.cut_at(name) is not None for name in boundaries])
-    edges = turned_edges(model.space, model.surface)
+    edges = turned_edges(model.space, model.faces.surface)
     first_name, second_name = names[edges.facets]
     on_mirror = mirror[first_name] | mirror[second_name]
     # On a mirror plane only half of the corner is meshed, so its angle counts twice.
@@ -104,11 +104,11 @@ def _lines(model: LocalModel) -> dict[tuple[str, str], tuple[Ints, float]]:
 def _tips(model: LocalModel) -> dict[tuple[str, str], tuple[Ints, float]]:
     """Nodes at the tips of cones: where normals of one smooth face diverge, away from its edges."""
     out = {}
-    for reading in model.readings:
+    for reading in model.faces.readings:
         if not reading.face.name.endswith(" bottom"):
             continue
-        corners = model.surface.corners[reading.face.rows]
-        normals = model.surface.normals[reading.face.rows].copy()
+        corners = model.faces.surface.corners[reading.face.rows]
+        normals = model.faces.surface.normals[reading.face.rows].copy()
         # On a mirror plane the normals of both halves average to one within it.
         for plane in model.piece.mirrors:
             axis = AXIS_NAMES.index(plane)

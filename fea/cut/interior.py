@@ -53,10 +53,7 @@ class InnerFields:
             for g, handed in enumerate(p.images.prod(axis=1))
         ]
         return InnerBody(
-            points,
-            np.concatenate(cells),
-            _mean(ids.ravel(), vectors),
-            _mean(ids.ravel(), tensors),
+            points, np.concatenate(cells), _mean(ids.ravel(), vectors), _mean(ids.ravel(), tensors)
         )
 
     def _numbers(self, nodes: Floats) -> Ints:

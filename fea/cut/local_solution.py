@@ -100,7 +100,7 @@ def _largest_among(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
 
 def section_points(model: LocalModel) -> Floats:
     """The points (r, z), m, at which the stress of the uncut pin is needed."""
-    x = model.images[:, model.cut].reshape(-1, 3)
+    x = model.faces.images[:, model.faces.cut].reshape(-1, 3)
     return np.stack([np.hypot(x[:, 0], x[:, 1]), x[:, 2] + model.piece.origin], axis=1)
 
 
@@ -122,7 +122,7 @@ def local_fields(
 
     Raises: SolveError.
     """
-    piece, x, turn = model.piece, model.images, turn_of(model.piece.angle)
+    piece, x, turn = model.piece, model.faces.images, turn_of(model.piece.angle)
     r, z = np.hypot(x[..., 0], x[..., 1]), x[..., 2] + piece.origin
     columns = [fields.loads.index(load) for load, _ in units]
     # Step 1: the uncut pin's stress at nodes of the faces, by phase, along x, y, z of the piece.
@@ -142,7 +142,7 @@ def local_fields(
         piece,
         units,
         points,
-        model.triangles,
+        model.faces.triangles,
         rotation(turn) @ read.stress,
         displacement(fields, flat_r, flat_z, np.arctan2(points[:, 1], points[:, 0]), units),
         displaced - rigid(moved[0], points),
@@ -154,7 +154,7 @@ def local_fields(
         model.unknowns,
         tuple(
             replace(corner, distance=np.tile(corner.distance, len(x)))
-            for corner in inner_corners(model, model.points, distance)
+            for corner in inner_corners(model, model.faces.points, distance)
         ),
         np.tile(model.scatter, len(x)),
         model.finer,
@@ -171,8 +171,8 @@ def _uncut_stress(
     at_points: that inside the pin, for faces of cuts; on other faces it is that of the skin.
     """
     amplitude = np.zeros((*r.shape, *fields.stress.shape[1:]))
-    amplitude[:, model.cut] = at_points.reshape(len(r), -1, *at_points.shape[1:])
-    profile = ~model.cut
+    amplitude[:, model.faces.cut] = at_points.reshape(len(r), -1, *at_points.shape[1:])
+    profile = ~model.faces.cut
     amplitude[:, profile] = on_skin(fields, r[:, profile], z[:, profile])
     return amplitude
 

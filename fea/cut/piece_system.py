@@ -9,7 +9,6 @@ import numpy as np
 import scipy.linalg
 import scipy.sparse as sp
 
-from fea.core.few_columns import combinations
 from fea.core.linear_solver import ConstrainedSystem, SolveError
 from fea.core.material import Material
 from fea.cut.parity import Parities
@@ -157,3 +156,14 @@ class PieceSystem:
         force_size = np.linalg.norm(forces.reshape(len(forces) // 3, -1), axis=1)
         weight = force_size.repeat(3)[:, None] * modes
         return np.asarray(forces - weight @ np.linalg.solve(modes.T @ weight, modes.T @ forces))
+
+
+def combinations(columns: Floats) -> tuple[Floats, Floats]:
+    """The singular values (K,) of columns (N, K), largest first, and the right singular vectors
+    (K, K), a row each.
+
+    They are found by the products of the columns, in a fraction of the time of a decomposition, and
+    values below 1e-7 of the largest are noise.
+    """
+    square, vectors = np.linalg.eigh(columns.T @ columns)
+    return np.sqrt(np.maximum(square[::-1], 0.0)), vectors.T[::-1]

@@ -11,9 +11,9 @@ from typing import TypeVar
 
 from fea.core.peak import Reason
 from fea.core.zone import Zone
-from fea.cut.inside import crosses_end, is_inside
 from geometry import Cut, CutPin, Hole, Pin, PinLike
 from geometry.mesh.cut_piece import Piece, clipped
+from geometry.shape.band_cuts import crosses_end, is_inside
 
 # All are parts of the diameter. The reach was found on shafts, where ends at that distance change
 # stress by 0.1 %; `python -m benchmarks cut-pins` checks it. The others are chosen by judgement.

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial import cKDTree
 
-from fea.core.voigt import rotation
+from fea.cut.frames import cartesian
 from fea.cut.local_fields import LocalFields
-from fea.cut.movement import axis_kept, rigid
+from fea.cut.movement import axis_kept, of_units, rigid
 from fea.cut.supports import ClampReaction, reached
 from fea.harmonic.fields import MeridianFields
 from fea.solid.nodal_loads import Unit
@@ -122,10 +122,8 @@ def _beside(piece: LocalFields, points: Floats) -> Floats:
 
     Linear functions are fitted to the displacements of the outline all about the axis near there.
     """
-    outline, squeezed = (
-        piece.points[piece.outer],
-        np.array([TRANSVERSE_DISTANCE_WEIGHT, TRANSVERSE_DISTANCE_WEIGHT, 1.0]),
-    )
+    outline = piece.points[piece.outer]
+    squeezed = np.array([TRANSVERSE_DISTANCE_WEIGHT, TRANSVERSE_DISTANCE_WEIGHT, 1.0])
     count = min(DISPLACEMENT_FIT_POINTS, len(outline))
     neighbours = cKDTree(outline * squeezed).query(points * squeezed, count)
     distance, near = (np.asarray(x) for x in neighbours)
@@ -141,13 +139,12 @@ def _revolved(
 ) -> ShownCut:
     """The outline turned about the axis, without what lies in the pieces."""
     ends = np.arange(fields.skin).reshape(-1, 5)[:, [0, 4]]
-    rows, part = [ends], [np.tile([0.0, 1.0], (len(ends), 1))]
-    keep_rows, keep_part = np.concatenate(rows), np.concatenate(part)
+    rows, part = ends, np.tile([0.0, 1.0], (len(ends), 1))
     # Edges of the outline, cut where pieces begin and end: each from a to b, from and to a part of
     # its length.
     for low, high in pieces:
-        keep_rows, keep_part = _outside_of(fields.points[:, 1], keep_rows, keep_part, low, high)
-    a, b, t = keep_rows[:, 0].repeat(2), keep_rows[:, 1].repeat(2), keep_part.ravel()
+        rows, part = _outside_of(fields.points[:, 1], rows, part, low, high)
+    a, b, t = rows[:, 0].repeat(2), rows[:, 1].repeat(2), part.ravel()
 
     def along(values: Floats) -> Floats:
         w = t.reshape(-1, *(1,) * (values.ndim - 1))
@@ -158,33 +155,19 @@ def _revolved(
     stress, moved = (
         along(x[: fields.skin])[..., columns] for x in (fields.stress, fields.displacement)
     )
-    angle = np.arange(CUT_VIEW_SECTORS) * 2.0 * np.pi / CUT_VIEW_SECTORS
-    n, phase = (np.array(x) for x in ([load.n for load, _ in units], [p for _, p in units]))
-    psi = n * angle[:, None] - phase * np.pi / 2.0
-    even, odd = np.cos(psi), np.sin(psi)
-    stress = np.where([[x] for x in (True, True, True, False, True, False)],
-                      stress[:, None] * even[:, None], stress[:, None] * odd[:, None])  # fmt: skip
-    moved = np.where([[True], [False], [True]], moved[:, None] * even[:, None],
-                     moved[:, None] * odd[:, None])  # fmt: skip
-    turn = np.zeros((CUT_VIEW_SECTORS, 3, 3))
-    turn[:, 0, 0] = turn[:, 1, 1] = np.cos(angle)
-    turn[:, 1, 0] = np.sin(angle)
-    turn[:, 0, 1] = -np.sin(angle)
-    turn[:, 2, 2] = 1.0
+    sectors = np.arange(CUT_VIEW_SECTORS)
+    angle = sectors * 2.0 * np.pi / CUT_VIEW_SECTORS
     heights = np.broadcast_to(z[:, None], (len(z), CUT_VIEW_SECTORS))
     points = np.stack([r[:, None] * np.cos(angle), r[:, None] * np.sin(angle), heights], axis=2)
-    i = CUT_VIEW_SECTORS * 2 * np.arange(len(keep_rows))[:, None] + np.arange(CUT_VIEW_SECTORS)
-    j = (
-        CUT_VIEW_SECTORS * 2 * np.arange(len(keep_rows))[:, None]
-        + (np.arange(CUT_VIEW_SECTORS) + 1) % CUT_VIEW_SECTORS
-    )
+    first = CUT_VIEW_SECTORS * 2 * np.arange(len(rows))[:, None]
+    i, j = first + sectors, first + (sectors + 1) % CUT_VIEW_SECTORS
     quads = np.stack([i, j, j + CUT_VIEW_SECTORS, i + CUT_VIEW_SECTORS], axis=2).reshape(-1, 4)
-    count, everywhere = len(units), np.ones(len(a) * CUT_VIEW_SECTORS, dtype=bool)
+    everywhere = np.ones(len(a) * CUT_VIEW_SECTORS, dtype=bool)
     return ShownCut(
         points.reshape(-1, 3),
         quads[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3),
-        (rotation(turn) @ stress).reshape(-1, 6, count),
-        np.einsum("sai,psil->psal", turn, moved).reshape(-1, 3, count),
+        cartesian(stress[:, None], angle, 0.0, units).reshape(-1, 6, len(units)),
+        of_units(moved.repeat(CUT_VIEW_SECTORS, axis=0), np.tile(angle, len(a)), units),
         everywhere,
         everywhere,
         np.stack([a, b], axis=1).repeat(CUT_VIEW_SECTORS, axis=0),

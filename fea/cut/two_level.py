@@ -79,12 +79,10 @@ class TwoLevel:
         solution, r = np.zeros_like(forces), free * forces
         z = precondition(r)
         energy = np.sum(r * z, axis=0)
-        least, active, x, p = (
-            tolerance**2 * energy.max(),
-            np.arange(r.shape[1]),
-            solution.copy(),
-            z,
-        )
+        least = tolerance**2 * energy.max()
+        active = np.arange(r.shape[1])
+        x = solution.copy()
+        p = z
         for _ in range(MAX_CONJUGATE_GRADIENT_STEPS):
             done = energy <= least
             # Right-hand sides that have converged leave, so that later steps cost less.
@@ -119,10 +117,8 @@ class TwoLevel:
             largest = float(np.linalg.norm(v))
             v /= largest
         largest *= EIGENVALUE_MARGIN
-        middle, half = (
-            0.5 * largest * (1.0 + 1.0 / SMOOTHER_EIGENVALUE_RATIO),
-            0.5 * largest * (1.0 - 1.0 / SMOOTHER_EIGENVALUE_RATIO),
-        )
+        middle = 0.5 * largest * (1.0 + 1.0 / SMOOTHER_EIGENVALUE_RATIO)
+        half = 0.5 * largest * (1.0 - 1.0 / SMOOTHER_EIGENVALUE_RATIO)
 
         def smooth(b: Floats, x: Floats | None) -> Floats:
             # The three-term recurrence of Chebyshev's semi-iteration (Saad, algorithm 12.1).

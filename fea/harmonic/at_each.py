@@ -15,12 +15,7 @@ import numpy as np
 from fea.core.mesh_result import MeshMaximum, Point, ZoneMaximum
 from fea.core.pin_loads import PinLoads
 from fea.core.zone import DISTANCE_VARIATIONS, Zone
-from fea.harmonic.evaluate import (
-    MAX_PLACES,
-    MIN_SPACING,
-    REFINE_ABOVE,
-    SERIES_REMAINDER_RATIO,
-)
+from fea.harmonic.evaluate import MAX_PLACES, MIN_SPACING, REFINE_ABOVE, SERIES_REMAINDER_RATIO
 from fea.harmonic.near_singularities import CORNER_ELEMENT_SIZES, growth, places_of
 from fea.harmonic.section_solution import HarmonicSolution
 from fea.harmonic.superposition import Circumference

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fea.core.mesh_result import at_angle
 from fea.core.pin_loads import Loads, PinLoads
 from fea.core.places import BENEATH_DISTANCE
 from fea.core.pressed import ARC_ANGLES, ARC_COUNT, RING_END_TOLERANCE, PressedArcs, Rings
@@ -118,9 +119,7 @@ def beneath(fields: MeridianFields, loads: Loads, zones: tuple[Zone, ...]) -> Be
     top = around.top(first)
     more = around.top(away & ~first, top.value)
     top = more if more.value > top.value else top
-    r, z = (float(x) for x in fields.points[top.point])
-    at = (r * float(np.cos(top.angle)), r * float(np.sin(top.angle)), z)
-    return Beneath(top.value, at, top.instant)
+    return Beneath(top.value, at_angle(fields.points[top.point], top.angle), top.instant)
 
 
 def maxima_beneath(fields: MeridianFields, loads: Loads, zones: tuple[Zone, ...]) -> Floats:
@@ -134,11 +133,7 @@ def _around(fields: MeridianFields, loads: Loads) -> Circumference:
 
 
 def depths(
-    fields: MeridianFields,
-    loads: PinLoads,
-    instant: int,
-    zones: tuple[Zone, ...],
-    least: float,
+    fields: MeridianFields, loads: PinLoads, instant: int, zones: tuple[Zone, ...], least: float
 ) -> Steps:
     """Pairs of a stress, Pa, and the distance, m, from pressed cells that it reaches at an instant.
 

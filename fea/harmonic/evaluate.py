@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from fea.core.mesh_result import MeshMaximum, Point
+from fea.core.mesh_result import MeshMaximum, at_angle
 from fea.core.model import MeshBefore, MeshProblem, MeshSequence
 from fea.core.pin_loads import PinLoads
 from fea.core.zone import Zone
@@ -120,7 +120,7 @@ def harmonic_result(
         unknowns=fields.unknowns,
         maximum=top.value,
         instant=top.instant,
-        location=_location(fields.points[top.point], top.angle),
+        location=at_angle(fields.points[top.point], top.angle),
         singularities=tuple(
             replace(inside(fields, around, p, close, solution.nu), acts=p in excluded)
             for p, close in zip(singularities, solution.close, strict=True)
@@ -167,8 +167,3 @@ def _left_out(around: Circumference, loads: PinLoads, top: Crest) -> float:
         return 0.0
     largest = around.last_at(np.array([top.point]), np.array([top.instant]))
     return SERIES_REMAINDER_RATIO * float(largest[0])
-
-
-def _location(point: Floats, angle: float) -> Point:
-    r, z = (float(x) for x in point)
-    return (r * float(np.cos(angle)), r * float(np.sin(angle)), z)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from fea.core.mesh_result import Point
+from fea.core.mesh_result import Point, at_angle
 from fea.core.pin_loads import Loads, PinLoads
 from fea.core.pressed import ARC_COUNT
 from fea.core.solution import Picture, StressPoints
@@ -124,8 +123,7 @@ class MeridianSurface:
         """The place (x, y, z), m, of the largest stress at an instant."""
         around = self.field.reader(loads.at(np.array([instant])))
         top = around.top(around.fields.outside(self.zones))
-        r, z = (float(x) for x in around.fields.points[top.point])
-        return r * math.cos(top.angle), r * math.sin(top.angle), z
+        return at_angle(around.fields.points[top.point], top.angle)
 
     def unread(self, loads: PinLoads, points: Ints, angles: Floats) -> Mask | None:
         """Mask (T, J, A) of the points (J,) on which lugs press or beside; None without lugs."""

@@ -14,7 +14,14 @@ import scipy.sparse as sp
 from fea.core.linear_solver import ConstrainedSystem, SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
-from fea.core.tractions import ALONG_X, ALONG_Z, Traction, closing_tractions, tractions_of
+from fea.core.tractions import (
+    ALONG_X,
+    ALONG_Z,
+    Traction,
+    closing_tractions,
+    density_of,
+    tractions_of,
+)
 from fea.harmonic.assembly import Section, around
 from fea.harmonic.boundary import Outline
 from fea.harmonic.fields import MeridianFields
@@ -306,12 +313,7 @@ def applied(
 
 def body_force(material: Material, n: int, integrals: Floats) -> Floats:
     """Forces on the unknowns of a pin's mass in 1 m/s^2 along x, or along z for n = 0."""
-    if material.density is None:
-        raise SolveError(
-            f"material {material.name} has no density, which weight and inertia need",
-            "no-density",
-        )
-    amplitude = material.density * (ALONG_X if n else ALONG_Z)
+    amplitude = density_of(material) * (ALONG_X if n else ALONG_Z)
     return generalised(around(n) * integrals[:, None] * amplitude)
 
 

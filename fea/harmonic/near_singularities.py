@@ -6,13 +6,12 @@ distance.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
 
-from fea.core.mesh_result import FEATURE_READING_DISTANCE, SingularIntensity, ZoneMaximum
+from fea.core.mesh_result import FEATURE_READING_DISTANCE, SingularIntensity, ZoneMaximum, at_angle
 from fea.core.zone import DISTANCE_VARIATIONS, Zone
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference
@@ -38,8 +37,7 @@ def inside(
     far = around.top(felt)
     near = around.top(within & ~felt, far.value)
     top = near if near.value > far.value else far
-    c, s = math.cos(top.angle), math.sin(top.angle)
-    at = (singularity.r * c, singularity.r * s, singularity.z)
+    at = at_angle((singularity.r, singularity.z), top.angle)
     maximum = ZoneMaximum(top.value, far.value, at)
     if not singularity.measured or close != CORNER_ELEMENT_SIZES[-1]:
         return maximum

@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 
 from fea.core.hardened import StrengthPart, depth_below, hardened_edges
-from fea.core.mesh_result import Point
+from fea.core.mesh_result import Point, at_angle
 from fea.core.pin_loads import Loads
 from fea.core.places import BENEATH_DISTANCE
 from fea.core.pressed import ARC_COUNT, PressedArcs
@@ -108,11 +108,10 @@ class PartField:
         around = self._around(loads)
         top = around.top(self._read(around))
         r, z = (float(x) for x in around.fields.points[top.point])
-        place = r * float(np.cos(top.angle)), r * float(np.sin(top.angle)), z
         depth, case = None, self.part.case
         if case is not None:
             depth = float(depth_below(hardened_edges(self.pin, case), np.array([[r, z]]))[0])
-        return PartMaximum(top.value, place, depth, top.instant)
+        return PartMaximum(top.value, at_angle((r, z), top.angle), depth, top.instant)
 
     def _around(self, loads: Loads) -> Circumference:
         fields = self.field.fields

@@ -36,10 +36,15 @@ def crest_all_round(n: Ints, back: Floats, forth: Floats, beat: Floats) -> tuple
         return one_wave(n, back, forth)
     degree = 2 * int(n[-1])  # of von Mises squared
     angle = highest_crest(sampled(n, back, forth, degree), degree, beat**2)
+    return np.linalg.norm(_five(n, back, forth, angle), axis=1), angle
+
+
+def _five(n: Ints, back: Floats, forth: Floats, angle: Floats) -> Floats:
+    """The five numbers (J, 5) at an angle (J,), rad, each."""
     turns = n * angle[:, None]
     five = np.einsum("jiw,jw->ji", back, np.cos(turns))
     five += np.einsum("jiw,jw->ji", forth, np.sin(turns))
-    return np.linalg.norm(five, axis=1), angle
+    return np.asarray(five)
 
 
 def steady_crests(n: Ints, back: Floats, forth: Floats) -> tuple[Floats, Floats]:
@@ -125,13 +130,9 @@ def closer_crest(
 
     A parabola goes through samples at the angle and `apart`, rad, before and after it.
     """
-    samples = []
-    for step in (-apart, 0.0, apart):
-        turns = n * (angle + step)[:, None]
-        five = np.einsum("jiw,jw->ji", back, np.cos(turns))
-        five += np.einsum("jiw,jw->ji", forth, np.sin(turns))
-        samples.append(np.square(five).sum(axis=1))
-    before, here, after = samples
+    before, here, after = (
+        np.square(_five(n, back, forth, angle + step)).sum(axis=1) for step in (-apart, 0.0, apart)
+    )
     bend = 2.0 * here - before - after
     good = bend > 0.0
     bend = np.where(good, bend, 1.0)

@@ -24,13 +24,8 @@ import numpy as np
 
 from fea.core.pin_loads import Loads, require_solved
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.five_numbers import COS, COSINE_COMPONENTS, EVEN_COUNT, SIN, numbers
-from fea.harmonic.sampled_waves import (
-    crest_all_round,
-    crest_where_read,
-    sampled,
-    steady_crests,
-)
+from fea.harmonic.five_numbers import COS, COSINE_COMPONENTS, SIN, numbers
+from fea.harmonic.sampled_waves import crest_all_round, crest_where_read, sampled, steady_crests
 from fea.harmonic.trigonometric_maximum import form_maximum, one_wave
 from pinbase.arrays import Floats, Ints, Mask
 
@@ -90,6 +85,7 @@ class SuperposedStress:
         starts = np.flatnonzero(np.diff(self._n, prepend=-1))
         self._amount_products: dict[int, tuple[Floats, Floats, Floats]] = {}
         self._waves = [slice(*ends) for ends in itertools.pairwise([*starts, len(units)])]
+        self._orders = self._n[starts]  # the harmonic of each wave
 
     @property
     def twists(self) -> bool:
@@ -197,21 +193,23 @@ class SuperposedStress:
             some = np.zeros(len(here), dtype=bool)
             if self.region is not None:
                 some = self.region.masked(points[here])
-            for find, rows in (
-                (self._crests_all_round, here[~some]),
-                (self._crests_where_read, here[some]),
-            ):
-                if len(rows):
-                    value[rows], angle[rows] = find(points[rows], instants[rows], beat[rows])
+            for rows, region in ((here[~some], None), (here[some], self.region)):
+                if not len(rows):
+                    continue
+                at = points[rows], instants[rows]
+                back, forth = self._pair_waves(*at, self._waves)  # (J, 5, W)
+                if region is None:
+                    crests = crest_all_round(self._orders, back, forth, beat[rows])
+                else:
+                    crests = crest_where_read(self._orders, back, forth, region.read(*at))
+                value[rows], angle[rows] = crests
         return value, angle
 
     def crests(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
         """The same as `round` at points that are read all round, but to the last bit the same
         whichever other pairs are evaluated.
         """
-        n = self._n[[wave.start for wave in self._waves]]
-        back, forth = self._waves_apart(points, instants)
-        return steady_crests(n, back, forth)
+        return steady_crests(self._orders, *self._waves_apart(points, instants))
 
     def last_at(self, points: Ints, instants: Ints) -> Floats:
         """The largest stress (J,), Pa, of the highest harmonic alone at pairs, as steadily."""
@@ -233,24 +231,6 @@ class SuperposedStress:
         back[:, SIN], forth[:, SIN] = -b[:, SIN], a[:, SIN]
         return back, forth
 
-    def _crests_where_read(
-        self, points: Ints, instants: Ints, beat: Floats
-    ) -> tuple[Floats, Floats]:
-        """The same as `round` at points that are read on a part of the circumference only."""
-        assert self.region is not None
-        n = self._n[[wave.start for wave in self._waves]]
-        read = self.region.read(points, instants)
-        back, forth = self._pair_waves(points, instants, self._waves)
-        return crest_where_read(n, back, forth, read)
-
-    def _crests_all_round(
-        self, points: Ints, instants: Ints, beat: Floats
-    ) -> tuple[Floats, Floats]:
-        """The same as `round` at points that are read all round."""
-        n = self._n[[wave.start for wave in self._waves]]
-        back, forth = self._pair_waves(points, instants, self._waves)  # (J, 5, W)
-        return crest_all_round(n, back, forth, beat)
-
     def _samples(self, points: Ints, instants: Ints, waves: Sequence[slice], degree: int) -> Floats:
         """Von Mises squared (J, A), Pa^2, of some harmonics together at equally spaced angles."""
         n = self._n[[wave.start for wave in waves]]
@@ -271,11 +251,8 @@ class SuperposedStress:
             five = np.ascontiguousarray(self._five[one, :, wave])
             a, b = ((five @ x[now, wave].T)[i, :, t] for x in (self._first, self._second))
             # As in `_of_summed_loads`: the sine parts lag by a quarter wave.
-            back[:, :EVEN_COUNT, w], back[:, EVEN_COUNT:, w] = a[:, :EVEN_COUNT], -b[:, EVEN_COUNT:]
-            forth[:, :EVEN_COUNT, w], forth[:, EVEN_COUNT:, w] = (
-                b[:, :EVEN_COUNT],
-                a[:, EVEN_COUNT:],
-            )
+            back[:, COS, w], back[:, SIN, w] = a[:, COS], -b[:, SIN]
+            forth[:, COS, w], forth[:, SIN, w] = b[:, COS], a[:, SIN]
         return back, forth
 
     def envelope(self, points: Ints, angles: Floats, read: Mask | None = None) -> Floats:
@@ -300,7 +277,7 @@ class SuperposedStress:
 
         The five numbers of each harmonic are found once; then they are combined at each angle.
         """
-        turns = np.outer(angles, self._n[[wave.start for wave in self._waves]])
+        turns = np.outer(angles, self._orders)
         c, s = np.cos(turns), np.sin(turns)
         parts = []
         for part, signed in ((COS, (c, s)), (SIN, (s, -c))):
@@ -342,7 +319,7 @@ class SuperposedStress:
             unit = here[:, :, self._at[wave]]
             for phase, amounts in enumerate((self._first, self._second)):
                 summed[phase, w] = unit @ amounts[instant, wave]
-        turns = np.outer(angles, self._n[[wave.start for wave in self._waves]])
+        turns = np.outer(angles, self._orders)
         c, s = np.cos(turns), np.sin(turns)
         out = np.empty((len(angles), len(points), 6))
         for some, factors in ((COSINE_COMPONENTS, (c, s)), (~COSINE_COMPONENTS, (s, -c))):

@@ -28,7 +28,7 @@ class FoundSection:
     @property
     def time(self) -> float | None:
         """The time of the instant, s; None without a motion."""
-        return None if self.loads.times is None else float(self.loads.times[0])
+        return self.loads.time()
 
     @property
     def lower_end(self) -> float:

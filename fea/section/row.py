@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 from fea.core.material import Material
@@ -63,7 +62,7 @@ def _by_section(
         surface,
         value=at.value,
         parts=section.parts,
-        location=(at.r * math.cos(at.angle), at.r * math.sin(at.angle), at.z),
+        location=at.location,
         governing=section.loads if links is None else links,
         doubt=None,
         omissions=Reason("", surface.omissions.codes),

@@ -26,6 +26,7 @@ from fea.beam.stress import RZ, TZ, ZZ, section_stress
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
 from fea.core.hardened import Hardened, StrengthPart
 from fea.core.material import Material
+from fea.core.mesh_result import Point, at_angle
 from fea.core.pin_loads import LoadAmounts, Loads
 from fea.harmonic.at_each import crest_of_each
 from fea.harmonic.fields import MeridianFields
@@ -64,6 +65,11 @@ class AtSection:
     torque: float
     section: Circle
     course: tuple[tuple[float, float], ...] = ()
+
+    @property
+    def location(self) -> Point:
+        """The place (x, y, z), m."""
+        return at_angle((self.r, self.z), self.angle)
 
     def plastic_use(self, strength: float, hardened: Sequence[Hardened] = ()) -> float:
         """The part of the fully plastic section's resistance that is used.

@@ -7,6 +7,8 @@ differences is smallest at s; A and B follow from s by linear least squares.
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from pinbase.arrays import Floats
@@ -33,14 +35,10 @@ def growth_exponent(distance: Floats, stress: Floats, following: float = 0.0) ->
     # Distances over their geometric mean keep both terms of comparable size.
     d = distance / np.exp(np.log(distance).mean())
 
-    def fitted(s: float) -> tuple[float, float]:
-        terms = np.stack([d**-s, d**following], axis=1) / stress[:, None]
-        parts = np.linalg.lstsq(terms, np.ones(len(d)), rcond=None)[0]
-        return float(np.mean((terms @ parts - 1.0) ** 2)), float(parts[0])
-
     from scipy.optimize import minimize_scalar  # takes long to import
 
     # The amplitudes follow from s, so the search is over s alone.
+    fitted = partial(_fitted, d, stress, following)
     best = minimize_scalar(lambda s: fitted(s)[0], bounds=EXPONENT_LIMITS, method="bounded")
     square, amplitude = fitted(float(best.x))
     return float(best.x) if amplitude > 0.0 and square < MAX_FIT_ERROR**2 else None
@@ -57,7 +55,11 @@ def singular_intensity(
     following: q.
     """
     mean = float(np.exp(np.log(distance).mean()))
-    d = distance / mean
-    terms = np.stack([d**-exponent, d**following], axis=1) / stress[:, None]
+    return float(_fitted(distance / mean, stress, following, exponent)[1] * mean**exponent)
+
+
+def _fitted(d: Floats, stress: Floats, following: float, s: float) -> tuple[float, float]:
+    """The mean square of the relative error of A d^-s + B d^q fitted to stress, and A."""
+    terms = np.stack([d**-s, d**following], axis=1) / stress[:, None]
     parts = np.linalg.lstsq(terms, np.ones(len(d)), rcond=None)[0]
-    return float(parts[0] * mean**exponent)
+    return float(np.mean((terms @ parts - 1.0) ** 2)), float(parts[0])

@@ -27,11 +27,7 @@ STRAIGHT_ARC_SHARE = 0.25
 
 @lru_cache(256)
 def find_singularities(
-    pin: Pin,
-    clamps: tuple[str, ...],
-    loaded: tuple[str, ...],
-    nu: float,
-    distance: float = 0.1,
+    pin: Pin, clamps: tuple[str, ...], loaded: tuple[str, ...], nu: float, distance: float = 0.1
 ) -> tuple[Zone, ...]:
     """Every stress singularity of a pin, in the order of `vertices`.
 
@@ -57,15 +53,15 @@ def find_singularities(
         if singularity is not None:
             feature = _feature(every, k, constrained)
             here = replace(singularity, feature=feature, scale=MESH_SCALE_RATIO * feature)
-            zones.append(here.up_to(*(_free_of(arc, (v.r, v.z)) for arc in arcs)))
+            at = np.array([[v.r, v.z]])
+            zones.append(here.up_to(*(float(_free_of(arc, at)[0]) for arc in arcs)))
     return tuple(zones)
 
 
 def free_of_arcs(pin: Pin, r: Floats, z: Floats) -> Floats:
     """Distances (S,), m, from points at r, z (S,), m, to the nearest fillet or groove."""
-    arcs = _inner_arcs(pin)
-    at = zip(r.tolist(), z.tolist(), strict=True)
-    return np.array([min((_free_of(arc, x) for arc in arcs), default=math.inf) for x in at])
+    at, far = np.stack([r, z], axis=1), np.full(len(r), math.inf)
+    return np.asarray(np.min([far, *(_free_of(arc, at) for arc in _inner_arcs(pin))], axis=0))
 
 
 def begins(gap: float, radius: float) -> float:
@@ -147,14 +143,9 @@ def _singularity(
     return Zone(v.r, v.z, kind, v.between, plane, torsion, reach, advice, angle=v.angle)
 
 
-def _free_of(arc: Arc, at: tuple[float, float]) -> float:
-    """Distance (m) from (r, z) to where an arc begins."""
-    r, z = at[0] - arc.centre[0], at[1] - arc.centre[1]
-    a, b = arc.start[0] - arc.centre[0], arc.start[1] - arc.centre[1]
-    part = math.atan2(a * z - b * r, a * r + b * z) / arc.turn
-    ends = min(math.dist(at, end) for end in (arc.start, arc.end))
-    gap = abs(math.hypot(r, z) - arc.radius) if 0.0 <= part <= 1.0 else ends
-    return begins(gap, arc.radius)
+def _free_of(arc: Arc, points: Floats) -> Floats:
+    """Distances (P,), m, from points (P, 2), r and z in m, to where an arc begins."""
+    return np.maximum(arc.distance(points), begins(0.0, arc.radius))
 
 
 def _feature(every: tuple[Vertex, ...], k: int, constrained: set[str]) -> float:

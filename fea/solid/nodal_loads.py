@@ -9,7 +9,7 @@ import numpy as np
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
-from fea.core.tractions import Traction, closing_tractions, traction
+from fea.core.tractions import Traction, closing_tractions, density_of, traction
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import Patch, SurfaceMesh, resultants
 from geometry import Band, GeometryError, PinLike
@@ -92,11 +92,6 @@ def with_closing_tractions(
 
     Raises: SolveError when there is no band to take them up.
     """
-    if not pin.connections:
-        raise SolveError(
-            f"pin {pin.name}: it is not clamped and no connection bears on it; add either",
-            "unconstrained",
-        )
     patches = {name: Patch(space, boundary, name) for name in pin.connections}
     out = NodalLoads(loads.traction.copy(), loads.forces.copy())
     pressing = np.zeros(loads.forces.shape[2], dtype=bool) if pressing is None else pressing
@@ -178,14 +173,10 @@ def _resultant(load: UnitLoad, phase: int) -> Floats:
 
 def _body_forces(material: Material, space: Discretisation, units: list[Unit]) -> Floats:
     """Nodal forces (N, 3, L) of one m/s^2 on the whole body."""
-    if material.density is None:
-        raise SolveError(
-            f"material {material.name} has no density, which weight and inertia need", "no-density"
-        )
     shapes = np.stack([np.asarray(part[0]) for part in space.basis.basis])  # (K, M or 1, Q)
     shapes = np.broadcast_to(shapes, (len(shapes), *space.weights.shape))
     shares = np.einsum("imq,mq->mi", shapes, space.weights)
-    mass = material.density * np.bincount(
+    mass = density_of(material) * np.bincount(
         space.elements.ravel(), shares.ravel(), minlength=len(space.nodes)
     )
     directions = np.stack([np.eye(3)[p if load.n else 2] for load, p in units], axis=1)

@@ -25,7 +25,7 @@ from fea.core.model import Model
 from fea.core.over_time import rise_between, through_time
 from fea.core.peak import NO_REASON, Reason
 from fea.core.pin_loads import PinLoads
-from fea.core.requirement import DECIDED_TEXT, Requirement, decided
+from fea.core.requirement import DECIDED_TEXT, Requirement, decided, limit_of
 from fea.core.zone import Zone
 from fea.harmonic.evaluate import Harmonic
 from fea.harmonic.first_mesh import FirstMesh
@@ -288,18 +288,10 @@ def _contact(at: Attempt) -> dict[str, Solution]:
         case: solution
         for case, solution in solutions.items()
         if held.finest
-        or (limit := _limit(problem, requirement.of_case(case))) is None
+        or (limit := limit_of(requirement.of_case(case), problem.material)) is None
         or solution.peak.verdict == "singular"
         or not cells_matter(solution.peak, limit)
     }
-
-
-def _limit(problem: PinProblem, requirement: Requirement) -> float | None:
-    """The stress with the required factor, Pa, if only that is to be decided."""
-    strength, required = problem.material.yield_strength, requirement.required
-    if requirement.goal == "value" or strength is None or required is None:
-        return None
-    return strength / required
 
 
 def _foundation_requested(at: Attempt) -> dict[str, Solution]:
@@ -324,7 +316,7 @@ def _foundation(at: Attempt) -> dict[str, Solution]:
     out = {}
     for case in at.problem.cases:
         solution = at.held.solution(case, at.requirement)
-        limit = _limit(at.problem, at.requirement.of_case(case.case)) or 0.0
+        limit = limit_of(at.requirement.of_case(case.case), at.problem.material) or 0.0
         value, error = solution.peak.max_von_mises, solution.peak.error_estimate
         if at.held.bending_governs(solution):
             out[case.case] = with_reason(solution, WITHIN_TOLERANCE_REASON)

@@ -19,9 +19,7 @@ DEFAULT_REQUIREMENT = Requirement()
 
 
 def solve(
-    problem: PinProblem,
-    requirement: Requirement = DEFAULT_REQUIREMENT,
-    progress: Progress = silent,
+    problem: PinProblem, requirement: Requirement = DEFAULT_REQUIREMENT, progress: Progress = silent
 ) -> tuple[Solution, ...]:
     """Solutions of a pin's cases, one each.
 

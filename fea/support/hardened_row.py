@@ -63,7 +63,7 @@ class FoundPart:
     @property
     def time(self) -> float | None:
         """The time of the instant, s; None without a motion."""
-        return None if self.loads.times is None else float(self.loads.times[0])
+        return self.loads.time()
 
     @property
     def use(self) -> float:
@@ -159,9 +159,10 @@ class PartSearch:
         cells = None if self.cells is None else self.cells[1]
         section = found_section(self.sections.of_part(part), loads, between, self.tolerance, cells)
         at = section.at
-        location = at.r * math.cos(at.angle), at.r * math.sin(at.angle), at.z
         depth = None if part.case is None else at.section.outer - at.r
-        return FoundPart(part, "section", at.value, section.parts, location, depth, section.loads)
+        return FoundPart(
+            part, "section", at.value, section.parts, at.location, depth, section.loads
+        )
 
 
 def hardened_row(

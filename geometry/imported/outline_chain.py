@@ -94,11 +94,7 @@ class MeridianSide:
 
 
 def _straight(
-    face: SampledFace,
-    rz: Floats,
-    rim: Floats,
-    normal: Floats,
-    to_axis: bool,
+    face: SampledFace, rz: Floats, rim: Floats, normal: Floats, to_axis: bool
 ) -> MeridianSide:
     """A straight side through points rz and rim (P, 2) with a normal (2,)."""
     points = rim if face.plane else np.vstack([rz, rim])

@@ -14,15 +14,7 @@ import numpy as np
 from geometry.mesh.gmsh_session import MeshError, gmsh_model, set_size
 from geometry.mesh.revolve import draw
 from geometry.mesh.scale import unit_of
-from geometry.mesh.sizing import (
-    Grade,
-    SectionSize,
-    Spot,
-    Stretch,
-    grades,
-    stretches,
-    triangles,
-)
+from geometry.mesh.sizing import Grade, SectionSize, Spot, Stretch, grades, stretches, triangles
 from geometry.shape.pin import Pin
 from geometry.shape.profile import RZ, Arc, Edge, meridian
 from pinbase.arrays import Floats, Ints

@@ -202,11 +202,7 @@ def roundings(nodes: tuple[Node, ...], sides: tuple[Leg, ...]) -> tuple[Rounding
     """All arcs of an outline, in its order."""
     return tuple(
         Rounding(
-            node.arc,
-            node.at,
-            node.radius,
-            after.taken[0],
-            cross(before.along, after.along) < 0.0,
+            node.arc, node.at, node.radius, after.taken[0], cross(before.along, after.along) < 0.0
         )
         for node, before, after in zip(nodes, (sides[-1], *sides), sides, strict=False)
         if after.taken[0] > 0.0

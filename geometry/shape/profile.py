@@ -32,6 +32,23 @@ class Edge:
     start: RZ
     end: RZ
 
+    @property
+    def length(self) -> float:
+        """Its length, m."""
+        return math.dist(self.start, self.end)
+
+    def beside(self, parts: Floats, off: float) -> Floats:
+        """Points (P, 2), m, at parts (P,) of the way along it, moved to the left by `off`, m."""
+        along = (np.array(self.end) - np.array(self.start)) / self.length
+        on_edge = np.array(self.start) + self.length * parts[:, None] * along
+        return np.asarray(on_edge + off * np.array([-along[1], along[0]]))
+
+    def distance(self, points: Floats) -> Floats:
+        """The distances (P,), m, of points (P, 2), r and z in m."""
+        start, along = np.array(self.start), np.array(self.end) - np.array(self.start)
+        part = np.clip((points - start) @ along / (along @ along), 0.0, 1.0)
+        return np.asarray(np.hypot(*(points - start - part[:, None] * along).T))
+
 
 @dataclass(frozen=True)
 class Arc(Edge):
@@ -50,6 +67,28 @@ class Arc(Edge):
         """Angle by which it turns, rad, positive to the left."""
         (a, b), (c, d) = self.along
         return math.atan2(a * d - b * c, a * c + b * d)
+
+    @property
+    def length(self) -> float:
+        """Its length, m."""
+        return abs(self.turn) * self.radius
+
+    def beside(self, parts: Floats, off: float) -> Floats:
+        """Points (P, 2), m, at parts (P,) of the way along it, moved to the left by `off`, m."""
+        # The left is inside of the circle where the arc turns left.
+        first = math.atan2(self.start[1] - self.centre[1], self.start[0] - self.centre[0])
+        turn, radius = first + parts * self.turn, self.radius - math.copysign(off, self.turn)
+        circle = radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+        return np.asarray(circle + np.array(self.centre))
+
+    def distance(self, points: Floats) -> Floats:
+        """The distances (P,), m, of points (P, 2), r and z in m."""
+        ends = np.minimum(*(np.hypot(*(points - end).T) for end in (self.start, self.end)))
+        middle = self.beside(np.array([0.5]), 0.0)[0] - np.array(self.centre)
+        away = points - np.array(self.centre)
+        size = np.hypot(*away.T)
+        facing = away @ middle >= size * self.radius * math.cos(0.5 * self.turn)
+        return np.asarray(np.where(facing, np.abs(size - self.radius), ends), np.float64)
 
 
 @dataclass(frozen=True)

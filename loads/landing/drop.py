@@ -373,7 +373,7 @@ def _destroyed(d: Drop, event: str, time: float, y: Floats, mode: Mode) -> Landi
             "strut-bottoms",
         )
     return LandingError(
-        "the tyre is deflected beyond the last row of its table, "
-        f"{d.tyre.max_deflection:.4g} m, {where}; give more rows, or a stiffer tyre",
+        f"the tyre is deflected beyond the last row of its table, {d.tyre.max_deflection:.4g} m, "
+        f"{where}; give more rows, or a stiffer tyre",
         "tyre-exceeded",
     )

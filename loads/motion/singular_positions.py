@@ -96,9 +96,9 @@ class MotionBlocked(LinkageError):
             )
         return (
             f"dead point at {at(self.reached)} (requested: {at(self.wanted)}; as drawn: "
-            f"{at(self.drawn)}): the linkage cannot be "
-            f"driven further, {bodies} would snap through, and {unbounded}; stop the drive before "
-            "it, drive another body, or check the coordinates of the joints"
+            f"{at(self.drawn)}): the linkage cannot be driven further, {bodies} would snap "
+            f"through, and {unbounded}; stop the drive before it, drive another body, or check the "
+            "coordinates of the joints"
         )
 
 

@@ -187,8 +187,8 @@ def require_wish(study: Study, fos: float | None, step: float | None) -> SizingG
         required, more = _stated_goal(study)
     if required is None:
         raise study.error(
-            "size needs a factor of safety to reach: --fos 10, or "
-            "required_safety_factor in [analysis]",
+            "size needs a factor of safety to reach: --fos 10, or required_safety_factor in "
+            "[analysis]",
             code="no-required-factor",
         )
     return SizingGoal(required, standard_diameters(study.table.size, step), more)

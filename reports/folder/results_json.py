@@ -150,9 +150,8 @@ def _require_schema(content: Any) -> None:
     newer = int(match[1]) > int(SCHEMA_VERSION)
     remedy = "use that version, or run the study again" if newer else "run the study again"
     raise Damaged(
-        f"{RESULTS_JSON} was written by {'a newer' if newer else 'an older'} version of "
-        f"pinstress (schema "
-        f"{schema}; this version reads {RESULTS_SCHEMA}): {remedy}"
+        f"{RESULTS_JSON} was written by {'a newer' if newer else 'an older'} version of pinstress "
+        f"(schema {schema}; this version reads {RESULTS_SCHEMA}): {remedy}"
     )
 
 

@@ -38,9 +38,8 @@ JOINT_RANGE_NOTE = (
     "Joint is the range of the maximum over properties of the joint that are seldom known: other "
     "clearances, lugs of half and twice the stiffness, and lugs that are guided or free to tilt. "
     "It is not part of the ±; a pin that fails within it is not safe, its result depends on the "
-    "joint. For pins that are not solved "
-    "in contact, it is that of a beam on foundations in their lugs, or in assumed ones, with its "
-    "error."
+    "joint. For pins that are not solved in contact, it is that of a beam on foundations in their "
+    "lugs, or in assumed ones, with its error."
 )
 BENEATH_CONTACT_NOTE = (
     "Beneath is the largest von Mises stress farther than a tenth of the diameter from where lugs "

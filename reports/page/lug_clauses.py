@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from assess.margin import Margin
+from pinbase.keys import lug_key
 from reports.data.lug_modes import LUG_MODES, lug_mode
 from reports.data.row import PinResult, Units
 from reports.format.numbers import engineering, short
@@ -60,7 +61,7 @@ def _rows(
 ) -> tuple[tuple[str, tuple[ClauseCell | None, ...]], ...]:
     rows = []
     for mode in LUG_MODES:
-        here = [m for m in margins if lug_mode(m.method) == mode and _is_of(m, lug)]
+        here = [m for m in margins if lug_mode(m.method) == mode and _is_of(m, lug, row.pin)]
         cells = tuple(
             _cell([m for m in here if code in m.code.split(", ")], row, units) for code in codes
         )
@@ -69,9 +70,11 @@ def _rows(
     return tuple(rows)
 
 
-def _is_of(m: Margin, lug: str) -> bool:
+def _is_of(m: Margin, lug: str, pin: str) -> bool:
     """Return whether a margin is of a lug; one that was not made names it in what it needs."""
-    return f".{lug}." in m.needs or f"lug {lug}," in m.needs if m.needs else m.at == lug
+    if not m.needs:
+        return m.at == lug
+    return f"{lug_key(pin, lug)}." in m.needs or f"lug {lug}," in m.needs
 
 
 def _cell(margins: list[Margin], row: PinResult, units: Units) -> ClauseCell | None:

@@ -15,10 +15,9 @@ MIN_RELATIVE_DISTANCE = 1e-6  # of the place of the largest stress: no distance 
 PLACE_NAMES = {"beneath": "beneath contact"}
 SECTION_NOTE = "The row's stress is the larger of surface and section."
 PLACES_NOTE = (
-    f"{SECTION_NOTE} Beneath contact: the largest von Mises "
-    f"stress of the pin, inside or on its surface, farther than {BENEATH_DISTANCE:g} diameters "
-    f"from where "
-    "lugs press on it; the pin is safe only if that meets the required factor, too."
+    f"{SECTION_NOTE} Beneath contact: the largest von Mises stress of the pin, inside or on its "
+    f"surface, farther than {BENEATH_DISTANCE:g} diameters from where lugs press on it; the pin is "
+    "safe only if that meets the required factor, too."
 )
 HARDENED_NOTE = (
     "The row of a pin with a hardened surface is that of its case or its core, whichever has the "

@@ -163,9 +163,8 @@ def _ratio(chart: Chart) -> str:
     verb = "are" if len(ends) > 1 else "is"
     also = f"; {' and '.join(ends)} {verb} within it on the coarsest mesh" if ends else ""
     return (
-        f"{text}At an equal error of {percent(wanted)} {theirs} ({name}) takes {slow} times "
-        f"the time and {large} times the memory of {ours} (interpolated on the log-log chart"
-        f"{also})."
+        f"{text}At an equal error of {percent(wanted)} {theirs} ({name}) takes {slow} times the "
+        f"time and {large} times the memory of {ours} (interpolated on the log-log chart{also})."
     )
 
 

@@ -95,8 +95,7 @@ def remarks(results: Results) -> list[str]:
             if low < 40.0:
                 lines.append(
                     f"{m.case}: minimum transmission angle of {link} is {short(round(low, 1))} "
-                    "deg; "
-                    "below 40 deg forces increase rapidly"
+                    "deg; below 40 deg forces increase rapidly"
                 )
     for case in results.reactions:
         if case.note:

@@ -166,16 +166,14 @@ def summary(others: Sequence[Opinion], pressed: Sequence[Opinion]) -> str:
     if others:
         text += (
             f" Limits: on the same mesh, {MAX_DISPLACEMENT_DIFFERENCE:.0e} of the largest "
-            f"displacement and "
-            f"{MAX_STRESS_DIFFERENCE:.0e} of the largest von Mises stress; its maximum, from "
-            f"that mesh only, "
-            f"{MAX_MAXIMUM_DIFFERENCE:.0%} plus the error from our result."
+            f"displacement and {MAX_STRESS_DIFFERENCE:.0e} of the largest von Mises stress; its "
+            f"maximum, from that mesh only, {MAX_MAXIMUM_DIFFERENCE:.0%} plus the error from our "
+            "result."
         )
     if pressed:
         text += (
             f" Limits for contact: {MAX_MOMENT_DIFFERENCE:.0%} of the largest bending moment and "
             f"{MAX_MAXIMUM_DIFFERENCE:.0%} of the stress at the point of our maximum, each plus "
-            f"the error; "
-            f"{MAX_LOAD_DIFFERENCE:.0%} of the load of a lug elsewhere along it."
+            f"the error; {MAX_LOAD_DIFFERENCE:.0%} of the load of a lug elsewhere along it."
         )
     return text

@@ -28,6 +28,61 @@ from tests.support.results.made_up_run import make_results
 
 INCHES, MILLIMETRES = UNIT_SYSTEMS["in-lbf-s"], UNIT_SYSTEMS["mm-N-s"]
 
+WITHOUT_DIMENSION = {
+    "Judgement.safety_factor",
+    "PinSensitivities.factor",
+    "PinResult.exponent",
+    "StatedRequirement.factor",
+    "Sensitivity.factor_with_step",
+    "PinResult.published_max_von_mises",  # as published, in the study's units
+    "PinResult.published_safety_factor",
+    "ReactionTable.turn",  # rad
+    "PowerLedger.violation",  # ratios
+    "WheelLoad.factor",
+    "CutShape.angle",
+    "CutShape.tilt",  # degrees
+    "LinkageMotion.angle",  # degrees, and rad
+    "LinkageMotion.angular_velocity",
+    "LinkageMotion.angular_acceleration",
+    "LinkageMotion.transmission",
+    "LinkageMotion.condition",
+    "Skeleton.axes",  # unit vectors
+    "LandingRange.safety_factor",
+    "LandingRange.error",
+    "LandingRange.largest_load",
+    "SharingRange.largest_load",
+    "Dependence.factor",
+    "Judgement.required",
+    "PointFatigue.damage",  # per unit of the spectrum, in which lives are counted
+    "PointFatigue.largest_damage",
+    "PointFatigue.life",
+    "PointFatigue.utilisation",
+    "PointFatigue.counts",
+    "Fatigue.probability",
+    "Fatigue.life",
+    "DropRecord.imbalance",
+    "DropRecord.lift",
+    "DropRecord.load_factor",
+    "Margin.factor",
+    "Margin.over_joint",
+    "Remedy.required",
+    "Remedy.load_factor",
+    "Remedy.diameter_factor",
+    "LimitLoad.lower",
+    "LimitLoad.upper",
+    "LimitLoad.permanent_at",
+    "LimitLoad.seconds",
+    "PublishedValue.time",
+    "PublishedValue.published",
+    "Refinement.seconds",
+    "Opinion.displacement",  # relative differences
+    "Opinion.stress",
+    "SingularZone.exponent",
+    "SingularZone.exponent_theory",
+    "Results.required_safety_factor",
+    "Results.tolerance",
+}
+
 
 def numbers(value: Any) -> list[float]:
     """All numbers of results, in order, but seconds of computing."""
@@ -62,60 +117,7 @@ def test_every_array_has_a_dimension_or_is_known_to_need_none() -> None:
         for f in dataclasses.fields(kind)
         if str(f.type).split(" | ")[0] in ("Floats", "float", "dict[str, Floats]")
     }
-    assert plain == {
-        "Judgement.safety_factor",
-        "PinSensitivities.factor",
-        "PinResult.exponent",
-        "StatedRequirement.factor",
-        "Sensitivity.factor_with_step",
-        "PinResult.published_max_von_mises",  # as published, in the study's units
-        "PinResult.published_safety_factor",
-        "ReactionTable.turn",  # rad
-        "PowerLedger.violation",  # ratios
-        "WheelLoad.factor",
-        "CutShape.angle",
-        "CutShape.tilt",  # degrees
-        "LinkageMotion.angle",  # degrees, and rad
-        "LinkageMotion.angular_velocity",
-        "LinkageMotion.angular_acceleration",
-        "LinkageMotion.transmission",
-        "LinkageMotion.condition",
-        "Skeleton.axes",  # unit vectors
-        "LandingRange.safety_factor",
-        "LandingRange.error",
-        "LandingRange.largest_load",
-        "SharingRange.largest_load",
-        "Dependence.factor",
-        "Judgement.required",
-        "PointFatigue.damage",  # per unit of the spectrum, in which lives are counted
-        "PointFatigue.largest_damage",
-        "PointFatigue.life",
-        "PointFatigue.utilisation",
-        "PointFatigue.counts",
-        "Fatigue.probability",
-        "Fatigue.life",
-        "DropRecord.imbalance",
-        "DropRecord.lift",
-        "DropRecord.load_factor",
-        "Margin.factor",
-        "Margin.over_joint",
-        "Remedy.required",
-        "Remedy.load_factor",
-        "Remedy.diameter_factor",
-        "LimitLoad.lower",
-        "LimitLoad.upper",
-        "LimitLoad.permanent_at",
-        "LimitLoad.seconds",
-        "PublishedValue.time",
-        "PublishedValue.published",
-        "Refinement.seconds",
-        "Opinion.displacement",  # relative differences
-        "Opinion.stress",
-        "SingularZone.exponent",
-        "SingularZone.exponent_theory",
-        "Results.required_safety_factor",
-        "Results.tolerance",
-    }
+    assert plain == WITHOUT_DIMENSION
 
 
 def test_a_singularity_has_the_units_of_its_exponent() -> None:

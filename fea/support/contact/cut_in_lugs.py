@@ -12,8 +12,8 @@ from collections.abc import Iterable, Mapping
 
 from fea.core.peak import Reason
 from fea.core.verdict import Evidence
-from fea.cut.inside import is_inside
 from geometry import CutPin
+from geometry.shape.band_cuts import is_inside
 
 # Relative error of the maximum of a pin with cuts in lugs by what contact does not see of them, by
 # kind of cut. Tuned on contact of whole solids on the clevis of docs/lugs.md: at most 0.017 with a

@@ -31,9 +31,9 @@ from fea.core.tractions import ALONG_X, Traction
 from fea.harmonic.assembly import Section, around
 from fea.harmonic.boundary import Outline
 from fea.harmonic.model import HarmonicBody, generalised, rigid_motions
-from fea.support.lugs.eye_mesh import eye_mesh
 from fea.support.lugs.lug import Lug
 from geometry import Pin
+from geometry.mesh.eye_mesh import eye_mesh
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 from geometry.mesh.sizing import Grade
 from pinbase.arrays import Ints

@@ -19,6 +19,7 @@ from fea.beam.error_model import PLAIN_SECTION_ERROR
 from fea.beam.maximum import VonMisesMaxima, stress_points
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
+from fea.core.mesh_result import Point, at_angle
 from fea.core.over_time import rise_between, through_time
 from fea.core.peak import ErrorParts, Maximum, Reason, Refinement
 from fea.core.pin_loads import Floats, LoadAmounts, Loads, PinLoads, UnitLoad
@@ -279,20 +280,16 @@ class FoundPlaces:
         of, at, strength = self.surface, self.section, material.yield_strength
         error = of.maximum if of.error is None else of.error
         known = "converged" if error <= tolerance * of.maximum else "unconverged"
-        surface = SurfacePlace(of.maximum, error, known, point_of(of), _time(case, of.instant))
+        surface = SurfacePlace(of.maximum, error, known, point_of(of), case.time(of.instant))
         parts = ErrorParts(0.0, model=min(of.moment_part, 1.0) * at.value)
         section = FoundSection(at, parts, case.at(np.array([at.instant])))
         used = None if strength is None else at.plastic_use(strength)
         return Places(self.governs, surface, section.place(tolerance, used))
 
 
-def point_of(of: StressBounds) -> tuple[float, float, float]:
-    r, z = of.place
-    return r * math.cos(of.theta), r * math.sin(of.theta), z
-
-
-def _time(case: PinLoads, instant: int) -> float | None:
-    return None if case.times is None else float(case.times[instant])
+def point_of(of: StressBounds) -> Point:
+    """The place (x, y, z), m, of the largest stress."""
+    return at_angle(of.place, of.theta)
 
 
 def _evidence(pin: PinLike, case: str, bounds: StressBounds, rise: float) -> Evidence:

@@ -12,7 +12,6 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from fea.core.material import Material
 from fea.support.lugs.lug import Lug
 from geometry import Pin
 
@@ -67,12 +66,7 @@ def pressed_in(change: JointChange) -> bool:
 
 def with_stiffness(lug: Lug, times: float) -> Lug:
     """The lug, and its bushing, so many times as stiff."""
-
-    def softened(material: Material) -> Material:
-        return replace(material, youngs_modulus=material.youngs_modulus / times)
-
-    bushing = lug.bushing and replace(lug.bushing, material=softened(lug.bushing.material))
-    return replace(lug, material=softened(lug.material), bushing=bushing)
+    return lug.with_materials(lambda m: replace(m, youngs_modulus=m.youngs_modulus / times))
 
 
 def _with_clearance(pin: Pin, lug: Lug, end: int) -> tuple[Lug, str]:

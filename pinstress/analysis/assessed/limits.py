@@ -22,7 +22,7 @@ from fea.support.lugs.fit import on_structure
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, Pin
 from geometry.shape.lug_outline import LugOutline
-from pinbase.keys import key_part
+from pinbase.keys import lug_key
 from pinbase.memo import Memo
 from pinbase.processes.pool import Tell
 from pinstress.analysis.plan import Plan
@@ -142,9 +142,7 @@ def _lug_collapse(pin: Pin, lug: Lug, same: Memo) -> LugCollapse:
     """
     strength = lug.material.yield_strength
     if lug.shank is None:
-        return LugCollapse(
-            lug.connection, needs=f"pin.{key_part(pin.name)}.lug.{key_part(lug.connection)}.shank"
-        )
+        return LugCollapse(lug.connection, needs=lug_key(pin.name, lug.connection, "shank"))
     if strength is None:
         return LugCollapse(lug.connection, needs=strength_key(lug.material.name, "yield"))
     from assess.plastic.lug.limit_load import lug_limit_load  # imports solvers

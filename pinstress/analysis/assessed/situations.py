@@ -32,7 +32,7 @@ from fea.core.pin_loads import PinLoads
 from fea.support.lugs.fit import on_structure
 from fea.support.records import JointResult
 from geometry import PinLike
-from pinbase.keys import key_part
+from pinbase.keys import lug_key
 from pinstress.study.model.lost_fits import lost_fits
 from pinstress.study.model.requirements import required_by_formula, required_factor
 from pinstress.study.model.tasks import Task
@@ -249,16 +249,15 @@ def _not_made(s: Situation, why: str) -> Iterable[Margin]:
         sized = {lug.connection for lug in s.sized}
         if s.required:
             lacking |= {
-                f"{CLAMPED_LUG_PREFIX}{lug.connection}: shear-out, bearing": (
-                    f"pin.{key_part(s.profile.name)}.lug.{key_part(lug.connection)}.outer_diameter"
+                f"{CLAMPED_LUG_PREFIX}{lug.connection}: shear-out, bearing": lug_key(
+                    s.profile.name, lug.connection, "outer_diameter"
                 )
                 for lug in s.lugs
                 if lug.connection in s.loads.surfaces and lug.connection not in sized
             }
         if s.codes != DEFAULT_CODES:
             lacking |= {
-                f"clauses for the lug of "
-                f"{name}": f"pin.{key_part(s.profile.name)}.lug.{key_part(name)}.outer_diameter"
+                f"clauses for the lug of {name}": lug_key(s.profile.name, name, "outer_diameter")
                 for name in s.loads.surfaces
                 if name not in sized
             }

@@ -11,7 +11,7 @@ from loads import Dynamics, Joint, Reactions
 from loads.motion.planar_equations import is_particle
 from pinbase.arrays import Floats
 from pinstress.study.model.cases import CaseLoads
-from pinstress.study.model.clevis import Ears, on_ears
+from pinstress.study.model.clevis import Ears, bands_of, on_ears
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import Study
 from reports.data.wear import BandWear
@@ -27,17 +27,14 @@ def wear(study: Study, loads: dict[str, CaseLoads]) -> tuple[BandWear, ...]:
 
 
 def _bands(study: Study) -> dict[str, tuple[str, dict[str, Band]]]:
-    """Return the pin of every connection of a pin with a profile, and its bands by name: the
-    connection's and, of a clevis, that of the other ear.
-    """
+    """Return the pin of every connection of a pin with a profile, and the connection's bands."""
     out = {}
     for name, table in study.table.pin.items():
         if table.geometry is not None:
             continue
         shape = pin_of(study, name)
         for connection in study.connections(name):
-            on = [connection, table.ears[connection]] if connection in table.ears else [connection]
-            out[connection] = name, {band: shape.band(band) for band in on}
+            out[connection] = name, bands_of(connection, shape, table.ears)
     return out
 
 

@@ -60,10 +60,9 @@ def require_laws(study: Study, aim: WeightGoal, pins: Iterable[str] | None) -> N
         kind = kind_of(parameter.key.partition(f"pin.{key_part(inner[0])}.")[2])
         if kind in aim.vary and vary.parameters[parameter.key].tolerance is None:
             raise study.error(
-                f"vary.parameters.{key_part(parameter.key)}: its law stays where it is "
-                "when the dimension "
-                "changes; give it a tolerance, which moves with it, or leave its kind out of "
-                "--vary",
+                f"vary.parameters.{key_part(parameter.key)}: its law stays where it is when the "
+                "dimension changes; give it a tolerance, which moves with it, or leave its kind "
+                "out of --vary",
                 code="law-of-a-dimension",
             )
 

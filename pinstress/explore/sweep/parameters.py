@@ -111,9 +111,8 @@ def require_laws(study: Study) -> None:
     for key, table in study.table.vary.parameters.items() if study.table.vary else ():
         if table.from_ is not None:
             raise study.error(
-                f"vary.parameters.{key_part(key)}: from and to say between what the "
-                "number lies, not how "
-                "likely its values are; reliability needs a law, such as normal = [mean, "
+                f"vary.parameters.{key_part(key)}: from and to say between what the number lies, "
+                "not how likely its values are; reliability needs a law, such as normal = [mean, "
                 "deviation], or uniform = [least, largest] if all are equally likely",
                 code="no-law",
             )
@@ -126,8 +125,7 @@ def _require_different(study: Study, parameters: Iterable[Parameter]) -> None:
         if other != parameter.key:
             raise study.error(
                 f"vary.parameters.{key_part(parameter.key)}: names the same number as "
-                f"{as_text(other)}; "
-                "give one of them",
+                f"{as_text(other)}; give one of them",
                 code="duplicate-parameter",
             )
 

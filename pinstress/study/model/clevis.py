@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry import PinLike
+from geometry import Band, PinLike
 from pinbase.arrays import Floats
 
 
@@ -28,13 +28,22 @@ class Ears(NamedTuple):
     other_z: float
 
 
-def middle_of(connection: str, pin: PinLike, ears: Mapping[str, str]) -> float:
-    """The z of a link on a pin, m: the middle of its band, of a clevis amid its ears.
+def bands_of(connection: str, pin: PinLike, ears: Mapping[str, str]) -> dict[str, Band]:
+    """The bands on which a link bears, by name: the connection's and, of a clevis, the other ear's.
 
     ears: the name of the other ear, by connection.
     """
-    on = [connection, ears[connection]] if connection in ears else [connection]
-    return sum(pin.band(name).middle for name in on) / len(on)
+    names = [connection, ears[connection]] if connection in ears else [connection]
+    return {name: pin.band(name) for name in names}
+
+
+def middle_of(connection: str, pin: PinLike, ears: Mapping[str, str]) -> float:
+    """The z of a link on a pin, m: the middle of its band, of a clevis amid its ears.
+
+    ears: as of `bands_of`.
+    """
+    bands = bands_of(connection, pin, ears).values()
+    return sum(band.middle for band in bands) / len(bands)
 
 
 def on_ears(

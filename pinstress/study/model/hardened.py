@@ -52,9 +52,9 @@ def pin_material(study: Study, pin: PinLike) -> Material:
         )
     if bare and made_of.strength_range is not None:
         raise study.error(
-            f"material.{key_part(name)}.range.yield_strength: pin {pin.name} is hardened "
-            "in part, and a "
-            "range is of the yield strength of a whole pin; give the lower end as yield_strength",
+            f"material.{key_part(name)}.range.yield_strength: pin {pin.name} is hardened in part, "
+            "and a range is of the yield strength of a whole pin; give the lower end as "
+            "yield_strength",
             at=f"material.{key_part(name)}.range",
             code="hardened-in-part",
         )
@@ -99,9 +99,8 @@ def require_strengths(study: Study, pins: Iterable[str]) -> None:
         require_no_hardened(study, name, "reliability")
         if study.table.material[material].yield_strength is None:
             raise study.error(
-                f"material.{key_part(material)}: reliability needs its yield_strength, "
-                "for the factors of "
-                f"pin {name}",
+                f"material.{key_part(material)}: reliability needs its yield_strength, for the "
+                f"factors of pin {name}",
                 code="no-strength",
             )
 

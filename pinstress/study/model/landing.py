@@ -108,11 +108,10 @@ def unsprung_warnings(study: Study) -> list[str]:
             continue  # whoever needs the case says what is wrong with it
         if abs(case.unsprung - mass) > UNSPRUNG_MASS_TOLERANCE * mass:
             text = (
-                f"case.{key_part(name)}.unsprung: {case.unsprung:.4g} kg is stated, but "
-                "the mechanism's "
-                f"bodies move with the axle like {mass:.4g} kg; the stated mass is used for the "
-                "fall, the bodies' for the forces in the leg. Remove it to use that of the "
-                "mechanism, or correct the masses"
+                f"case.{key_part(name)}.unsprung: {case.unsprung:.4g} kg is stated, but the "
+                f"mechanism's bodies move with the axle like {mass:.4g} kg; the stated mass is "
+                "used for the fall, the bodies' for the forces in the leg. Remove it to use that "
+                "of the mechanism, or correct the masses"
             )
             warnings.append(str(study.error(text)))
     return warnings

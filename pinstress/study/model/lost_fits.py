@@ -38,10 +38,9 @@ def lost_fit_warnings(study: Study, todo: Iterable[Task]) -> list[str]:
     return [
         str(
             study.error(
-                f"case.{key_part(case.case)}.temperature: pin {task.pin.name} is no "
-                "longer pressed in at "
-                f"{temperature_words(study, rise_of(study, case.case))}: its press fit is lost in "
-                f"{', '.join(x.where for x in lost)}; use an interference of more than "
+                f"case.{key_part(case.case)}.temperature: pin {task.pin.name} is no longer pressed "
+                f"in at {temperature_words(study, rise_of(study, case.case))}: its press fit is "
+                f"lost in {', '.join(x.where for x in lost)}; use an interference of more than "
                 f"{_longest(study, lost)}, or say what else retains the pin"
             )
         )

@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from fea.core.material import Material
-from fea.cut.inside import crosses_end
 from fea.support.lugs.axial import axial_seats
 from fea.support.lugs.fit import beyond_foundations, fitted, on_structure, pressed_in_range
 from fea.support.lugs.lug import Bushing, Lug, LugRange, Shank
 from fea.support.lugs.thermal import at_temperature
 from geometry import ArgumentError, Band, Cut, Hole, Pin, PinLike, body_of_revolution
+from geometry.shape.band_cuts import crosses_end
 from pinbase.keys import key_part
 from pinstress.study.model.pins import material
 from pinstress.study.model.temperature import at_case, band_radius, rise_of, temperature_words
@@ -318,9 +318,8 @@ def _bushing(
         if ends is None:
             return None, None
         raise ArgumentError(
-            f"{what}: range.interference is of a bushing; give "
-            f"lug.{key_part(connection)}.bushing, or a "
-            "negative clearance where the pin itself is pressed in",
+            f"{what}: range.interference is of a bushing; give lug.{key_part(connection)}.bushing, "
+            "or a negative clearance where the pin itself is pressed in",
             "no-bushing",
         )
     if given.fit is not None:

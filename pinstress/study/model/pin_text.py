@@ -68,8 +68,8 @@ def _text(file: BodyFile, profile: RecognisedProfile, unit: str, material: str) 
     lines = [
         f"# From {json.dumps(file.path.name)}:",
         f"# the axis is along {plain_vector(profile.along)} of the file, and",
-        f"# z = 0 is {profile.start:g} {unit} along it; "
-        f"angles count from {plain_vector(profile.x)}.",
+        f"# z = 0 is {profile.start:g} {unit} along it; angles count from "
+        f"{plain_vector(profile.x)}.",
         f"[{table}]",
         f"material = {json.dumps(material, ensure_ascii=False)}  # a [material] of the study",
         "profile = [",

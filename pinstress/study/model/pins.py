@@ -111,9 +111,8 @@ def _lost_shape(pin: PinLike) -> str:
     profile = pin.profile
     if profile is not None and profile.merged:
         return (
-            f"diameters or bores that differ by up to "
-            f"{profile.merged / METRES_PER_UNIT['mm']:.2g} mm, "
-            "less than a billionth of its smallest diameter, are taken as equal"
+            f"diameters or bores that differ by up to {profile.merged / METRES_PER_UNIT['mm']:.2g} "
+            "mm, less than a billionth of its smallest diameter, are taken as equal"
         )
     if not pin.meshed:
         return ""

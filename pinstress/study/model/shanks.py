@@ -6,7 +6,7 @@ import numpy as np
 
 from fea.lug.in_joint import ShankAngle
 from loads import GROUND, Dynamics, Joint
-from pinbase.keys import key_part
+from pinbase.keys import lug_key
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.lugs import ShankTable
@@ -27,7 +27,7 @@ def shank_angles(study: Study, pin: str, case: CaseLoads) -> dict[str, ShankAngl
     for name, lug in table.lug.items():
         if lug.shank is None:
             continue
-        at = f"pin.{key_part(pin)}.lug.{key_part(name)}.shank"
+        at = lug_key(pin, name, "shank")
         if lug.shank.angle is not None:
             out[name] = ShankAngle(np.array([lug.shank.angle]))
         elif lug.shank.toward is not None and not isinstance(mechanism, MechanismTable):

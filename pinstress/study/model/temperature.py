@@ -67,9 +67,8 @@ def _require_bushing(study: Study, pin: Pin, lug: Lug, case: str) -> None:
         return
     needed, unit = -bushing.outgrown / study.system.factor("length"), study.system.length
     raise study.error(
-        f"case.{key_part(case)}.temperature: the bushing in lug {lug.connection} of pin "
-        f"{pin.name} is loose "
-        f"at {temperature_words(study, rise)}: its interference is used up at "
+        f"case.{key_part(case)}.temperature: the bushing in lug {lug.connection} of pin {pin.name} "
+        f"is loose at {temperature_words(study, rise)}: its interference is used up at "
         f"{temperature_words(study, opens)}; it needs more than {needed:.3g} {unit}, or a material "
         "whose thermal_expansion is nearer to that of the lug",
         code="loose-bushing",

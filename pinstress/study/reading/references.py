@@ -10,7 +10,7 @@ from assess.fatigue.flight import flight
 from assess.requirement import LEVELS_OF_CHECK
 from geometry.shape.pin import END_FACES
 from pinbase.errors import ArgumentError
-from pinbase.keys import key_part
+from pinbase.keys import key_part, lug_key
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.mechanism_references import of_its_cases, of_pins, of_plane
 from pinstress.study.reading.names import known_name, known_names
@@ -51,7 +51,7 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
         surfaces |= dict.fromkeys(s.name for s in pin.profile or () if s.name)
         surfaces |= dict.fromkeys(pin.band)
         for connection, lug in pin.lug.items():
-            key = f"pin.{key_part(name)}.lug.{key_part(connection)}"
+            key = lug_key(name, connection)
             yield from known_name(key, "connection or segment", connection, surfaces)
             for at, made_of in _materials(lug).items():
                 if made_of not in common.values():
@@ -61,9 +61,8 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
         for key, connection in pin.connections:
             if connection in bears:
                 yield Wrong(
-                    f"pin.{key_part(name)}.{key}: connection {as_text(connection)} "
-                    "already bears on pin "
-                    f"{bears[connection]}; a connection bears on one pin only",
+                    f"pin.{key_part(name)}.{key}: connection {as_text(connection)} already bears "
+                    f"on pin {bears[connection]}; a connection bears on one pin only",
                     code="duplicate-connection",
                 )
             bears[connection] = name
@@ -143,10 +142,9 @@ def _of_bearing(table: StudyTable) -> Iterator[Wrong]:
     for name, material in table.material.items():
         if material.bearing_strength is not None and name not in bears:
             yield Wrong(
-                f"material.{key_part(name)}.bearing_strength: no lug bears on a pin of "
-                "this material, and no "
-                "lug or bushing is made of it; give pin.NAME.lug.CONNECTION.material, or remove "
-                "this",
+                f"material.{key_part(name)}.bearing_strength: no lug bears on a pin of this "
+                "material, and no lug or bushing is made of it; give "
+                "pin.NAME.lug.CONNECTION.material, or remove this",
                 code="bearing-strength-without-lug",
             )
 
@@ -178,8 +176,8 @@ def _of_cases(table: StudyTable, bears: dict[str, str]) -> Iterator[Wrong]:
 def closed_message(where: str, pin: str) -> str:
     """Return the message for a force that the study gives although it follows from others."""
     return (
-        f"{where}: follows from the other forces on pin {pin}, by "
-        f"pin.{key_part(pin)}.balance; remove it"
+        f"{where}: follows from the other forces on pin {pin}, by pin.{key_part(pin)}.balance; "
+        "remove it"
     )
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import inf
 
-from pinbase.keys import key_part
+from pinbase.keys import key_part, lug_key
 from pinstress.study.schema.lugs import LugTable
 from pinstress.study.schema.tables import StudyTable
 
@@ -15,7 +15,7 @@ from pinstress.study.schema.tables import StudyTable
 def unused(table: StudyTable) -> Iterator[str]:
     """Yield a sentence on every key without an effect or against another, after the key."""
     lugs = {
-        f"pin.{key_part(name)}.lug.{key_part(connection)}": lug
+        lug_key(name, connection): lug
         for name, pin in table.pin.items()
         for connection, lug in pin.lug.items()
     }
@@ -54,10 +54,11 @@ def _of_codes(table: StudyTable) -> Iterator[str]:
     codes, given = table.analysis.codes, table.lug_defaults or LugTable()
     factors = ["lug_defaults.factors"] if "factors" in given.model_fields_set else []
     for name, pin in table.pin.items():
-        at = f"pin.{key_part(name)}"
-        factors += [f"{at}.bending_factor"] if pin.bending_factor is not None else []
+        factors += (
+            [f"pin.{key_part(name)}.bending_factor"] if pin.bending_factor is not None else []
+        )
         factors += [
-            f"{at}.lug.{key_part(connection)}.factors"
+            lug_key(name, connection, "factors")
             for connection, lug in pin.lug.items()
             if any(value is not None for _, value in lug.factors) and lug.factors != given.factors
         ]

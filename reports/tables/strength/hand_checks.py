@@ -20,10 +20,9 @@ from reports.tables.column import PIN_AND_CASE, Column, Table, fields, unit_colu
 HAND_CHECKS_NOTE = (
     "Hand checks use nominal stresses: from beam theory or averaged over a section, without stress "
     "concentration at corners and edges. They cover the whole pin, including excluded zones such "
-    "as "
-    "at a clamp, so their factor may be smaller than the model's. Bending and shear of a pin whose "
-    "joint was solved take the moments and forces of the joint model; checks for comparison govern "
-    "nothing."
+    "as at a clamp, so their factor may be smaller than the model's. Bending and shear of a pin "
+    "whose joint was solved take the moments and forces of the joint model; checks for comparison "
+    "govern nothing."
 )
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from assess.margin import RATIO_DIMENSION, Margin, PinMargin
 from assess.strength.bending_arms import BendingArms
+from pinbase.keys import lug_key, names_in
 from reports.data.governing import governing, skipped
 from reports.data.requirements import keys_in
 from reports.data.results import Results
@@ -158,23 +159,23 @@ def not_made_briefly(results: Results) -> str:
     Materials are named with what they lack, lugs are counted.
     """
     materials: dict[str, dict[str, None]] = {}
-    lugs: dict[str, dict[tuple[str, str], None]] = {}
+    lugs: dict[str, dict[str, str]] = {}  # the name of each by its key, by what they lack
     others: dict[str, None] = {}
-    for needs, margins in skipped(results).items():
+    for needs in skipped(results):
         keys = keys_in(needs)
-        if not all(key.startswith(("material.", "lug.")) for key in keys):
+        parts = [names_in(key) for key in keys]
+        if not all(x[:1] == ["material"] or x[:3:2] == ["pin", "lug"] for x in parts):
             others |= dict.fromkeys(keys)
             continue
-        for key in keys:
-            kind, _, rest = key.partition(".")
-            owner, _, name = rest.rpartition(".")
-            if kind == "material":
-                materials.setdefault(owner.strip('"'), {})[name] = None
+        for first, owner, *rest in parts:
+            if first == "material":
+                materials.setdefault(owner, {})[".".join(rest)] = None
             else:
-                lugs.setdefault(name, {}).update({(m.pin, owner): None for m in margins})
+                _, lug, *table = rest
+                lugs.setdefault(".".join(table), {})[lug_key(owner, lug)] = lug
     clauses = [f"{owner} lacks {_joined(lacking)}" for owner, lacking in materials.items()]
     for name, owners in lugs.items():
-        (_, first), *more = owners
+        first, *more = owners.values()
         who = f"{len(owners)} lugs lack" if more else f"lug {first} lacks"
         clauses.append(f"{who} {name}")
     return "; ".join([*clauses, *([f"missing {', '.join(others)}"] if others else [])])

@@ -53,7 +53,7 @@ def situation(
 def of_a(s: Situation) -> Margin:
     """The margin of A against yield; B has no shank."""
     first, *others = lug_out_of_plane(s)
-    assert others[-1].needs == "lug.B.shank"
+    assert others[-1].needs == "pin.P.lug.B.shank"
     assert first.level == "limit"
     assert first.at == "A"
     return first
@@ -102,7 +102,7 @@ def test_the_thickness_that_would_just_pass() -> None:
 
 def test_what_is_lacking_is_named() -> None:
     without = lug_out_of_plane(situation(shank=None))
-    assert [m.needs for m in without] == ["lug.A.shank, lug.B.shank"]
+    assert [m.needs for m in without] == ["pin.P.lug.A.shank, pin.P.lug.B.shank"]
     assert lug_out_of_plane(situation(force=FORCE * [1.0, 1.0, 0.0])) != []  # B takes the couple
     plain = situation()
     flat = PinLoads("pull", ("A", "B"), plain.loads.forces * [1.0, 1.0, 0.0])

@@ -12,13 +12,13 @@ from fea.core import memory
 from fea.core.linear_solver import SolveError
 from fea.core.memory import (
     allowed_memory,
-    free_memory,
     local_memory,
     require_memory,
     section_memory,
     solid_memory,
     too_much,
 )
+from pinbase.processes.free_memory import free_memory
 from tests.support.each import each
 from tests.support.errors import raises
 

@@ -38,7 +38,7 @@ def piece(hole: float = d, bar: Pin = SHAFT) -> Piece:
 
 
 def uniform(model: LocalModel, component: int) -> Floats:
-    stress = np.zeros((*model.images.shape[:2], 6, 1))
+    stress = np.zeros((*model.faces.images.shape[:2], 6, 1))
     stress[:, :, component] = 1.0
     return stress
 
@@ -140,8 +140,8 @@ def test_an_eighth_answers_as_the_quarter_and_the_half(component: int) -> None:
     )
     found = []
     for model in models:
-        stress = np.zeros((*model.images.shape[:2], 6, 1))
-        x = model.images
+        stress = np.zeros((*model.faces.images.shape[:2], 6, 1))
+        x = model.faces.images
         if component == 2:
             stress[:, :, 2, 0] = 1.0 + x[..., 1] / D
         else:

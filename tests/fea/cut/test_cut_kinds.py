@@ -47,7 +47,7 @@ def solved(about: Piece, stress: Callable[[Floats], Floats], finer: float = 1.0)
     shaft.
     """
     model = LocalModel(about, piece_mesh(about, finer), STEEL)
-    x = model.images + np.array([0.0, 0.0, about.origin - MIDDLE])
+    x = model.faces.images + np.array([0.0, 0.0, about.origin - MIDDLE])
     return model.solve(stress(x)[..., None])
 
 
@@ -259,7 +259,7 @@ def test_sharp_inner_corners_are_found(one: Cut, expected: dict[tuple[str, str],
     """Of a flat, a keyway and a drill's tip by their angles; none where they are rounded."""
     about = piece(one)
     model = LocalModel(about, piece_mesh(about, 1.0), STEEL)
-    corners = inner_corners(model, model.points, 0.1)
+    corners = inner_corners(model, model.faces.points, 0.1)
     found = {c.singularity.between: c.singularity.angle for c in corners}
     assert found == pytest.approx(expected, rel=0.01, nan_ok=True)
     for corner in corners:

@@ -69,7 +69,7 @@ def test_what_is_lost_goes_to_the_band(shears: bool) -> None:
     (bearing,) = bearings(piece, bands)
     assert [bearing.z0, bearing.z1] == pytest.approx([-0.01, 0.01])
     model = LocalModel(piece, piece_mesh(piece, 1.0), STEEL, (), (bearing,))
-    forces = trial_forces(model.space, model.surface, bearing, shears)
+    forces = trial_forces(model.space, model.faces.surface, bearing, shears)
     found = resultants(model.space.nodes, forces.reshape(-1, 3, 6)) * 8.0  # an eighth is meshed
     band, mouths = np.pi * D * 0.02, 2.0 * np.pi * d**2 / 4.0
     areas = (band - mouths, band - mouths) if shears else (band / 2.0 - mouths, band / 2.0)
@@ -82,8 +82,8 @@ def test_a_load_on_what_is_cut_away_needs_its_band() -> None:
     (piece,) = pieces(HOLED, ())
     mesh = piece_mesh(piece, 1.0)
     model = LocalModel(piece, mesh, STEEL)
-    stress = np.zeros((*model.images.shape[:2], 6, 1))
-    stress[:, :, 4, 0] = model.images[..., 2]
+    stress = np.zeros((*model.faces.images.shape[:2], 6, 1))
+    stress[:, :, 4, 0] = model.faces.images[..., 2]
     with raises(SolveError, "cut-unbalanced"):
         model.solve(stress)
     held = LocalModel(piece, mesh, STEEL, (), bearings(piece, loaded_bands(HOLED, ("B",))))
@@ -145,15 +145,15 @@ def test_what_cuts_lose_comes_back_to_round_off(name: str, shears: bool) -> None
     (piece,) = pieces(pin, (), bands=bands)
     bearing = bearings(piece, bands)
     model = LocalModel(piece, piece_mesh(piece, 1.0), STEEL, (), bearing)
-    stress = np.zeros((*model.images.shape[:2], 6, 1))
-    stress[:, :, 0, 0] = np.maximum(model.images[..., 0], 0.0) / (D / 2.0)
+    stress = np.zeros((*model.faces.images.shape[:2], 6, 1))
+    stress[:, :, 0, 0] = np.maximum(model.faces.images[..., 0], 0.0) / (D / 2.0)
     (even, *_) = model.parities.split(stress)
     parity = model.parities.classes[0]
-    spread, _ = model._spread(even, parity, np.array([shears]))
-    lost = model._forces(even)
+    spread, _ = model.relief.of_lost_loads(even, parity, np.array([shears]))
+    lost = model.relief._forces(even)
     own = model.parities.rigid(parity)
     assert own.any()
-    nodes = model.space.nodes[model.nodes_once]
+    nodes = model.space.nodes[model.faces.nodes_once]
     both = [resultants(nodes, x.reshape(-1, 3, 1))[own, 0] for x in (lost, spread)]
     assert np.abs(both[0]).max() > 0.0
     assert np.abs(both[0] + both[1]).max() < 1e-10 * np.abs(both[0]).max()

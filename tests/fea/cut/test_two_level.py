@@ -43,8 +43,8 @@ def test_stress_about_a_hole_as_by_a_factorisation(
 ) -> None:
     """In tension with bending, and in torsion: classes with rigid motions that nothing holds."""
     model = LocalModel(PIECE, MESH, STEEL)
-    stress = np.zeros((*model.images.shape[:2], 6, 1))
-    x, y, _ = np.moveaxis(model.images / D, -1, 0)
+    stress = np.zeros((*model.faces.images.shape[:2], 6, 1))
+    x, y, _ = np.moveaxis(model.faces.images / D, -1, 0)
     if twisted:
         stress[..., 3, 0], stress[..., 4, 0] = x, -y
     else:
@@ -64,8 +64,8 @@ def test_what_brings_little_is_solved_less_accurately(monkeypatch: pytest.Monkey
     other one to 1e-5 as ever, and the two in the amounts in which they act.
     """
     model = LocalModel(PIECE, MESH, STEEL)
-    stress = np.zeros((*model.images.shape[:2], 6, 2))
-    stress[..., 2, 0], stress[..., 2, 1] = 1.0, model.images[..., 1] / D
+    stress = np.zeros((*model.faces.images.shape[:2], 6, 2))
+    stress[..., 2, 0], stress[..., 2, 1] = 1.0, model.faces.images[..., 1] / D
     monkeypatch.setattr(piece_system, "MAX_FACTORED_UNKNOWNS", model.unknowns)
     known = model.solve(stress).stress
     monkeypatch.setattr(piece_system, "MAX_FACTORED_UNKNOWNS", 0)

@@ -53,6 +53,15 @@ def test_modes_by_codes() -> None:
     assert len(of_m.rows) == 1
 
 
+def test_a_check_that_was_not_made_is_of_a_lug_whose_name_needs_quotes() -> None:
+    needs = 'pin.A.lug."L 1".factors.k_tru'
+    across = replace(margin("Melcon-Hoblit transverse", "aircraft", at=""), needs=needs)
+    (table,) = lug_clauses(
+        row_with(margin("BTH-1 plate, tension", "lifting", at="L 1"), across), UNITS
+    )
+    assert [mode for mode, _ in table.rows] == ["net section", "across the shank"]
+
+
 def test_the_worst_check_of_a_cell() -> None:
     worse = margin("BTH-1 plate, tension", "lifting", 280.0)
     (table,) = lug_clauses(row_with(BY_BTH, worse, BY_AFFDL), UNITS)

@@ -104,10 +104,13 @@ def test_the_worst_check_of_each_pin_is_first(results: Results) -> None:
 def test_what_checks_lack_is_told_in_brief(results: Results) -> None:
     """Materials by name, lugs by their number, and what is neither as it is, each once."""
     missing = {
-        "A": ("material.steel.ultimate_strength", "lug.left.shank, lug.right.shank"),
-        "B": ("lug.left.shank", 'material.steel.ultimate_strength, material."Al 7".shear_strength'),
-        "C": ("a maximum of the model, which is failed", "left.factors.K, left.factors.k_tru"),
-        "D": ("left.factors.k_tru",),
+        "A": ("material.steel.ultimate_strength", "pin.A.lug.left.shank, pin.A.lug.right.shank"),
+        "B": (
+            "pin.B.lug.left.shank",
+            'material.steel.ultimate_strength, material."Al 7".shear_strength',
+        ),
+        "C": ("a maximum of the model, which is failed", 'pin.C.lug."a.b".shank.angle'),
+        "D": ("pin.D.lug.left.shank", "pin.D.bending_factor"),
     }
     margins = tuple(
         PinMargin(pin, "c", skipped("check", "", "model", "ultimate", 1.5, need))
@@ -115,7 +118,8 @@ def test_what_checks_lack_is_told_in_brief(results: Results) -> None:
         for need in needs
     )
     assert not_made_briefly(replace(results, spectrum_margins=margins)) == (
-        "steel lacks ultimate_strength; Al 7 lacks shear_strength; 3 lugs lack shank; "
-        "missing a maximum of the model, which is failed, left.factors.K, left.factors.k_tru"
+        "steel lacks ultimate_strength; Al 7 lacks shear_strength; 4 lugs lack shank; "
+        "lug a.b lacks shank.angle; missing a maximum of the model, which is failed, "
+        "pin.D.bending_factor"
     )
     assert not_made_briefly(replace(results, spectrum_margins=())) == ""

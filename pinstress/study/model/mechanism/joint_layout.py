@@ -57,9 +57,8 @@ def _placed(name: str, joint: JointTable, positions: Mapping[str, Point], show: 
     base = math.hypot(x2 - x1, y2 - y1)
     if not abs(a - b) <= base <= a + b or base == 0.0:
         raise LayoutError(
-            f"mechanism.joint.{key_part(name)}.at: no point has these distances, "
-            f"{show(a)} and {show(b)}, "
-            f"from {at.origins[0]} and {at.origins[1]}, which are {show(base)} apart",
+            f"mechanism.joint.{key_part(name)}.at: no point has these distances, {show(a)} and "
+            f"{show(b)}, from {at.origins[0]} and {at.origins[1]}, which are {show(base)} apart",
             "unreachable-point",
         )
     along = (a * a - b * b + base * base) / (2.0 * base)

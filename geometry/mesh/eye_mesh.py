@@ -7,9 +7,9 @@ from itertools import pairwise
 import numpy as np
 from skfem import MeshQuad, MeshTri2
 
-from fea.core.pin_loads import Floats
-from geometry import Pin
 from geometry.mesh.section_mesh import MeridianMesh
+from geometry.shape.pin import Pin
+from pinbase.arrays import Floats
 
 LAYER_GROWTH = 1.6  # of each layer over the one before, from the bore outwards
 MIN_WALL_ELEMENTS = 2.0  # with one element pressure at a rounded edge is 6 % high, at a bushing 3 %
@@ -27,14 +27,10 @@ def eye_mesh(eye: Pin, across: float, interface: float | None = None) -> Meridia
     size, rings = 2.0 * bore / across, np.diff(eye.stations)
     first = min(size, min(float(rings.min()), ends[1] - bore) / MIN_WALL_ELEMENTS)
     r = np.concatenate([[bore], *_layers(ends, first)])
-    along = (_even(s, e, min(size, (e - s) / MIN_WALL_ELEMENTS)) for s, e in _rings(eye))
+    along = (_even(s, e, min(size, (e - s) / MIN_WALL_ELEMENTS)) for s, e in pairwise(eye.stations))
     z = np.concatenate([[0.0], *along])
     grid = MeshTri2.from_mesh(MeshQuad.init_tensor(r, z).to_meshtri(style="x"))
     return MeridianMesh.of(grid, _edges(eye, grid), np.zeros(0, dtype=np.int64))
-
-
-def _rings(eye: Pin) -> list[tuple[float, float]]:
-    return list(pairwise(eye.stations))
 
 
 def _even(start: float, end: float, size: float) -> Floats:
@@ -70,7 +66,7 @@ def _edges(eye: Pin, grid: MeshTri2) -> dict[str, np.ndarray[tuple[int, int], np
     back = along[0] * rightwards + along[1] * onwards < 0.0
     nodes = np.stack([*np.where(back, ends[::-1], ends), middle], axis=1).astype(np.int64)
     edges = {"start": nodes[rightwards > 0.0], "end": nodes[rightwards < 0.0]}
-    for label, (z0, z1) in zip(eye.labels, _rings(eye), strict=True):
+    for label, (z0, z1) in zip(eye.labels, pairwise(eye.stations), strict=True):
         here = (at[1] > z0) & (at[1] < z1)
         edges[label] = nodes[here & (onwards > 0.0)]
         edges[f"bore {label}"] = nodes[here & (onwards < 0.0)]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from geometry import Cut, Pin
+from geometry.shape.features import Cut
+from geometry.shape.pin import Pin
 
 # Least distance of a cut from the ends of its band, of the cut's size (at most the pin's diameter);
 # chosen by judgement.

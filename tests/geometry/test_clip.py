@@ -6,7 +6,16 @@ import numpy as np
 import pytest
 from skfem import Basis, ElementTetP2, MeshTet1, MeshTet2, MeshTri1
 
-from fea.cut.clip import CORNERS, EDGES, EIGHT_TETRAHEDRA, NODES, clipped, gaps, halved, upright
+from geometry.mesh.clip import (
+    CORNERS,
+    EDGES,
+    EIGHT_TETRAHEDRA,
+    NODES,
+    clipped,
+    gaps,
+    halved,
+    upright,
+)
 from pinbase.arrays import Floats, Ints
 
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from fea.core import memory
-from fea.core.memory import free_in_groups
+from pinbase.processes import free_memory
+from pinbase.processes.free_memory import free_in_groups
 from tests.support.each import each
 
 MB = 2**20
@@ -112,7 +112,7 @@ def test_without_a_limit_it_is_infinite(tmp_path: Path, groups: str) -> None:
 def test_a_container_is_allowed_what_it_has_not_what_the_machine_has(tmp_path: Path) -> None:
     machine(tmp_path, "0::/\n", {"memory.max": 1500 * MB, "memory.current": 500 * MB})
     (tmp_path / "proc" / "meminfo").write_text("MemTotal: 1 kB\nMemAvailable: 67108864 kB\n")
-    assert memory.free_memory(tmp_path) == 1000.0
-    assert memory.free_memory(machine(tmp_path / "bare", "", {})) == 4096.0
+    assert free_memory.free_memory(tmp_path) == 1000.0
+    assert free_memory.free_memory(machine(tmp_path / "bare", "", {})) == 4096.0
     (tmp_path / "proc" / "meminfo").write_text("MemTotal: 1 kB\nMemAvailable: 204800 kB\n")
-    assert memory.free_memory(tmp_path) == 200.0
+    assert free_memory.free_memory(tmp_path) == 200.0

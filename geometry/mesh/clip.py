@@ -22,17 +22,10 @@ CORNERS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0
 NODES = np.concatenate([CORNERS, 0.5 * CORNERS[EDGES].sum(axis=1)])
 # What is left of a simplex whose first k corners are kept: simplices of corners i and of points on
 # edges (i, j) to corners that are lost.
-LEFT_OF_TRIANGLE = {
-    1: ((0, (0, 1), (0, 2)),),
-    2: ((0, 1, (0, 2)), (1, (1, 2), (0, 2))),
-}
+LEFT_OF_TRIANGLE = {1: ((0, (0, 1), (0, 2)),), 2: ((0, 1, (0, 2)), (1, (1, 2), (0, 2)))}
 LEFT_OF_TETRAHEDRON = {
     1: ((0, (0, 1), (0, 2), (0, 3)),),
-    2: (
-        (0, (0, 2), (0, 3), 1),
-        ((0, 2), (0, 3), 1, (1, 2)),
-        ((0, 3), 1, (1, 2), (1, 3)),
-    ),
+    2: ((0, (0, 2), (0, 3), 1), ((0, 2), (0, 3), 1, (1, 2)), ((0, 3), 1, (1, 2), (1, 3))),
     3: ((0, 1, 2, (0, 3)), (1, 2, (0, 3), (1, 3)), (2, (0, 3), (1, 3), (2, 3))),
 }
 

@@ -1,0 +1,92 @@
+"""A linkage of parallel axes as one in space and as one in the plane."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.pinstress.study.model.test_space import solved
+
+FOUR_BAR = """
+title = "A four-bar"
+units = "m-N-s"
+[mechanism.joint.O]
+at = [0, 0]
+fixed_in = "ground"
+connections = { O1 = "crank" }
+[mechanism.joint.P]
+at = [0.1, 0.2]
+fixed_in = "crank"
+connections = { P1 = "coupler" }
+[mechanism.joint.Q]
+at = [0.5, 0.3]
+weight = 4
+connections = { Q1 = "coupler", Q2 = "rocker" }
+[mechanism.joint.R]
+at = [0.4, 0]
+fixed_in = "ground"
+connections = { R1 = "rocker" }
+[mechanism.body.crank]
+bar = { joints = ["O", "P"], diameter = 0.02, density = "7850 kg/m^3" }
+[mechanism.body.coupler]
+mass = 3
+centre = [0.3, 0.4]
+inertia = 0.05
+[mechanism.body.rocker]
+bar = { joints = ["Q", "R"], diameter = 0.03, density = "7850 kg/m^3" }
+[mechanism.spring.s]
+bodies = ["ground", "coupler"]
+joints = [[0, 0.5], "Q"]
+stiffness = 500
+damping = 20
+[mechanism.drive]
+body = "crank"
+start = "0 deg"
+end = "25 deg"
+duration = 0.2
+[case.move]
+kind = "motion"
+samples = 31
+[[case.move.apply]]
+body = "coupler"
+at = [0.3, 0.4]
+force = [10, -40]
+couple = 3
+follows = true
+"""
+
+
+def test_a_linkage_of_parallel_axes_is_that_in_the_plane(tmp_path: Path) -> None:
+    """The same linkage stated with three coordinates: same forces in the plane, same drive."""
+    text = re.sub(r"\[(-?[\d.]+), (-?[\d.]+)\]", r"[\1, \2, 0]", FOUR_BAR)
+    for old, new in (
+        ("[mechanism.joint.O]", '[mechanism]\ndimension = 3\ngravity = [0, "-9.80665 m/s^2", 0]\n'
+         "[mechanism.joint.O]"),
+        ("\nconnections", "\naxis = [0, 0, 1]\nconnections"),
+        ("inertia = 0.05", "inertia = [0.02, 0.03, 0.05]"),
+        ('body = "crank"\nstart', 'joint = "O"\nstart'),
+        ("couple = 3", "couple = [0, 0, 3]"),
+    ):  # fmt: skip
+        assert old in text
+        text = text.replace(old, new)
+    plane, space = solved(tmp_path, FOUR_BAR)["move"], solved(tmp_path, text)["move"]
+    assert plane.dynamics is not None
+    assert space.space is not None
+    ours, theirs = space.reactions, plane.reactions
+    assert ours.connections == theirs.connections
+    size = theirs.magnitudes.max()
+    assert ours.forces == pytest.approx(theirs.forces, abs=1e-9 * size)
+    drive = plane.dynamics.drive
+    assert space.space.dynamics.drive == pytest.approx(drive, abs=1e-9 * np.abs(drive).max())
+    for c in ("O1", "P1", "R1"):  # a floating pin keeps the world's axes in the plane alone
+        assert ours.in_pin_axes(c) == pytest.approx(theirs.in_pin_axes(c), abs=1e-9 * size)
+    assert plane.peaks is not None
+    assert space.peaks is not None
+    for c, peak in plane.peaks.force.items():
+        assert space.peaks.force[c].value == pytest.approx(peak.value, rel=1e-7)
+    assert plane.over is not None
+    assert space.space.efforts is not None
+    assert space.space.efforts[0].rms == pytest.approx(plane.over.drives[0].rms, rel=1e-6)
