@@ -115,7 +115,7 @@ def takes(value: Schema) -> str:
         return f"[{', '.join(takes(v) for v in value['prefixItems'])}]"
     if value.get("type") == "array":
         least, most = value.get("minItems"), value.get("maxItems")
-        count = f"{least} to {most} " if most else ""
+        count = f"{f'{least} to' if least else 'up to'} {most} " if most else ""
         return f"list of {count}{takes(value['items'])}"
     if value.get("type") == "object":
         return f"by name: {takes(value['additionalProperties'])}"

@@ -112,6 +112,12 @@ def _resolved(directory: Path) -> Path:
     """Return the user's path with links resolved."""
     try:
         return directory.resolve()
+    except FileNotFoundError:  # only the current folder is asked for
+        raise InputError(
+            f"--out: {directory} would lie in the current folder, which no longer exists; change "
+            "to another folder",
+            code="no-current-folder",
+        ) from None
     except (OSError, RuntimeError):  # the latter of Python up to 3.12
         raise InputError(
             f"--out: {directory} is a link that leads back to itself", code="circular-link"

@@ -295,7 +295,7 @@ def bar_on_stderr(*columns: ProgressColumn, alone: bool, quiet: bool) -> Iterato
     from rich.progress import Progress as Bar
 
     stderr = Console(stderr=True)
-    silent = quiet or not stderr.is_terminal
+    silent = quiet or not stderr.file.isatty()  # Console believes FORCE_COLOR, too
     with Bar(*columns, console=stderr, transient=True, disable=silent, auto_refresh=alone) as bar:
         yield bar
 

@@ -220,7 +220,7 @@ def progress(quiet: bool, alone: bool = True) -> Iterator[Report]:
         rich.TimeRemainingColumn(elapsed_when_finished=False),
     )
     with bar_on_stderr(*columns, alone=alone, quiet=quiet) as bar:
-        lines = _Lines(quiet or bar.console.is_terminal)
+        lines = _Lines(quiet or not bar.disable)
         task = bar.add_task("designs", total=None)
 
         def report(count: int, total: int) -> None:

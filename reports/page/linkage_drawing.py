@@ -192,9 +192,8 @@ def _labels(
     sizes = np.array([[wide * len(text), high] for text in texts])
     lines = [[points[a], points[b]] for joints in skeleton.links for a, b in sides(joints)]
     lines += [list(panel.pixels(ends[at.k])) for ends in skeleton.slides.values()]
-    if not skeleton.flat:
-        lines += [[arrow.tail, arrow.tip] for arrow in arrows]
-        lines += [support_foot(points[name], panel.symbol) for name in skeleton.ground]
+    lines += [[arrow.tail, arrow.tip] for arrow in arrows]
+    lines += [support_foot(points[name], panel.symbol) for name in skeleton.ground]
     hidden = np.array(lines or [[where[0], where[0]]])[None]
     offsets = label_offsets(where[None], sizes, hidden, panel.symbol * LABEL_GAP, panel.size)
     for (x, y), (_, name, rest) in zip(where + offsets, told, strict=True):

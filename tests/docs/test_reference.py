@@ -64,3 +64,9 @@ def test_the_reference_has_type_unit_domain_default_and_description() -> None:
 def test_what_a_key_takes_in_words(table: type[StrictTable], key: str, words: str) -> None:
     properties: dict[str, Any] = table.model_json_schema()["properties"]
     assert takes(properties[key]) == words
+
+
+def test_list_without_a_least_length_states_the_most() -> None:
+    assert takes({"type": "array", "maxItems": 9, "items": {"dimension": "length"}}) == (
+        "list of up to 9 length"
+    )

@@ -14,7 +14,7 @@ from reports.data.overview import pin_lines
 from reports.data.results import Results
 from reports.data.skeleton import AppliedCouple, planar_skeleton
 from reports.format.drawing.projection import isometric, three_views
-from reports.page.linkage_drawing import draw_linkage
+from reports.page.linkage_drawing import LETTER, draw_linkage
 from reports.page.linkage_panel import Instant, Mark
 from reports.page.linkage_parts import ARROW_CLEARANCE, ARROW_LENGTHS, AXIS_REACH
 from reports.page.overview import overview_part
@@ -104,6 +104,26 @@ def test_arrows_are_as_long_as_their_forces(results: Results) -> None:
     texts = ["".join(t.itertext()) for t in drawing.iter(f"{SVG}text")]
     assert texts == ["<J>", "200.0 N", "100.0 N"]
     assert drawing.get("role") == "img"
+
+
+def test_no_label_hides_its_arrow(results: Results) -> None:
+    """The size of a force that points up and to the right is not above and to the right of its
+    tail.
+    """
+    motion = replace(results.motion[0], time=None)
+    place = motion.joint_position[:1, 0]
+    body = next(
+        b for b, on in zip(motion.bodies, motion.links, strict=True) if motion.joints[0] in on
+    )
+    force = AppliedForce(body, place, np.array([[100.0, 100.0]]))
+    at = Instant(planar_skeleton(replace(motion, applied=(force,))), 0)
+    drawing = ET.fromstring(draw_linkage(at, [], "x", "N"))
+    (arrow,) = (numbers(path, "d") for path in of_class(drawing, "load"))
+    (label,) = of_class(drawing, "force")
+    middle = np.array([float(label.get(k, "nan")) for k in ("x", "y")]) - [0.0, 5.0]
+    along = np.linspace(arrow[:2], arrow[2:], 20)
+    half = 0.5 * np.array([LETTER[0] * len("141.4 N"), LETTER[1]])
+    assert not (np.abs(along - middle) < half).all(axis=1).any()
 
 
 def test_a_side_force_is_a_ring_with_its_tip_or_its_tail(results: Results) -> None:

@@ -20,6 +20,7 @@ from reports.data.motion import BodyMotion
 from reports.data.skeleton import Skeleton
 
 NEGLIGIBLE_RANGE = 1e-3  # of the largest force of the case: a smaller range is not reported
+ROUND_OFF = 1e-12  # of the largest of all drives
 MAX_BODY_LINES = 200_000  # of the table of bodies, 50 MB; a longer one is not written
 NO_TABLES = "In space: no tables of transmission angles and of sliding on pins are written."
 
@@ -56,6 +57,8 @@ def drives(
     efforts: of every drive over a whole motion. frictionless: the same without friction.
     """
     (force, power), (kinetic, potential) = exerted, energies
+    if times is None:
+        force, power = _without_round_off(force), _without_round_off(power)
     tables = []
     for k, (name, slides) in enumerate(moved):
         effort = efforts[k] if efforts else None
@@ -79,6 +82,12 @@ def drives(
             )
         )
     return tables
+
+
+def _without_round_off(values: Floats) -> Floats:
+    """Return values of all drives at one instant, with zero where one is round-off of another."""
+    least = ROUND_OFF * np.abs(values).max(initial=0.0)
+    return np.where(np.abs(values) > least, values, 0.0)
 
 
 def _names(study: Study) -> list[tuple[str, bool]]:

@@ -1,4 +1,6 @@
-"""Stated weights of floating pins compared with those of their profiles."""
+"""Stated weights: those of floating pins compared with those of their profiles, and those in a
+gravity that is not the earth's.
+"""
 
 from __future__ import annotations
 
@@ -11,19 +13,29 @@ from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 
 STATED_WEIGHT_TOLERANCE = 0.02  # of the profile's weight
+GRAVITY_TOLERANCE = 0.02  # of the standard one
 
 
 def weight_warnings(study: Study) -> list[str]:
-    """Return a warning for every joint whose stated weight is not that of its pin's shape.
+    """Return a warning for every joint whose stated weight is not that of its pin's shape, and one
+    where weights are stated in another gravity than the earth's.
 
-    It gives both weights, and the one that is used. Weights that are not used at all have a warning
-    too.
+    The former gives both weights, and the one that is used. Weights that are not used at all have a
+    warning too.
     """
     mechanism = study.table.mechanism
     if mechanism is None:
         return []
     gravity = math.hypot(*mechanism.gravity) or STANDARD_GRAVITY
     warnings = []
+    weighed = (one.weight for of in (mechanism.body, mechanism.joint) for one in of.values())
+    share = gravity / STANDARD_GRAVITY
+    if abs(share - 1.0) > GRAVITY_TOLERANCE and any(weight is not None for weight in weighed):
+        said = (
+            f"it is {share:.3g} times the standard one, and a stated weight is the one in this "
+            "gravity, so it does not change with it; for a load factor state mass instead of weight"
+        )
+        warnings.append(str(study.error(f"mechanism.gravity: {said}")))
     for name, joint in mechanism.joint.items():
         if joint.weight is not None:
             said = _idle(name, joint.fixed_in) or _differs(study, name, joint.weight, gravity)

@@ -155,7 +155,7 @@ class BodyTable(StrictTable):
     """A rigid body."""
 
     weight: Weight | None = None
-    """Weight. Give one of `weight`, `mass` or `bar`."""
+    """Weight in the gravity of the study. Give one of `weight`, `mass` or `bar`."""
     mass: Mass | None = None
     """Mass."""
     bar: BarTable | None = None

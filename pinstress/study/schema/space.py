@@ -177,7 +177,7 @@ class SpaceBodyTable(StrictTable):
     """A rigid body in space."""
 
     weight: Weight | None = None
-    """Weight. Give one of `weight`, `mass` or `bar`."""
+    """Weight in the gravity of the study. Give one of `weight`, `mass` or `bar`."""
     mass: Mass | None = None
     """Mass."""
     bar: SpaceBarTable | None = None

@@ -292,6 +292,15 @@ def test_a_link_that_the_user_names_leads_to_his_folder(tmp_path: Path) -> None:
     refused(tmp_path / "loop", "leads back to itself|Too many levels")
 
 
+def test_a_deleted_current_folder_is_named_as_the_cause(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "gone").mkdir()
+    monkeypatch.chdir(tmp_path / "gone")
+    (tmp_path / "gone").rmdir()
+    refused(Path("out"), "the current folder, which no longer exists")
+
+
 def test_results_json_alone_does_not_make_a_folder_ours(tmp_path: Path) -> None:
     """`--out .` where another program's results.json lies beside the study."""
     (tmp_path / "results.json").write_text('{"schema": "pinstress-results/2"}')

@@ -21,7 +21,7 @@ import pyvista
 from pinstress import load_study
 from pinstress.analysis.gather_fields import MAX_STILLS, instants
 from pinstress.cli.commands import run_command_line
-from pinstress.cli.run import console
+from pinstress.cli.run import bar_on_stderr, console
 from pinstress.study.model.pins import pin
 from tests.conftest import INCH
 from tests.support.each import each
@@ -99,6 +99,13 @@ def test_colour_and_progress_on_a_terminal_unless_they_are_not_wanted(tmp_path: 
     assert "safe" in plain
     assert "mesh" not in plain
     assert "Report: " not in plain
+
+
+def test_no_progress_in_a_pipe_whose_colours_are_forced(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As CI servers do."""
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    with bar_on_stderr(alone=False, quiet=False) as bar:
+        assert bar.disable
 
 
 def test_json_is_all_there_is_on_stdout(

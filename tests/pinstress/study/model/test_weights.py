@@ -89,3 +89,17 @@ mass = 1
     (warning,) = weight_warnings(load_study(path))
     assert "mechanism.joint.O.weight: pin O is fixed in ground" in warning
     assert "not used" in warning
+
+
+@each(("gravity", "warned"), [(386.0886, 0), (380, 0), (0, 0), (772.2, 1)])
+def test_weights_that_a_load_factor_in_gravity_does_not_change_are_told(
+    tmp_path: Path, gravity: float, warned: int
+) -> None:
+    """Masses would weigh twice as much in twice the gravity."""
+    path = tmp_path / "study.toml"
+    text = GEAR.replace('"grenier2008/', f'"{STUDIES}/grenier2008/')
+    assert "[0, -386.0886]" in text
+    path.write_text(text.replace("[0, -386.0886]", f"[0, -{gravity}]"), encoding="utf-8")
+    found = [one for one in weight_warnings(load_study(path)) if "mechanism.gravity" in one]
+    assert len(found) == warned
+    assert all("it is 2 times the standard one" in one for one in found)
