@@ -72,19 +72,21 @@ def _one_side(above: Floats, cells: Ints) -> tuple[Ints, sp.csr_matrix]:
     return np.concatenate(out), sp.vstack([sp.eye(len(above)), between], format="csr")
 
 
-def halved(points: Floats, cells: Ints, bent: float, long: float) -> tuple[Ints, sp.csr_matrix]:
+def halved(
+    points: Floats, cells: Ints, bent: float, long: float | Floats
+) -> tuple[Ints, sp.csr_matrix]:
     """Quadratic tetrahedra (M, 10), of which those with bent or long edges are divided into eight.
 
     What shows quadratic tetrahedra takes them as eight flat ones, linear on each. Of a coarse
     cylinder these lose 1 % of the area, and of the shear force 2 %.
     bent: least distance of the middle of an edge from its chord, of the chord's length.
-    long: least length, m.
+    long: least length, m, of all or of each (M,).
     Returns cells, and a matrix as `clipped`.
     """
     ends = points[cells[:, EDGES]]
     off = np.linalg.norm(points[cells[:, 4:]] - ends.mean(axis=2), axis=2)
     length = np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2)
-    chosen = ((off > bent * length) | (length > long)).any(axis=1)
+    chosen = (off > bent * length).any(axis=1) | (length.max(axis=1) > long)
     parents = cells[chosen]
     # Nodes of the eight are middles of two nodes of their parent, which neighbours share.
     pairs = np.sort(EIGHT_TETRAHEDRA[:, EDGES], axis=2)  # (8, 6, 2)

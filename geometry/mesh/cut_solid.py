@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from geometry.mesh.gmsh_session import MeshError, formula_size
+from geometry.mesh.gmsh_session import MeshError, failure, formula_size
 from geometry.mesh.revolve import revolve
 from geometry.shape.drill import Placed
 from geometry.shape.features import Cut, Off, outer_radius
@@ -138,7 +138,10 @@ def _round_bottom(gmsh: Any, tool: Entity, floor: float, cut: Flat | Slot) -> En
 
 
 def _round_mouths(gmsh: Any, body: list[Entity], hole: Hole, pin: Pin) -> list[Entity]:
-    """The body with the edges rounded at which a hole meets the outer surface."""
+    """The body with the edges rounded at which a hole meets the outer surface.
+
+    Raises: MeshError where gmsh cannot.
+    """
     tolerance, r = 10.0 * CURVE_TOLERANCE * pin.largest_diameter, outer_radius(pin, hole.z)
     placed, edges = hole.placed(pin, 4.0 * r), set()
     for _, face in gmsh.model.getBoundary(body, oriented=False):
@@ -147,9 +150,21 @@ def _round_mouths(gmsh: Any, body: list[Entity], hole: Hole, pin: Pin) -> list[E
             on_wall = np.abs(placed.local(x)[0] - hole.diameter / 2.0).max() < tolerance
             if on_wall and np.abs(np.hypot(x[:, 0], x[:, 1]) - r).max() < tolerance:
                 edges.add(int(edge))
-    entities = gmsh.model.occ.fillet([body[0][1]], sorted(edges), [hole.mouth_radius])
+    try:
+        entities = gmsh.model.occ.fillet([body[0][1]], sorted(edges), [hole.mouth_radius])
+    except Exception as error:  # gmsh raises Exception itself
+        raise _unrounded(pin, hole, str(error)) from None
     gmsh.model.occ.synchronize()
     return [(d, tag) for d, tag in entities if d == 3]
+
+
+def _unrounded(pin: Pin, hole: Hole, why: str) -> MeshError:
+    part = hole.mouth_radius / hole.diameter
+    return MeshError(
+        f"pin {pin.name}: gmsh cannot round the mouths of a hole to {part:.2g} of its diameter "
+        f"({why.rstrip('.')}); give a mouth_radius of 0.05 to 0.25 of the diameter, or a chamfer",
+        failure(why, "mouth-not-rounded"),
+    )
 
 
 def _along(gmsh: Any, curve: int) -> Floats:
@@ -190,7 +205,8 @@ def named_parts(
         if deviations[best] > MAX_CURVE_DEVIATION * size:
             raise MeshError(
                 f"pin {pin.name}: face {face} of gmsh's solid matches no surface of the pin; look "
-                "for surfaces that just touch",
+                "for surfaces that just touch, or for a mouth_radius above a quarter of its hole's "
+                "diameter",
                 "surface-unmatched",
             )
         named.setdefault(known[best][0], []).append(int(face))

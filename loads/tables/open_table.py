@@ -17,7 +17,6 @@ from loads.tables.grid import (
     Source,
     TableGrid,
     Unreadable,
-    grid_of,
     text_of,
 )
 from loads.tables.sent_files import stamp
@@ -61,14 +60,12 @@ def _open(path: Path, _: str, reading: FileReading) -> TableGrid:
     if content.startswith(PARQUET_MARK):
         return parquet_grid(source, content)
     if content.startswith(ZIP_MARK):
-        from loads.tables.workbook import workbook_rows
+        from loads.tables.workbook import workbook_grid
 
-        rows = workbook_rows(str(path), content, reading)
-    else:
-        if reading.sheet is not None:
-            raise TableError(f"{path}: is a text, which has no sheets; remove sheet", "no-sheets")
-        return text_grid(source, text_lines(source, content, reading.encoding), reading)
-    return grid_of(rows, reading.numbered)
+        return workbook_grid(str(path), content, reading)
+    if reading.sheet is not None:
+        raise TableError(f"{path}: is a text, which has no sheets; remove sheet", "no-sheets")
+    return text_grid(source, text_lines(source, content, reading.encoding), reading)
 
 
 @lru_cache(maxsize=1)

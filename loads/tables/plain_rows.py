@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from io import BytesIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +16,14 @@ from numpy.typing import NDArray
 MIN_PLAIN_ROWS = 64  # fewer are read as any others
 MAX_OTHER_ROWS = 10_000  # before them
 WITHOUT_NUMBERS = re.compile(
-    rb'<row r=""(?: spans=":")?(?: x14ac:dyDescent="")?>(?:<c r="[A-Z]{1,3}"(?: s="")?(?: t="n")?>'
-    rb"<v></v></c>)+</row>"
+    rb'<row r=""(?: [A-Za-vx-z:]+="[a-z:]*")*>'
+    rb'(?:<c r="[A-Z]{1,3}"(?: s="")?(?: t="n")?><v></v></c>)+</row>'
 )
-CELL_PATTERN = re.compile(rb'<c r="([A-Z]{1,3})"( s="")?')
+CELL_PATTERN = re.compile(rb'<c r="([A-Z]{1,3})(")( s=")?')
 SIGNS = b"0123456789.-+"
-TO_BLANKS = bytes(c if c in SIGNS + b"eE" else ord(" ") for c in range(256))
+# Of XML to lines of fields: quotes and colons end a field, and a w of `row` ends a line.
+TO_FIELDS = bytes.maketrans(b'":w', b",,\n")
+WITHOUT_FIELDS = bytes(c for c in range(256) if c not in SIGNS + b'eE":w')
 
 
 @dataclass(frozen=True)
@@ -64,7 +67,7 @@ def _skeleton(text: bytes) -> bytes:
     bare = text.translate(None, SIGNS)
     for exponent in (b"E", b"e"):
         bare = bare.replace(b"<v>" + exponent + b"</v>", b"<v></v>")
-    return bare.replace(b"xac:", b"x14ac:")
+    return bare
 
 
 def _repeated(skeleton: bytes, row: bytes) -> int:
@@ -77,31 +80,47 @@ def _repeated(skeleton: bytes, row: bytes) -> int:
 
 def _rows(text: bytes, row: bytes, count: int) -> PlainRows | None:
     """The numbers of rows; None where they are not what the skeleton says."""
-    cells = CELL_PATTERN.findall(row)
-    names = [name for name, _ in cells]
+    import pyarrow as pa
+    from pyarrow import csv
+
+    cells = list(CELL_PATTERN.finditer(row))
+    names = [cell[1] for cell in cells]
     for name in sorted((name for name in names if b"E" in name), key=len, reverse=True):
-        text = text.replace(b'<c r="' + name, b" ")  # else like an exponent
-    text = text.replace(b"x14ac:dyDescent", b" ")
-    words = text.translate(TO_BLANKS).decode("ascii").split()
-    spans, descent = 2 * (b"spans" in row), b"dyDescent" in row
-    first = 1 + spans + descent
-    widths = [2 + bool(style) for _, style in cells]
-    if len(words) != count * (first + sum(widths)) or len(set(names)) < len(names):
-        return None
-    at, width = first + np.cumsum([0, *widths]), first + sum(widths)
-    places = words[::width]
-    if any(words[i::width] != places for i in at[:-1].tolist()):
-        return None
+        text = text.replace(b'<c r="' + name, b'<c r="')  # else like an exponent
+    text = text.translate(TO_FIELDS, WITHOUT_FIELDS)
+
+    def field(end: int) -> str:
+        separators = row.count(b'"', 0, end) + row.count(b":", 0, end)
+        return f"f{separators}"
+
+    rows = field(row.index(b'"') + 1)
+    places = [field(cell.end(1)) for cell in cells]
+    styles = [field(cell.end(3)) if cell[3] else "" for cell in cells]
+    values = [field(row.index(b"<v>", cell.end())) for cell in cells]
+    whole = [rows, *places, *filter(None, styles)]
+    types = {**dict.fromkeys(whole, pa.int64()), **dict.fromkeys(values, pa.float64())}
     try:
-        numbers = np.array(list(map(int, places)))
-        values = [np.array(list(map(float, words[i - 1 :: width]))) for i in at[1:].tolist()]
-        styles = [
-            frozenset(map(int, set(words[i + 1 :: width]))) if style else frozenset[int]()
-            for i, (_, style) in zip(at[:-1].tolist(), cells, strict=True)
-        ]
-    except ValueError:
+        table = csv.read_csv(
+            BytesIO(text),
+            csv.ReadOptions(use_threads=False, autogenerate_column_names=True),
+            csv.ParseOptions(quote_char=False),
+            csv.ConvertOptions(
+                column_types=types, include_columns=list(types), null_values=list[str]()
+            ),
+        )
+    except pa.ArrowInvalid:
+        return None
+    found = {name: table[name].to_numpy() for name in types}
+    numbers = found[rows]
+    if len(numbers) != count or len(set(names)) < len(names):
+        return None
+    if any(not np.array_equal(found[name], numbers) for name in places):
         return None
     if numbers[0] < 1 or (np.diff(numbers) <= 0).any():
         return None
-    columns = tuple(name.decode() for name in names)
-    return PlainRows(numbers, columns, np.stack(values, axis=1), tuple(styles))
+    return PlainRows(
+        numbers,
+        tuple(name.decode() for name in names),
+        np.stack([found[name] for name in values], axis=1),
+        tuple(frozenset(found[name].tolist() if name else ()) for name in styles),
+    )

@@ -12,13 +12,27 @@ import re
 import zipfile
 import zlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from io import BytesIO
 from posixpath import join, normpath
 from xml.parsers import expat
 
+import numpy as np
+from numpy.typing import NDArray
+
 from loads.tables.csv_table import MAX_COLUMNS, MAX_SHOWN_CHARACTERS, TableError
-from loads.tables.grid import Cell, FileReading, Rows, Source, Unreadable, letters
+from loads.tables.grid import (
+    MAX_TABLE_ROWS,
+    Cell,
+    Column,
+    FileReading,
+    Rows,
+    Source,
+    TableGrid,
+    Unreadable,
+    grid_of,
+    letters,
+)
 from loads.tables.plain_rows import PlainRows, split
 from loads.tables.regular_file import MB
 from loads.tables.text_rows import COMMENT_MARKS
@@ -45,8 +59,8 @@ class _NotAWorkbook(Exception):
     """A file is not a workbook; the message says why."""
 
 
-def workbook_rows(file: str, content: bytes, reading: FileReading) -> Rows:
-    """The rows of a sheet of a workbook. Raises: TableError for a file that is none."""
+def workbook_grid(file: str, content: bytes, reading: FileReading) -> TableGrid:
+    """The table in a sheet of a workbook. Raises: TableError for a file that is none."""
     try:
         with zipfile.ZipFile(BytesIO(content)) as archive:
             book = _Book(archive)
@@ -67,7 +81,7 @@ def workbook_rows(file: str, content: bytes, reading: FileReading) -> Rows:
             "each has its own text or number",
             "merged-cells",
         )
-    return sheet.rows(source, reading.decimal == ",")
+    return sheet.grid(source, reading)
 
 
 def _sheet_name(file: str, sheets: Mapping[str, str], wanted: str | None) -> str:
@@ -259,33 +273,54 @@ class _Sheet:
         inside = max(columns) < MAX_COLUMNS and plain.places[-1] <= MAX_SHEET_ROWS
         return inside and not refused and int(plain.places[0]) >= self.first
 
-    def rows(self, source: Source, comma: bool) -> Rows:
-        """The rows with cells that are no comments."""
-        places, rows = list[int](), list[Sequence[Cell]]()
+    def grid(self, source: Source, reading: FileReading) -> TableGrid:
+        """The table. Raises: TableError."""
         plain = self.plain
         columns = [] if plain is None else list(map(_index, plain.columns))
-        width = max((max(row) + 1 for row in (*self.cells.values(), columns) if row), default=0)
         count = len(self.cells) + (0 if plain is None else len(plain.places))
+        width = max((max(row) + 1 for row in (*self.cells.values(), columns) if row), default=0)
         if width * count > MAX_SHEET_CELLS:
             raise TableError(
                 f"{source.file}: {count:,} rows of {width} columns are more than "
                 f"{MAX_SHEET_CELLS:,} cells, the limit; save fewer, or as text",
                 "too-many-rows",
             )
+        if plain is None:
+            return grid_of(self._rows(source, reading, width), reading.numbered)
+        numbers = dict(zip(columns, plain.values.T, strict=True))
+        blank = [""] * len(plain.places)
+        body: list[Column] = [numbers.get(k, blank) for k in range(width)]
+        head = grid_of(self._rows(source, reading, width, plain.places[:2], body), reading.numbered)
+        if len(head.places) == 2 and len(plain.places) <= MAX_TABLE_ROWS:  # all others are above
+            return replace(head, columns=tuple(body), places=plain.places.tolist())
+        return grid_of(self._rows(source, reading, width, plain.places, body), reading.numbered)
+
+    def _rows(
+        self,
+        source: Source,
+        reading: FileReading,
+        width: int,
+        places: Sequence[int] | NDArray[np.int64] = (),
+        body: Sequence[Column] = (),
+    ) -> Rows:
+        """The rows with cells that are no comments, and below them the first of the rows of
+        numbers.
+
+        places: of these. body: all columns of numbers.
+        """
+        out, rows = list[int](), list[Sequence[Cell]]()
         for place in sorted(self.cells):
             row = self.cells[place]
             cells = [row.get(k, "") for k in range(width)]
             first = next((c for c in cells if c != ""), "")
             if first == "" or (isinstance(first, str) and first.startswith(COMMENT_MARKS)):
                 continue
-            places.append(place)
+            out.append(place)
             rows.append(cells)
-        if plain is not None:
-            places += plain.places.tolist()
-            numbers = dict(zip(columns, plain.values.T.tolist(), strict=True))
-            blank = [""] * len(plain.places)
-            rows += zip(*(numbers.get(k, blank) for k in range(width)), strict=True)
-        return Rows(source, places, list(rows), comma)
+        count = len(places)
+        some = (c[:count].tolist() if isinstance(c, np.ndarray) else c[:count] for c in body)
+        rows += zip(*some, strict=True)
+        return Rows(source, [*out, *map(int, places)], rows, reading.decimal == ",")
 
     def _start(self, name: str, values: Attributes) -> None:
         if name == "c":

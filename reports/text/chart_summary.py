@@ -191,10 +191,11 @@ def reference_line(chart: Chart) -> str:
     r = chart.reference
     charted = [p.dofs for p in chart.points if p.model == r.model and p.dofs]
     more = f", {engineering(r.dofs / max(charted), 2)} times the finest charted" if charted else ""
+    smaller = any(p.error is not None and p.error < r.error for p in chart.points)
     return (
         f"Reference: {r.model} model, {r.element}, {r.dofs:,} unknowns{more}: "
         f"{engineering(r.max_von_mises, 5)} {chart.stress_unit}, with an error of "
-        f"{percent(r.error)}."
+        f"{percent(r.error)}{', which smaller errors above may have as well' * smaller}."
     )
 
 

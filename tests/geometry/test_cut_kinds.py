@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from geometry import Bottom, Cut, CutPin, Flat, GeometryError, Hole, Passage, Pin, Segment, Slot
+from geometry.mesh.gmsh_session import MeshError
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from pinbase.arrays import Floats
 from tests.support.each import each
@@ -135,6 +136,14 @@ def test_the_volume_of_a_cut(name: str) -> None:
     # OpenCASCADE's volume of a body with an oblique hole, or one beside the axis, is 2e-6 off.
     aslant = 3e-6 * BAR.volume if isinstance(cut, Hole) and cut.aslant else 0.0
     assert BAR.volume - made(cut).volume == pytest.approx(expected, rel=2e-5, abs=aslant)
+
+
+def test_mouths_that_gmsh_cannot_round_are_named() -> None:
+    """It said "a dimension that is very small compared with its neighbours"."""
+    shaft = Pin("B", (Segment(0.08, 0.02),))
+    pin = CutPin.of(shaft, (Hole(0.02, 0.004, math.pi / 2.0, mouth_radius=0.0015),))
+    with raises(MeshError, "mouth-not-rounded", "to 0.38 of its diameter", "or a chamfer"):
+        solid_mesh(pin, MeshSize(2.0))
 
 
 def test_a_rounded_mouth_takes_what_lies_outside_of_its_circles() -> None:

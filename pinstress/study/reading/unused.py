@@ -19,14 +19,17 @@ def unused(table: StudyTable) -> Iterator[str]:
         for name, pin in table.pin.items()
         for connection, lug in pin.lug.items()
     }
+    given = table.lug_defaults or LugTable()
     if table.analysis.joints == "prescribed":
-        for key, lug in lugs.items():
-            if lug.axial is not None:
-                yield (
-                    f'{key}.axial: has no effect with analysis.joints = "prescribed", where forces '
-                    "along the axis act on the bands of the links; use other joints, or remove it"
-                )
+        keys = ["lug_defaults"] if lugs and given.axial is not None else []
+        keys += [key for key, lug in lugs.items() if lug.axial not in (None, given.axial)]
+        for key in keys:
+            yield (
+                f'{key}.axial: has no effect with analysis.joints = "prescribed", where forces '
+                "along the axis act on the bands of the links; use other joints, or remove it"
+            )
     yield from _of_codes(table)
+    yield from _of_fillets(table)
     for key, lug in lugs.items():
         low, high = lug.range.clearance or (-inf, inf)
         if lug.clearance is not None and not low <= lug.clearance <= high:
@@ -74,3 +77,19 @@ def _of_codes(table: StudyTable) -> Iterator[str]:
             "it; add that to analysis.code, or state fitting_factor, which multiplies the loads of "
             "all checks"
         )
+
+
+def _of_fillets(table: StudyTable) -> Iterator[str]:
+    """Yield a sentence on every fillet of a segment whose far end has no corner."""
+    for name, pin in table.pin.items():
+        segments = pin.profile or []
+        for k, segment in enumerate(segments):
+            after = segments[k + 1] if k + 1 < len(segments) else None
+            both = {*segment.diameters, *(after.diameters if after else ())}
+            if segment.fillet and (after is None or len(both) == 1):
+                where = "nothing follows it" if after is None else "the next has its diameter"
+                yield (
+                    f"pin.{key_part(name)}.profile[{k + 1}].fillet: has no effect, because it is "
+                    f"at the far end of the segment, where {where}; state it of the segment before "
+                    "the corner, or remove it"
+                )

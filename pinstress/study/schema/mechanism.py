@@ -140,9 +140,10 @@ class BarTable(StrictTable):
     _one_section = exactly_one("either diameter or section = [depth, width]", "diameter", "section")
 
 
-def require_one_mass(mass: object, weight: object, bar: object, centre: object) -> None:
-    """Raise ArgumentError unless one thing gives the mass of a body, and one its centre."""
-    require_one("one of weight, mass or bar", mass, weight, bar)
+def require_single_mass(mass: object, weight: object, bar: object, centre: object) -> None:
+    """Raise ArgumentError where two things give the mass of a body, or its centre."""
+    if [mass, weight, bar].count(None) < 2:
+        raise ArgumentError("give one of weight, mass or bar", "give-one")
     if bar is not None and centre is not None:
         raise ArgumentError(
             "centre cannot be used with bar, whose centre is its middle; give mass or weight "
@@ -155,7 +156,8 @@ class BodyTable(StrictTable):
     """A rigid body."""
 
     weight: Weight | None = None
-    """Weight in the gravity of the study. Give one of `weight`, `mass` or `bar`."""
+    """Weight in the gravity of the study. Give one of `weight`, `mass` or `bar`, unless gravity is
+    off and all cases are static."""
     mass: Mass | None = None
     """Mass."""
     bar: BarTable | None = None
@@ -165,13 +167,13 @@ class BodyTable(StrictTable):
     two."""
     inertia: Inertia | None = None
     """Moment of inertia about the centre of mass. Default: that of the bar; without a bar the body
-    is a particle, which has one connection or slides on the ground."""
+    is a particle, which has one connection or slides on the ground. Static cases need none."""
     welded_to: str | None = None
     """Body, or "ground", to which it is fixed. Forces in the weld are not computed."""
 
     @model_validator(mode="after")
     def _one_mass(self) -> "BodyTable":
-        require_one_mass(self.mass, self.weight, self.bar, self.centre)
+        require_single_mass(self.mass, self.weight, self.bar, self.centre)
         return self
 
 

@@ -12,7 +12,7 @@ from loads.space.linkage import RIGHT_ANGLE_TOLERANCE
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.drives import LawTable, require_few_turns
 from pinstress.study.schema.forces import LineLawTable, TorsionLawTable
-from pinstress.study.schema.mechanism import BarTable, Ratios, require_one_mass
+from pinstress.study.schema.mechanism import BarTable, Ratios, require_single_mass
 from pinstress.study.schema.types import (
     BY_NAME_OR_PLACE,
     Acceleration,
@@ -177,7 +177,8 @@ class SpaceBodyTable(StrictTable):
     """A rigid body in space."""
 
     weight: Weight | None = None
-    """Weight in the gravity of the study. Give one of `weight`, `mass` or `bar`."""
+    """Weight in the gravity of the study. Give one of `weight`, `mass` or `bar`, unless gravity is
+    off and all cases are static."""
     mass: Mass | None = None
     """Mass."""
     bar: SpaceBarTable | None = None
@@ -206,7 +207,7 @@ class SpaceBodyTable(StrictTable):
 
     @model_validator(mode="after")
     def _one_mass(self) -> "SpaceBodyTable":
-        require_one_mass(self.mass, self.weight, self.bar, self.centre)
+        require_single_mass(self.mass, self.weight, self.bar, self.centre)
         if self.inertia is not None and len(self.inertia) not in (3, 6):
             raise ArgumentError(
                 "inertia: give 3 moments, [xx, yy, zz], or 6 numbers, [xx, yy, zz, xy, xz, yz]",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import zipfile
 from collections.abc import Callable
 from datetime import datetime
@@ -15,6 +16,7 @@ import xlsxwriter
 
 from loads import FileReading, Layout, Reactions, TableError, read_reactions
 from loads.tables import plain_rows, workbook
+from loads.tables.grid import text_of
 from tests.support.each import each
 from tests.support.errors import raises
 
@@ -211,8 +213,9 @@ def test_rows_of_numbers_are_read_as_others_are(
     for reader in (plain_rows.split, lambda content: (content, None)):
         monkeypatch.setattr("loads.tables.workbook.split", reader)
         try:
-            rows = workbook.workbook_rows("t.xlsx", path.read_bytes(), FileReading())
-            outcomes.append((rows.places, [list(map(repr, row)) for row in rows.cells]))
+            grid = workbook.workbook_grid("t.xlsx", path.read_bytes(), FileReading())
+            cells = [list(map(text_of, column)) for column in grid.columns]
+            outcomes.append((grid.names, grid.places, cells))
         except TableError as error:
             outcomes.append(str(error))
         monkeypatch.undo()
@@ -243,3 +246,26 @@ def test_rows_of_numbers_take_no_events(tmp_path: Path) -> None:
     assert plain is not None
     np.testing.assert_allclose(plain.values, rows[1:], rtol=1e-15)  # written with 16 digits
     assert [bool(s) for s in plain.styles] == [k == 4 for k in range(41)]
+
+    excel = r'\1 spans="1:41" x14ac:dyDescent="0.25">'
+    office = r'\1 customFormat="false" ht="12.8" hidden="false" outlineLevel="0">'
+    for attributes in (excel, office):
+        changed = with_part(
+            tmp_path / "s.xlsx",
+            SHEET,
+            lambda xml, to=attributes: re.sub('(<row r="[0-9]+")[^>]*>', to, xml),  # type: ignore[misc]
+        )
+        _, again = parts(changed)
+        assert again is not None
+        assert again.values.tolist() == plain.values.tolist()
+        assert again.styles == plain.styles
+
+
+def test_columns_of_numbers_stay_arrays(tmp_path: Path) -> None:
+    """The numbers of a long sheet are not taken cell by cell; columns without any are empty."""
+    rows = [[row[0], "", *row[1:]] for row in many(3)]
+    path = written(tmp_path / "t.xlsx", rows=rows)
+    grid = workbook.workbook_grid("t.xlsx", path.read_bytes(), FileReading())
+    kinds = [isinstance(column, np.ndarray) for column in grid.columns]
+    assert kinds == [True, False, True, True, True]
+    assert set(grid.columns[1]) == {""}

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -33,7 +33,13 @@ from pinstress.study.model.mechanism.drives import drive_table, mechanism_of
 from pinstress.study.model.mechanism.fit import Fitting, reach
 from pinstress.study.model.mechanism.gears import gears, rack
 from pinstress.study.model.mechanism.joint_layout import Point, places
-from pinstress.study.model.mechanism.masses import STANDARD_GRAVITY, friction_circle, pin_mass
+from pinstress.study.model.mechanism.masses import (
+    STANDARD_GRAVITY,
+    at_rest,
+    body_mass,
+    friction_circle,
+    pin_mass,
+)
 from pinstress.study.model.mechanism.space import (
     determined_in_space,
     space_contradictions,
@@ -166,14 +172,17 @@ def fit_offer(study: Study, error: CodedError) -> str:
 # where it has that many joints, as more would not help
 OF_A_PART = {
     "duplicate-name", "reserved-name", "fixed-and-turning", "friction-floats", "same-body",
-    "same-joint", "missing-inertia",
+    "same-joint", "missing-inertia", "give-one",
 }  # fmt: skip
+OF_MASSES = {"particle", "missing-inertia", "give-one"}  # which static cases may not need
 OF_A_BODY = {"missing-centre": 3, "particle": 2}
 
 
 def _certain(error: LinkageError, mechanism: MechanismTable, damage: Damage) -> bool:
     """Return whether an error cannot follow from what is missing of the mechanism."""
     part = ("mechanism", *error.at[:2])
+    if error.code in OF_MASSES and damage.touches(("case",)) and not _moving(damage.raw):
+        return False
     if not damage.touches(("mechanism",)):
         return True
     if error.code == "too-few-connections":
@@ -184,6 +193,14 @@ def _certain(error: LinkageError, mechanism: MechanismTable, damage: Damage) -> 
         joints = joints_on(mechanism, str(error.at[1]))
         return len(joints) >= OF_A_BODY[error.code] or not damage.touches(("mechanism", "joint"))
     return error.code in OF_A_PART
+
+
+def _moving(raw: Mapping[str, Any]) -> bool:
+    """Return whether a study, as it is written, has a case in which masses count."""
+    cases = raw.get("case")
+    listed = cases.values() if isinstance(cases, dict) else ()
+    kinds = {case.get("kind") for case in listed if isinstance(case, dict)}
+    return not kinds.isdisjoint({"motion", "instant", "drop", "ground"})
 
 
 def _wrong(errors: Iterable[LinkageError]) -> list[Wrong]:
@@ -238,7 +255,7 @@ def _assembled(study: Study, drawing: Drawing) -> Linkage | list[LinkageError]:
                 parts += [] if instead is None else [instead(one)]
         return tuple(parts)
 
-    bodies = each(lambda b: _body(drawing, *b, g), mechanism.body.items(), _body_anywhere)
+    bodies = each(lambda b: _body(study, drawing, *b), mechanism.body.items(), _body_anywhere)
     bodies = tuple(replace(b, welded=mechanism.body[b.name].welded_to) for b in bodies)
     jointless = {error.at[1] for error in wrong if not joints_on(mechanism, str(error.at[1]))}
     each(lambda s: _require_on_slider(drawing, *s), mechanism.slider.items())
@@ -269,13 +286,13 @@ def _linkage(
     turns: tuple[Turn, ...],
     teeth: tuple[Teeth, ...],
 ) -> Linkage:
-    """Return the linkage of these parts.
+    """Return the linkage of these parts; at rest, bodies need no inertia.
 
     Raises: LinkageError where they contradict each other.
     """
     mechanism = drawing.mechanism
-    return Linkage(
-        bodies=bodies,
+    make = partial(
+        Linkage,
         joints=tuple(
             Joint(
                 name,
@@ -300,6 +317,15 @@ def _linkage(
         ),
         parallel=tuple(_parallel(s) for s in mechanism.sharing if s.parallel is not None),
         teeth=teeth,
+    )
+    try:
+        return make(bodies=bodies)
+    except LinkageError as error:
+        if not at_rest(study):
+            raise
+        lacking = {e.at[1] for e in error.each if e.code in OF_MASSES}
+    return make(
+        bodies=tuple(replace(b, inertia=0.0) if b.name in lacking else b for b in bodies),
     )
 
 
@@ -366,7 +392,7 @@ def _direction(line: tuple[str, str], at: dict[str, Point]) -> float:
     return math.atan2(y2 - y1, x2 - x1)
 
 
-def _body(drawing: Drawing, name: str, b: BodyTable, g: float) -> Body:
+def _body(study: Study, drawing: Drawing, name: str, b: BodyTable) -> Body:
     at = drawing.at
     if b.bar is not None:
         (x1, y1), (x2, y2) = (at[j] for j in b.bar.joints)
@@ -377,11 +403,11 @@ def _body(drawing: Drawing, name: str, b: BodyTable, g: float) -> Body:
             mass, inertia = round_bar(length, b.bar.diameter or 0.0, b.bar.density)
         middle = (0.5 * (x1 + x2), 0.5 * (y1 + y2))
         return Body(name, mass, middle, inertia if b.inertia is None else b.inertia)
-    mass = b.mass if b.mass is not None else (b.weight or 0.0) / g
+    mass = body_mass(study, name, b, float(np.hypot(*drawing.mechanism.gravity)))
     centre = b.centre
     if centre is None:
         on = [at[key] for key in joints_on(drawing.mechanism, name)]
-        if len(on) not in (1, 2):
+        if not on or (len(on) > 2 and mass):
             raise LinkageError(
                 f"body {name}: a body with {len(on)} joints needs a centre = [x, y]",
                 "missing-centre",

@@ -1,11 +1,16 @@
-"""Masses of floating pins, and friction circles, in a plane and in space."""
+"""Masses of bodies and of floating pins, and friction circles, in a plane and in space."""
 
 from __future__ import annotations
 
 import math
 
+from loads import LinkageError
 from pinstress.study.model.pins import pin
+from pinstress.study.reading.damage import NO_CASE
 from pinstress.study.reading.file import Study
+from pinstress.study.schema.cases import GivenCase, StaticCase
+from pinstress.study.schema.mechanism import BodyTable
+from pinstress.study.schema.space import SpaceBodyTable
 
 STANDARD_GRAVITY = 9.80665
 
@@ -17,6 +22,30 @@ def friction_circle(friction: float | None, diameter: float | None) -> float:
     """
     mu = friction or 0.0
     return 0.5 * (diameter or 0.0) * mu / math.hypot(1.0, mu)
+
+
+def at_rest(study: Study) -> bool:
+    """Return whether all cases of a study's mechanism are static, so that no inertia counts."""
+    cases = [case for case in study.table.case.values() if not isinstance(case, GivenCase)]
+    still = all(isinstance(case, StaticCase) and case.ground_motion is None for case in cases)
+    return bool(cases) and still and NO_CASE not in study.table.case
+
+
+def body_mass(study: Study, name: str, body: BodyTable | SpaceBodyTable, gravity: float) -> float:
+    """Return the mass of a body without a bar; zero where it is not stated and does not count.
+
+    gravity: its amount, m/s^2; 0 without.
+
+    Raises: LinkageError where it counts.
+    """
+    if body.mass is not None:
+        return body.mass
+    if body.weight is not None:
+        return body.weight / (gravity or STANDARD_GRAVITY)
+    if gravity or not at_rest(study):
+        text = f"body {name}: give one of weight, mass or bar"
+        raise LinkageError(text, "give-one", ("body", name))
+    return 0.0
 
 
 def pin_mass(study: Study, joint: str, weight: float | None, gravity: float) -> float:

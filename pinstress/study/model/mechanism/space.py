@@ -30,7 +30,12 @@ from pinbase.arrays import Floats
 from pinbase.keys import key_part
 from pinstress.study.model.clevis import middle_of
 from pinstress.study.model.mechanism.drives import mechanism_of
-from pinstress.study.model.mechanism.masses import STANDARD_GRAVITY, friction_circle, pin_mass
+from pinstress.study.model.mechanism.masses import (
+    STANDARD_GRAVITY,
+    body_mass,
+    friction_circle,
+    pin_mass,
+)
 from pinstress.study.model.pins import pin
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.file import Study
@@ -80,7 +85,7 @@ def space_contradictions(study: Study) -> tuple[SpaceLinkage | None, list[Wrong]
     bodies, joints = list[RigidBody](), list[SpaceJoint]()
     for name, body in mechanism.body.items():
         try:
-            bodies.append(_body(mechanism, name, body, g))
+            bodies.append(_body(study, mechanism, name, body))
         except LinkageError as error:
             wrong.append(error)
     for name, joint in mechanism.joint.items():
@@ -212,14 +217,14 @@ def _joints(name: str, table: SpaceJointTable, bands: dict[str, float]) -> Itera
         )
 
 
-def _body(mechanism: SpaceMechanismTable, name: str, b: SpaceBodyTable, g: float) -> RigidBody:
+def _body(study: Study, mechanism: SpaceMechanismTable, name: str, b: SpaceBodyTable) -> RigidBody:
     stated = None if b.inertia is None else _tensor(b.inertia)
     if b.bar is not None:
         first, second = (np.array(mechanism.joint[j].at) for j in b.bar.joints)
         mass, inertia = _bar(name, b.bar, second - first)
         centre: Vector = tuple((0.5 * (first + second)).tolist())
         return RigidBody(name, mass, centre, inertia if stated is None else stated)
-    mass = b.mass if b.mass is not None else (b.weight or 0.0) / g
+    mass = body_mass(study, name, b, math.hypot(*mechanism.gravity))
     middle = b.centre
     if middle is None:
         on = [
@@ -227,7 +232,7 @@ def _body(mechanism: SpaceMechanismTable, name: str, b: SpaceBodyTable, g: float
             for joint in mechanism.joint.values()
             if name in (joint.fixed_in, *joint.connections.values())
         ]
-        if len(on) not in (1, 2):
+        if not on or (len(on) > 2 and mass):
             raise LinkageError(
                 f"body {name}: a body with {len(on)} joints needs a centre = [x, y, z]",
                 "missing-centre",

@@ -99,6 +99,15 @@ def test_a_reference_only_somewhat_finer_is_told_as_that(made_up: Chart) -> None
     assert ", 1.5 times the finest charted: " in reference_line(replace(made_up, reference=near))
 
 
+def test_errors_below_that_of_the_reference_are_told_to_be_unknown(made_up: Chart) -> None:
+    """Local solids had errors of 0.03 % by a reference with one of 0.13 %."""
+    least = min(point.error for point in made_up.points if point.error is not None)
+    for factor, told in ((0.5, False), (2.0, True)):
+        coarse = replace(made_up.reference, error=factor * least)
+        line = reference_line(replace(made_up, reference=coarse))
+        assert ("smaller errors above may have as well" in line) == told
+
+
 def test_the_mesh_on_which_auto_ends_is_marked(plan: ChartPlan) -> None:
     """Errors of second order on meshes finer by the root of 2 are known to 1.25 times themselves
     from the third on, where that is 0.63 %, so auto ends there for 5 %; for 0.2 % on the fifth, to

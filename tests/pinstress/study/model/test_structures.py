@@ -12,6 +12,7 @@ from reports.files import write_loads
 from reports.text.loads import remarks
 from reports.text.loads_summary import load_parts
 from tests.support.described import describe
+from tests.support.each import each
 from tests.support.errors import raises
 
 ARCH = """
@@ -51,6 +52,7 @@ body = "left"
 at = [2, 2.5]
 force = [0, -1200]
 """
+WITHOUT_MASS = "mass = 0\ninertia = 0\n"
 GEARS = """
 title = "A locked gear"
 units = "m-N-s"
@@ -124,6 +126,69 @@ def test_a_structure_needs_no_drive(tmp_path: Path) -> None:
     (part,) = load_parts(results)
     assert len(part.grids) == 1  # forces; no table of drives
     assert "linkage in its position" in write_loads(results, tmp_path / "out").read_text()
+
+
+def forces(path: Path) -> list[float]:
+    (case,) = loads_only(load_study(path)).reactions
+    return [float(x) for x in case.forces[0].ravel()]
+
+
+@each("text", [ARCH.replace(WITHOUT_MASS, ""), ARCH.replace("inertia = 0\n", "")])
+def test_a_structure_at_rest_needs_no_inertia(text: str, tmp_path: Path) -> None:
+    """Nor a mass, without gravity."""
+    assert text != ARCH
+    stated = forces(written(tmp_path, ARCH))
+    assert forces(written(tmp_path, text)) == stated
+
+
+def test_a_body_without_mass_needs_no_centre(tmp_path: Path) -> None:
+    """The left rib has a third joint, with a strut to the ground."""
+    strut = """
+[mechanism.joint.D]
+at = [2, 0]
+fixed_in = "ground"
+connections = { D = "strut" }
+
+[mechanism.joint.E]
+at = [2, 1.5]
+connections = { E1 = "left", E2 = "strut" }
+
+[mechanism.body.strut]
+mass = 0
+inertia = 0
+
+[[mechanism.sharing]]
+connections = ["A", "D", "B", "C1", "C2", "E1", "E2"]
+stiffness = [1, 1, 1, 1, 1, 1, 1]
+"""
+    stated = ARCH.replace("mass = 0", "mass = 0\ncentre = [1, 1]", 1)
+    assert forces(written(tmp_path, ARCH + strut)) == forces(written(tmp_path, stated + strut))
+
+
+def test_masses_count_under_gravity_and_in_motion(tmp_path: Path) -> None:
+    bare = ARCH.replace(WITHOUT_MASS, "")
+    for text in (
+        bare.replace("gravity = [0, 0]\n", ""),
+        bare.replace('kind = "static"', 'kind = "instant"'),
+    ):
+        with raises(InputError, "give-one", "body left: give one of weight, mass or bar"):
+            describe(load_study(written(tmp_path, text)))
+    moving = ARCH.replace("inertia = 0\n", "").replace('kind = "static"', 'kind = "instant"')
+    with raises(InputError, "particle", "a body without inertia is a particle"):
+        describe(load_study(written(tmp_path, moving)))
+
+
+def test_a_wrong_static_case_alone_is_told(tmp_path: Path) -> None:
+    """Not that its bodies have no inertia, which it needs as little as the right one."""
+    wrong = ARCH.replace(WITHOUT_MASS, "").replace('kind = "static"', 'kind = "statik"')
+    with raises(InputError, "not-a-choice", "must be") as caught:
+        load_study(written(tmp_path, wrong))
+    assert len(caught.value.lines) == 1
+
+
+def test_a_locked_gear_needs_no_inertia(tmp_path: Path) -> None:
+    bare = GEARS.replace("inertia = 0\n", "")
+    assert forces(written(tmp_path, bare)) == forces(written(tmp_path, GEARS))
 
 
 def test_an_instant_of_a_structure_is_a_case_at_rest(tmp_path: Path) -> None:

@@ -32,7 +32,7 @@ MISTAKES = {  # of one kind each: what is replaced, by what, and the message
     "no inertia": ('inertia = { value = "1.6 kg m^2", provenance = "assumed" }\n', "",
                    "body link: a body without inertia"),
     "no mass": ('mass = { value = "55 kg", provenance = "assumed" }\n', "",
-                "mechanism.body.rod: give one of weight, mass or bar"),
+                "body rod: give one of weight, mass or bar"),
     "joint without bodies": ('{ Y = "rocker" }', "{}", "connections: must have at least 1 entry"),
     "unknown surface": ('"right cheek"]', '"right cheeks"]', "no surface 'right cheeks'"),
     "unit": ('"650 MPa"', '"650 Mpa"', "unknown unit 'Mpa'"),

@@ -83,3 +83,36 @@ def test_a_clearance_outside_of_its_range_has_a_warning() -> None:
         lug = f"lug.L = {{ clearance = {clearance}, range = {{ clearance = [0.03, 0.06] }} }}"
         warned = [x for x in study_from(text(lug)).warnings if "L.clearance: is not within" in x]
         assert len(warned) == contradicts
+
+
+def test_an_axial_of_all_lugs_is_told_once() -> None:
+    """One of a lug itself is told beside it."""
+    two = text('lug.M = { axial = "L" }', 'lug_defaults = { axial = "head" }', "", PRESCRIBED)
+    band = '  { length = 20, diameter = 20, connection = "L" },\n'
+    two = two.replace(band, band + band.replace('"L"', '"M"') + band.replace('"L"', '"N"'))
+    two = two.replace("{ L = [0, 0] }", "{ L = [0, 0], M = [0, 0], N = [0, 0] }")
+    told = [warning.split(": ")[1] for warning in study_from(two).warnings]
+    assert told == ["lug_defaults.axial", "pin.P.lug.M.axial"]
+
+
+@each(
+    ("profile", "told"),
+    [
+        ("{ length = 9, diameter = 20, fillet = 1 }", 1),
+        ("{ length = 9, diameter = 25, fillet = 1 }", 0),
+        ("{ length = 9, diameter = 20, fillet = 0 }", 0),
+        ("{ length = 9, diameter = [15, 20], fillet = 1 }", 0),
+        ("{ length = 9, diameter = 25 }, { length = 9, diameter = 20, fillet = 1 }", 2),
+    ],
+)
+def test_a_fillet_without_a_corner(profile: str, told: int) -> None:
+    """The radius of the segment behind a step was taken for that of the step, which was sharp."""
+    head = '{ length = 10, diameter = 20, name = "head" }'
+    warnings = study_from(text().replace(head, profile)).warnings
+    assert len(warnings) == bool(told)
+    assert all(f"profile[{told}].fillet: has no effect" in warning for warning in warnings)
+
+
+def test_a_fillet_at_the_end() -> None:
+    (warning,) = study_from(text().replace('"L" }', '"L", fillet = 2 }')).warnings
+    assert "profile[2].fillet: has no effect" in warning
