@@ -7,7 +7,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from loads import GROUND, Body, Connection, Joint, Linkage, LinkageError, Sharing, Slider, Turn
+from loads import (
+    GROUND,
+    Applied,
+    Body,
+    Connection,
+    Joint,
+    Linkage,
+    LinkageError,
+    Sharing,
+    Slider,
+    Turn,
+    motion_reactions,
+)
 from loads.motion.motion import at_rest
 from tests.support.each import each
 from tests.support.errors import raises
@@ -70,6 +82,22 @@ def test_a_particle_may_slide_on_the_ground_or_hang_on_its_only_joint() -> None:
         **joints(replace(B, connections=(*B.connections, Connection("B5", "load")))),  # type: ignore[arg-type]
     )
     assert hung.index["load"] == 3
+
+
+@pytest.mark.parametrize(
+    "load",
+    [Applied("load", (B.at[0] + 0.1, B.at[1]), (0.0, -1.0)), Applied("load", B.at, couple=1.0)],
+)
+def test_a_particle_carries_no_moment(load: Applied) -> None:
+    hung = replace(
+        BAR,
+        bodies=(*BAR.bodies, Body("load", 5.0, B.at, None)),
+        **joints(replace(B, connections=(*B.connections, Connection("B5", "load")))),  # type: ignore[arg-type]
+    )
+    motion = at_rest(hung, [TURN.drawn])
+    motion_reactions("x", motion, [Applied("load", B.at, (0.0, -1.0))])
+    with raises(LinkageError, "particle", "body load: a load has a moment"):
+        motion_reactions("x", motion, [load])
 
 
 def test_drives_must_be_as_many_as_are_told() -> None:
