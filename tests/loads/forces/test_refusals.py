@@ -41,6 +41,8 @@ def joints(*changed: Joint) -> dict[str, object]:
     ("linkage", "change", "code", "named"),
     [
         (BAR, {"bodies": (*BAR.bodies, BAR.bodies[0])}, "duplicate-name", "body 'crank'"),
+        (BAR, {"bodies": (*BAR.bodies, Body("pin A", 1.0, (0, 0), 1.0))}, "duplicate-name",
+         "body 'pin A'"),
         (BAR, {"joints": (*BAR.joints, O2)}, "duplicate-name", "joint 'O2'"),
         (BAR, joints(replace(A, connections=(*A.connections, A.connections[0]))),
          "duplicate-name", "connection 'A2'"),
