@@ -105,6 +105,12 @@ def edited(*changes: tuple[str, str]) -> str:
     return text
 
 
+def test_a_load_from_time_zero_acts_at_the_first_instant(tmp_path: Path) -> None:
+    push = '[[case.turn.apply]]\nbody = "rocker"\nat = "C"\nforce = [0, 1000, 0]\n'
+    always, begun = (solved(tmp_path, RSSR + push + more) for more in ("", "begin = 0\n"))
+    assert np.array_equal(begun["turn"].reactions.forces, always["turn"].reactions.forces)
+
+
 def test_crank_and_rocker_obey_the_input_output_equation(tmp_path: Path) -> None:
     """The coupler's length is constant: (C - B)^2, with B on the crank's circle about z and C on
     the rocker's about x.
