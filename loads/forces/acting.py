@@ -20,7 +20,7 @@ from pinbase.arrays import Complex, Floats, Mask
 
 SWITCH_TIME_TOLERANCE = 1e-12  # relative: an instant this close to a switch coincides with it
 MIN_POINT_DISTANCE = 1e-12  # of the length scale: points this close have no line between them
-MAX_PARTICLE_ARM = 1e-4  # of the length scale: a force no further from a particle acts at it
+MAX_PARTICLE_ARM = 1e-4  # of the length scale: a force that passes a particle so near acts at it
 
 
 @dataclass(frozen=True)
@@ -254,7 +254,8 @@ def balance(motion: Motion, loads: tuple[Load, ...]) -> Iterator[tuple[int, Comp
 def _require_carried(motion: Motion, push: Push, arm: Complex) -> None:
     """Raises: LinkageError for a moment about a particle. arm: (T,) m, from its centre."""
     linkage = motion.linkage
-    aside = np.abs(arm).max() > MAX_PARTICLE_ARM * linkage.length_scale and push.force.any()
+    most = MAX_PARTICLE_ARM * linkage.length_scale * np.abs(push.force).max()
+    aside = np.abs(cross(arm, push.force)).max() > most
     if (aside or push.couple.any()) and is_particle(linkage, push.item):
         raise LinkageError(
             f"body {push.item}: a load has a moment about its centre, but without inertia the body "

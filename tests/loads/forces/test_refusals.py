@@ -97,7 +97,7 @@ def test_a_particle_carries_no_moment(load: Applied) -> None:
         **joints(replace(B, connections=(*B.connections, Connection("B5", "load")))),  # type: ignore[arg-type]
     )
     motion = at_rest(hung, [TURN.drawn])
-    motion_reactions("x", motion, [Applied("load", B.at, (0.0, -1.0))])
+    motion_reactions("x", motion, [Applied("load", (B.at[0], B.at[1] - 0.5), (0.0, -1.0))])
     with raises(LinkageError, "particle", "body load: a load has a moment"):
         motion_reactions("x", motion, [load])
 
