@@ -16,6 +16,7 @@ from geometry.shape.hole import Hole
 from geometry.shape.milled import Flat, Slot
 from geometry.shape.passage import Passage
 from geometry.shape.pin import Band, GeometryError, Pin
+from pinbase.errors import Place
 
 
 @dataclass(frozen=True)
@@ -43,6 +44,7 @@ class CutPin:
         for name, cut in _named((*self.holes, *flats, *slots, *self.passages)).items():
             what, i = name.split()
             cut.check(self.profile, f"{what} {i}", (what, int(i)))
+            _require_own_name(self.profile, name, (what, int(i)))
         for (k, a), (n, b) in combinations(enumerate(self.holes, 1), 2):
             if (a.z, a.angle, a.offset, a.tilt) != (b.z, b.angle, b.offset, b.tilt):
                 b.check_beside(a, (f"hole {n}", f"hole {k}"), self.profile, ("hole", n))
@@ -137,6 +139,19 @@ class CutPin:
         """The same pin in another unit of length: all lengths times `factor`."""
         cuts = (cut.scaled(factor) for cut in self.cuts.values())
         return CutPin.of(self.profile.scaled(factor), cuts)
+
+
+def _require_own_name(profile: Pin, cut: str, at: Place) -> None:
+    """Raises: GeometryError where the profile has the name of a cut or of a part of it."""
+    for segment in profile.segments:
+        for name in (segment.connection, segment.name):
+            if name and f"{name} ".startswith(f"{cut} "):
+                raise GeometryError(
+                    f"pin {profile.name}: the segment {name!r} has the name that {cut} has of "
+                    "itself; choose another name",
+                    "duplicate-name",
+                    at,
+                )
 
 
 def _named(cuts: tuple[Cut, ...]) -> dict[str, Cut]:

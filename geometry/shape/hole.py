@@ -34,7 +34,7 @@ from geometry.shape.profile import Edge
 from pinbase.arrays import Floats, Mask
 from pinbase.errors import Place
 
-MIN_SAME_SIDE_COSINE = 0.9  # of the angle between holes that are drilled from the same side
+MIN_SAME_SIDE_COSINE = 0.9  # of the angle between holes that are open on the same side
 MIN_WALL_RATIO = 0.02  # of a diameter: thinner walls cannot be made, and take excessive meshes
 MAX_TILT = math.pi / 3.0 + 1e-12  # rad; chosen by judgement
 MAX_MOUTH_REACH = 1.5  # largest extent of a rounded mouth over its radius
@@ -231,10 +231,13 @@ class Hole(Drilled):
     def check_beside(self, other: Hole, names: tuple[str, str], pin: Pin, at: Place) -> None:
         """Raises: GeometryError where two holes almost touch.
 
-        Blind holes are compared only if they are drilled from the same side.
+        A blind hole is compared only with those that are open on the side from which it is drilled.
         """
-        both_through = self.depth is None and other.depth is None
-        if not both_through and math.cos(self.angle - other.angle) < MIN_SAME_SIDE_COSINE:
+        through = self.depth is None, other.depth is None
+        cosine = math.cos(self.angle - other.angle)
+        if any(through):  # it is open on both sides
+            cosine = abs(cosine)
+        if not all(through) and cosine < MIN_SAME_SIDE_COSINE:
             return
         wall = _apart(self, other) - 0.5 * (self.diameter + other.diameter)
         least = min(self.diameter, other.diameter)

@@ -203,8 +203,8 @@ class Pin:
             return face
         if name.startswith("bore ") and name[5:] in self.labels:
             i = self.labels.index(name[5:])
-            radius = 0.25 * sum(self.segments[i].bores)
-            return Band(name, self.stations[i], self.stations[i + 1], radius)
+            if radius := 0.25 * sum(self.segments[i].bores):
+                return Band(name, self.stations[i], self.stations[i + 1], radius)
         return self.bands[self._position(name)]
 
     def shoulder(self, name: str) -> Band | None:
@@ -333,6 +333,26 @@ def _check(pin: Pin) -> None:
         )
     _check_edges(pin)
     _check_fillets(pin)
+    _check_own_names(pin)
+
+
+def _check_own_names(pin: Pin) -> None:
+    """Raises: GeometryError for a segment's name that another surface has of itself, such as
+    "segment 3" or "shoulder 1".
+    """
+    own = [leg.name for leg in pin.legs] + [rounding.name for rounding in pin.roundings]
+    for s, label in zip(pin.segments, pin.labels, strict=True):
+        if s.connection or s.name:
+            own.remove(label)
+    for i, s in enumerate(pin.segments, 1):
+        for name in (s.connection, s.name):
+            if name and name in own:
+                raise GeometryError(
+                    f"pin {pin.name}, segment {i}: {name!r} is the name that another surface has "
+                    "of itself; choose another name",
+                    "duplicate-name",
+                    ("segment", i),
+                )
 
 
 def _check_edges(pin: Pin) -> None:

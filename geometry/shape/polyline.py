@@ -150,7 +150,8 @@ def _joined(left: Segment, right: Segment, one: Bend, other: Bend) -> list[Segme
 def with_stripes(pin: Pin, stripes: Iterable[Stripe], origin: float = 0.0) -> Pin:
     """The pin with parts of its cylinders named.
 
-    An end of a stripe within a rounding is moved to the end of the cylinder.
+    An end of a stripe within a rounding is moved to the end of the cylinder, and a start within the
+    tolerance of the end of another stripe to that.
 
     origin: what messages give as z of the start face, m.
 
@@ -166,6 +167,8 @@ def with_stripes(pin: Pin, stripes: Iterable[Stripe], origin: float = 0.0) -> Pi
                 "bands-overlap",
                 ("band", stripe.name),
             )
+        if before and whole.z0 <= before[-1].z1 + pin.tolerance:
+            whole = replace(whole, z0=before[-1].z1)
         before.append(whole)
     segments: list[Segment] = []
     for i, s in enumerate(pin.segments):

@@ -15,10 +15,12 @@ from loads.linkage.linkage import LinkageError
 from loads.linkage.parts import Point, Slider, Turn
 from loads.motion.complex_points import cross, number
 from loads.motion.motion import Motion
+from loads.motion.planar_equations import is_particle
 from pinbase.arrays import Complex, Floats, Mask
 
 SWITCH_TIME_TOLERANCE = 1e-12  # relative: an instant this close to a switch coincides with it
 MIN_POINT_DISTANCE = 1e-12  # of the length scale: points this close have no line between them
+MAX_PARTICLE_ARM = 1e-4  # of the length scale: a force that passes a particle so near acts at it
 
 
 @dataclass(frozen=True)
@@ -234,6 +236,8 @@ def balance(motion: Motion, loads: tuple[Load, ...]) -> Iterator[tuple[int, Comp
     """The loads' actions as (item's number, force, couple), without those on the ground.
 
     Forces are (T,) N, complex; couples, about the item's centre of mass, (T,) N m.
+
+    Raises: LinkageError for a moment about a particle.
     """
     centres, _, _ = motion.centres
     for load in loads:
@@ -243,7 +247,23 @@ def balance(motion: Motion, loads: tuple[Load, ...]) -> Iterator[tuple[int, Comp
                 continue
             at, _, _ = motion.point(push.item, push.at)
             arm = at[:, 0] + 1j * at[:, 1] - centres[:, i]
+            _require_carried(motion, push, arm)
             yield i, push.force, cross(arm, push.force) + push.couple
+
+
+def _require_carried(motion: Motion, push: Push, arm: Complex) -> None:
+    """Raises: LinkageError for a moment about a particle. arm: (T,) m, from its centre."""
+    linkage = motion.linkage
+    most = MAX_PARTICLE_ARM * linkage.length_scale * np.abs(push.force).max()
+    aside = np.abs(cross(arm, push.force)).max() > most
+    if (aside or push.couple.any()) and is_particle(linkage, push.item):
+        raise LinkageError(
+            f"body {push.item}: a load has a moment about its centre, but without inertia the body "
+            "is a particle, which carries none: load the body that does, give its inertia, or let "
+            "the force act at its centre",
+            "particle",
+            ("body", push.item),
+        )
 
 
 def power(motion: Motion, loads: tuple[Load, ...]) -> Floats:

@@ -74,13 +74,22 @@ class Dynamics:
         return side_by_side([self.motion.coordinate(a) for a in self.actuators], len(self.motion))
 
     def shaking(self, about: Point) -> tuple[Floats, Floats]:
-        """Shaking force (T, 2) N and moment (T,) N m of the linkage on its ground.
+        """Shaking force (T, 2) N and moment (T,) N m of the linkage and its springs on its ground.
 
         about: the point of the moment, m.
         """
         centres, _, _ = self.motion.centres
-        moment = self.couples + cross(centres - number(about), self.needed)
-        return -pairs(self.needed.sum(axis=1)), -moment.sum(axis=1)
+        moment = -(self.couples + cross(centres - number(about), self.needed)).sum(axis=1)
+        force = -self.needed.sum(axis=1)
+        for push in (p for load in self.applied for p in load.pushes(self.motion)):
+            if push.item == GROUND:  # the end of a spring
+                force = force + push.force
+                moment = (
+                    moment
+                    + cross(np.array(number(push.at) - number(about)), push.force)
+                    + push.couple
+                )
+        return pairs(force), moment
 
 
 def motion_reactions(

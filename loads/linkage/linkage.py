@@ -171,7 +171,7 @@ def _contradictions(linkage: Linkage) -> Iterator[Contradiction]:
     names += [t.name for t in linkage.teeth]
     coordinates = [s.name for s in linkage.sliders] + [t.name for t in linkage.turns]
     for kind, kind_names in (
-        ("body", [b.name for b in linkage.bodies]),
+        ("body", [item.name for item in linkage.items]),
         ("joint", [j.name for j in linkage.joints]),
         ("connection or gear" if linkage.teeth else "connection", names),
         ("slider or turn", coordinates),

@@ -259,13 +259,16 @@ class Followed(ABC, Generic[M]):
         self.equations, self.laws = equations, tuple(laws)
         self.first, self.last = first, last
         self.corners = self._inside(t for law in laws for t in law.corners)
-        grid = [
-            *np.linspace(first, last, DRIVE_GRID_POINTS),
-            *self._inside(t for x in laws for t in x.pieces),
-        ]
-        self.path = Path(equations, self._drives, np.unique(grid))
-        self.pace = 0.0
-        rates = self._coordinates(self.path.nodes)[4]
+        grid = np.unique(
+            [
+                *np.linspace(first, last, DRIVE_GRID_POINTS),
+                *self._inside(t for x in laws for t in x.pieces),
+            ]
+        )
+        self.path = Path(equations, self._drives, grid)
+        # At all nodes of a short path the drives may be at rest: take their fastest instants, too.
+        fastest = grid[np.abs(self._values(grid)[1]).argmax(axis=0)]
+        rates = self._coordinates(np.union1d(self.path.nodes, fastest))[4]
         self.pace = float(np.abs(rates * equations.scale).max(initial=0.0))
 
     @abstractmethod

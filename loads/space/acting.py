@@ -57,7 +57,7 @@ class MeasuredFactor:
 
     def __call__(self, motion: SpaceMotion) -> Floats:
         """The factor at every instant, (T,). Raises: LinkageError outside the table."""
-        on = (motion.times >= self.begin) & (motion.times <= self.end)
+        on = acts(motion.times, self.begin, self.end)
         at = motion.times if self.measured is None else motion.coordinate(self.measured)[0]
         factor = np.zeros(len(motion))
         if on.any():

@@ -136,6 +136,13 @@ def test_stripes_name_parts_of_cylinders() -> None:
     assert found.volume == pytest.approx(pin.volume, rel=1e-14)
 
 
+@each("start", [0.1 + 0.2, 0.3, 0.3 - 1e-10])
+def test_stripes_that_touch_but_for_round_off_have_nothing_between_them(start: float) -> None:
+    first, second = Stripe("A", 0.1, 0.1 + 0.2), Stripe("B", start, 0.6)
+    found = with_stripes(Pin("P", (Segment(1.0, 0.3),)), [second, first])
+    assert found.labels == ("segment 1", "A", "B", "segment 4")
+
+
 @each(
     ("stripe", "code"),
     [

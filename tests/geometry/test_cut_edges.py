@@ -123,6 +123,7 @@ def test_what_cuts_take_of_the_surface(cut: Cut, area: float) -> None:
         ((Hole(0.05, 0.004), Hole(0.05, 0.004, ACROSS, offset=0.003)), ""),  # into each other
         ((Hole(0.05, 0.004), Hole(0.056, 0.004, 0.0, offset=0.003, tilt=0.3)), ""),
         ((Hole(0.05, 0.004), Hole(0.052, 0.004)), ""),
+        ((Hole(0.05, 0.004), Hole(0.054, 0.004, math.pi, 0.004)), "thin-wall"),
         ((Hole(0.05, 0.004, 0.0, 0.004), Hole(0.054, 0.004, math.pi, 0.004)), ""),
     ],
 )

@@ -161,3 +161,11 @@ def test_a_pin_that_is_parted_is_refused() -> None:
     pin = CutPin(BAR, (Hole(0.03, 0.006),), flats)
     with raises(GeometryError, "cut-apart", "pin bar", "2 pieces"):
         solid_mesh(pin, MeshSize())
+
+
+@pytest.mark.parametrize("name", ["hole 1", "hole 1 wall"])
+def test_a_band_has_not_the_name_of_a_cut(name: str) -> None:
+    bar = Pin("bar", (Segment(0.06, 0.02, connection=name),))
+    CutPin(bar, flats=(Flat(0.0, 0.01, 0.008),))
+    with raises(GeometryError, "duplicate-name", name):
+        CutPin(bar, (Hole(0.03, 0.004),))

@@ -99,6 +99,8 @@ def test_surfaces_go_by_connection_name_or_number() -> None:
     assert [pin.surface(n) for n in ("B", "root", "head", "start")] == ["B", "B", "head", "start"]
     with raises(GeometryError, "unknown-surface", "'tail'", "start, end, B, head"):
         pin.surface("tail")
+    solid = Pin("P", (Segment(1, 2, name="root"), Segment(1, 3, connection="bore root")))
+    assert solid.band("bore root").radius == 1.5
 
 
 @each(
@@ -115,6 +117,25 @@ def test_surfaces_go_by_connection_name_or_number() -> None:
         ((Segment(1, 3, bore=2.5), Segment(1, 2)), 0.0, "segments-separate", ("segment", 1)),
         ((Segment(1, 3, name="a"), Segment(1, 2, connection="a")), 0.0, "duplicate-name", ()),
         ((Segment(1, 3, name="start"),), 0.0, "duplicate-name", ()),
+        ((Segment(1, 3, name="segment 2"), Segment(1, 2)), 0.0, "duplicate-name", ("segment", 1)),
+        (
+            (Segment(1, 3), Segment(1, 2, connection="shoulder 1")),
+            0.0,
+            "duplicate-name",
+            ("segment", 2),
+        ),
+        (
+            (Segment(1, 3), Segment(1, 2, connection="fillet 1")),
+            0.1,
+            "duplicate-name",
+            ("segment", 2),
+        ),
+        (
+            (Segment(1, 3, bore=1, name="a"), Segment(1, 2, name="bore a")),
+            0.0,
+            "duplicate-name",
+            ("segment", 2),
+        ),
     ],
 )
 def test_impossible_shapes_are_refused(

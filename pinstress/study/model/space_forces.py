@@ -93,7 +93,7 @@ def load_in_space(
     else:
         stated = table.at if isinstance(table.at, str) else vector(table.at)
         at = place(space_mechanism(study), stated)
-    begin = -math.inf if table.begin is None else table.begin
+    begin = table.begin or -math.inf  # at its start a load acts already
     end = math.inf if table.end is None else table.end
 
     def acting(force: Vector, couple: Vector, factor: MeasuredFactor | None = None) -> SpaceForce:

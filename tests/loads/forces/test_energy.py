@@ -5,7 +5,21 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from loads import Applied, ConstantDrive, Dynamics, energy, ledger, motion_reactions, move
+from loads import (
+    GROUND,
+    Applied,
+    ConstantDrive,
+    Distance,
+    Dynamics,
+    ForceLaw,
+    Position,
+    Spring,
+    Turn,
+    energy,
+    ledger,
+    motion_reactions,
+    move,
+)
 from tests.support.mechanism.mechanisms import four_bar
 
 BAR = four_bar()
@@ -82,3 +96,15 @@ def test_the_ground_feels_its_pins_and_the_drive(turned: Dynamics) -> None:
     np.testing.assert_allclose(force, f2 + f4, atol=1e-9)
     lever = (o4 - o2)[0] * f4[:, 1] - (o4 - o2)[1] * f4[:, 0]
     np.testing.assert_allclose(moment, lever - turned.drive[:, 0], atol=1e-9)
+
+
+def test_springs_to_the_ground_change_nothing_of_what_it_feels(turned: Dynamics) -> None:
+    law = ForceLaw(preload=40.0, stiffness=20.0, damping=3.0)
+    springs = (
+        Spring("line", Distance((GROUND, "coupler"), ((-0.4, 0.1), (0.2, 0.4))), law),
+        Spring("torsion", Position(Turn("torsion", "rocker", 0.0)), law),
+    )
+    sprung = motion_reactions("turn", turned.motion, (*LOADS, *springs))
+    about = BAR.joint("O4").at
+    for found, plain in zip(sprung.shaking(about), turned.shaking(about), strict=True):
+        np.testing.assert_allclose(found, plain, atol=1e-9)

@@ -7,7 +7,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from loads import GROUND, Body, Connection, Joint, Linkage, LinkageError, Sharing, Slider, Turn
+from loads import (
+    GROUND,
+    Applied,
+    Body,
+    Connection,
+    Joint,
+    Linkage,
+    LinkageError,
+    Sharing,
+    Slider,
+    Turn,
+    motion_reactions,
+)
 from loads.motion.motion import at_rest
 from tests.support.each import each
 from tests.support.errors import raises
@@ -29,6 +41,8 @@ def joints(*changed: Joint) -> dict[str, object]:
     ("linkage", "change", "code", "named"),
     [
         (BAR, {"bodies": (*BAR.bodies, BAR.bodies[0])}, "duplicate-name", "body 'crank'"),
+        (BAR, {"bodies": (*BAR.bodies, Body("pin A", 1.0, (0, 0), 1.0))}, "duplicate-name",
+         "body 'pin A'"),
         (BAR, {"joints": (*BAR.joints, O2)}, "duplicate-name", "joint 'O2'"),
         (BAR, joints(replace(A, connections=(*A.connections, A.connections[0]))),
          "duplicate-name", "connection 'A2'"),
@@ -70,6 +84,22 @@ def test_a_particle_may_slide_on_the_ground_or_hang_on_its_only_joint() -> None:
         **joints(replace(B, connections=(*B.connections, Connection("B5", "load")))),  # type: ignore[arg-type]
     )
     assert hung.index["load"] == 3
+
+
+@pytest.mark.parametrize(
+    "load",
+    [Applied("load", (B.at[0] + 0.1, B.at[1]), (0.0, -1.0)), Applied("load", B.at, couple=1.0)],
+)
+def test_a_particle_carries_no_moment(load: Applied) -> None:
+    hung = replace(
+        BAR,
+        bodies=(*BAR.bodies, Body("load", 5.0, B.at, None)),
+        **joints(replace(B, connections=(*B.connections, Connection("B5", "load")))),  # type: ignore[arg-type]
+    )
+    motion = at_rest(hung, [TURN.drawn])
+    motion_reactions("x", motion, [Applied("load", (B.at[0], B.at[1] - 0.5), (0.0, -1.0))])
+    with raises(LinkageError, "particle", "body load: a load has a moment"):
+        motion_reactions("x", motion, [load])
 
 
 def test_drives_must_be_as_many_as_are_told() -> None:

@@ -11,6 +11,7 @@ from loads import (
     Connection,
     ConstantDrive,
     CosineDrive,
+    CycloidalDrive,
     Joint,
     Linkage,
     MotionBlocked,
@@ -46,6 +47,14 @@ def test_ten_turns_in_few_samples_stay_on_their_branch(samples: int, sense: floa
         whole = np.round((few.q - drawn.q) / (2.0 * np.pi))
         if samples in (2, 3, 11):  # the crank is where it began, and so is the rest
             assert few.q - drawn.q == pytest.approx(2.0 * np.pi * whole, abs=1e-9)
+
+
+def test_a_short_motion_from_rest_to_rest_has_a_pace() -> None:
+    course = Course(four_bar(angle=0.9), [CycloidalDrive(0.8, 1.0, 1.0)], 0.0, 1.0)
+    assert course.path.nodes.tolist() == [0.0, 1.0]  # at which nothing moves
+    motion = course.at(np.linspace(0.0, 1.0, 101))
+    fastest = float(np.abs(motion.v * motion.loops.scale).max())
+    assert course.pace == pytest.approx(fastest, rel=0.05)
 
 
 def test_an_instant_does_not_depend_on_the_others_nor_on_their_order() -> None:

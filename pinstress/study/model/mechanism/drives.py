@@ -128,6 +128,12 @@ def drive_table(study: Study, drive: AnyDriveTable) -> TableDrive:
             raise TableError(
                 f"{path}: give both velocity and acceleration, or neither", "give-both"
             )
+        if rows[0].number("time") < 0.0:
+            raise TableError(
+                f"{rows[0].where}: time = {rows[0].cells['time']} is negative, but a motion begins "
+                "at time 0; count from the first row",
+                "negative",
+            )
         return TableDrive(*(tuple(row.number(c) * units[c] for row in rows) for c in columns))
     except TableError as error:
         raise study.table_error("mechanism.drive.table", error) from None

@@ -20,6 +20,7 @@ from pinstress.study.schema.mechanism import MechanismTable
 from tests.conftest import ROOT
 from tests.support.described import describe
 from tests.support.each import each
+from tests.support.errors import raises
 
 V = 1e5  # the reference, N
 RADIUS = 0.4
@@ -204,6 +205,12 @@ def test_a_wheel_beside_the_plane_rolls_its_leg() -> None:
     drag, vertical = 0.4 * 1.5e5, 0.6 * 1.5e5
     expected = (-0.25 * vertical, 0.25 * drag, 0.0)  # (0, -2.4, z) x (drag, vertical, 0)
     assert loads.reactions.moments[0, k] == pytest.approx(expected, abs=1e-4)
+
+
+def test_a_wheel_without_inertia_carries_no_brake() -> None:
+    study = study_from(leg(part=None, factors=[BRAKED], body="wheel"))
+    with raises(InputError, "particle", "body wheel"):
+        all_loads(study, ["main braked"])
 
 
 def test_a_nose_wheel_has_left_and_right() -> None:

@@ -144,6 +144,10 @@ def test_a_drive_may_follow_a_table(tmp_path: Path) -> None:
     (law,) = laws(study)
     _, rate, _ = law(np.array([0.1]))
     assert rate[0] == pytest.approx(2 * np.pi / 0.25)
+    early = "\n".join(f"{t - 0.125},{20 + 360 * t / 0.25}" for t in times)
+    (tmp_path / "turn.csv").write_text(f"time,position_deg\n{early}\n", encoding="utf-8")
+    with raises(InputError, "negative", "turn.csv, line 2", "a motion begins at time 0"):
+        laws(study)
     (tmp_path / "turn.csv").write_text("time,position\n0,1\n", encoding="utf-8")
     with raises(InputError, "missing-column", "turn.csv", "'position_deg'"):
         laws(study)

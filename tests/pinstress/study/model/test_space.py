@@ -105,6 +105,22 @@ def edited(*changes: tuple[str, str]) -> str:
     return text
 
 
+def test_a_load_from_time_zero_acts_at_the_first_instant(tmp_path: Path) -> None:
+    push = '[[case.turn.apply]]\nbody = "rocker"\nat = "C"\nforce = [0, 1000, 0]\n'
+    always, begun = (solved(tmp_path, RSSR + push + more) for more in ("", "begin = 0\n"))
+    assert np.array_equal(begun["turn"].reactions.forces, always["turn"].reactions.forces)
+
+
+def test_a_tabled_load_ends_when_a_constant_one_does(tmp_path: Path) -> None:
+    """At 0.3 s, which is an instant but for round-off."""
+    push = '[[case.turn.apply]]\nbody = "rocker"\nat = "C"\nend = 0.3\n'
+    tabled = "direction = [0, 1, 0]\nforce_law = { points = [[0, 1000], [1, 1000]] }\n"
+    constant, found = (
+        solved(tmp_path, RSSR + push + how) for how in ("force = [0, 1000, 0]\n", tabled)
+    )
+    assert found["turn"].reactions.forces == pytest.approx(constant["turn"].reactions.forces)
+
+
 def test_crank_and_rocker_obey_the_input_output_equation(tmp_path: Path) -> None:
     """The coupler's length is constant: (C - B)^2, with B on the crank's circle about z and C on
     the rocker's about x.
