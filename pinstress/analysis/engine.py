@@ -22,7 +22,7 @@ from pinbase.processes.threads import one_thread
 from pinbase.records import pack, unpack
 from pinstress.analysis.assessed.situations import assessed
 from pinstress.analysis.gather.gather import rows_of
-from pinstress.analysis.plan import Plan, prepare
+from pinstress.analysis.plan import Plan, for_task, prepare
 from pinstress.analysis.results import RunResults, run_results, solve
 from pinstress.analysis.reused_loads import reused_loads
 from pinstress.analysis.scaled import (
@@ -36,7 +36,7 @@ from pinstress.analysis.scaled import (
     scaled_row,
     too_rough,
 )
-from pinstress.analysis.solve import for_task, solve_tasks, unjudged
+from pinstress.analysis.solve import solve_tasks, unjudged
 from pinstress.analysis.stored import PinOutcome, cache_key
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.choices import ChoiceError

@@ -16,8 +16,7 @@ from fea.core.peak import Maximum
 from geometry import CutPin, Pin, PinLike
 from loads import read_regular
 from pinstress.analysis.assessed.limits import collapse_factors, rung_of
-from pinstress.analysis.plan import Plan
-from pinstress.study.model.requirements import required_factors
+from pinstress.analysis.plan import Plan, for_task
 from pinstress.study.model.tasks import Task
 from reports.data.changes import Remedy
 from reports.data.fields import Field
@@ -94,8 +93,7 @@ def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
         task.shanks,
         [(case.reactions.times, case.range) for case in cases],
         task.material,
-        replace(plan.requirement, memory=None),
-        required_factors(study, task.pin.name, (loads.case for loads in task.loads)),
+        replace(for_task(study, task, plan.requirement), memory=None),
         plan.also,
         plan.sensitive,
         plan.explained,
