@@ -15,7 +15,7 @@ from fea.core.memory import too_much
 from fea.core.peak import Maximum
 from geometry import CutPin, Pin, PinLike
 from loads import read_regular
-from pinstress.analysis.assessed.limits import collapse_factors, rung_of
+from pinstress.analysis.assessed.limits import collapse_factors, lugs_asked, rung_of
 from pinstress.analysis.plan import Plan, for_task
 from pinstress.study.model.tasks import Task
 from reports.data.changes import Remedy
@@ -85,6 +85,7 @@ def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
         study.table.analysis.joints,
         study.table.fatigue is not None,
         rung_of(plan, task.pin.name),
+        lugs_asked(plan, task),
         collapse_factors(study, task),
         task.loads,
         task.left_out,

@@ -160,6 +160,13 @@ def test_a_requirement_on_rupture_is_part_of_the_question() -> None:
     assert len({pack(cache_key(plan, plan.tasks[0])) for plan in plans}) == 2
 
 
+def test_limit_loads_of_lugs_are_part_of_the_question() -> None:
+    """`run --limit-load` finds them, and a run without it does not."""
+    text = IN_LUGS.replace("JOINTS", "prescribed").replace('limit_load = "always"\n', "")
+    plans = [prepare(study_from(text), limit_load=asked) for asked in (False, True)]
+    assert len({pack(cache_key(plan, plan.tasks[0])) for plan in plans}) == 2
+
+
 def test_options_are_part_of_the_question(solve: Solve) -> None:
     assert solve(TWO_PINS, "--vtk", "solid") == ["A", "B"]  # more fields
     assert solve(TWO_PINS, "--tolerance", "0.3") == ["A", "B"]
