@@ -67,6 +67,11 @@ def test_a_lognormal_law_that_is_cut_off_stays_within() -> None:
     assert law.within == pytest.approx(high - low)
 
 
+def test_a_lognormal_law_that_is_cut_off_above_says_so() -> None:
+    assert LogNormal(10.0, 2.0, 0.0, 12.0).text(str, str).endswith("cut off at 0.0 and 12.0")
+    assert LogNormal(10.0, 2.0).text(str, str).endswith("deviation 2.0")
+
+
 def _number(nominal: float, dimension: str = "length") -> Number:
     return Number("key", ("pin",), dimension, nominal, "mm", 1e-3)
 

@@ -127,6 +127,11 @@ def test_the_unit_of_a_dimension_can_be_read(dimension: str, system: object) -> 
             "limits-far-off",
             "of the law's probability",
         ),
+        (
+            f'"{DIAMETER}" = {{ lognormal = [2, 0.1], within = [-1, 0] }}',
+            "limits-far-off",
+            "of the law's probability",
+        ),
         (f'"{DIAMETER}" = {{ from = 1, to = 2, steps = 0 }}', "out-of-range", "at least 1"),
         (
             f'"{DIAMETER}" = {{ from = 1, to = 2 }}\n"pin.B.profile[2].\\"diameter\\"" '
