@@ -29,7 +29,7 @@ def reused_loads(raw: Mapping[str, Any], memo: Memo) -> LoadsOf:
     """
 
     def loads_of(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
-        content = _content(study, raw)
+        content = content_of_loads(study, raw)
         keys = {name: ("loads", name, content) for name in cases if _reusable(study, name)}
         known: dict[str, CaseLoads] = {}
         for name, key in keys.items():
@@ -53,8 +53,11 @@ def _reusable(study: Study, case: str) -> bool:
     return study.table.mechanism is not None and not isinstance(study.table.case[case], GivenCase)
 
 
-def _content(study: Study, raw: Mapping[str, Any]) -> bytes:
-    """Return a hash of all on which the loads of a mechanism depend."""
+def content_of_loads(study: Study, raw: Mapping[str, Any]) -> bytes:
+    """Return a hash of all on which the loads of a mechanism depend; empty without one.
+
+    raw: the content of the study.
+    """
     mechanism, table = study.table.mechanism, study.table
     if mechanism is None:
         return b""
