@@ -69,7 +69,7 @@ def content_of_loads(study: Study, raw: Mapping[str, Any]) -> bytes:
         if joint.weight is None and joint.fixed_in is None and name in table.pin
     ]
     weights = [(raw["pin"][x], table.material[table.pin[x].material].density) for x in weighed]
-    along = [_lengths(raw["pin"][x]) for x in table.pin] if bands_count(study) else []
+    along = [_places(raw["pin"][x]) for x in table.pin] if bands_count(study) else []
     depends = [tables, joints, weights, along]
     return hashlib.sha256(json.dumps(depends, default=str).encode()).digest()
 
@@ -89,6 +89,10 @@ def bands_count(study: Study) -> bool:
     )
 
 
-def _lengths(pin: Mapping[str, Any]) -> Any:
-    """Return what places the bands of a pin: the lengths of its profile, or all of it."""
-    return [segment.get("length") for segment in pin.get("profile", ())] or pin
+def _places(pin: Mapping[str, Any]) -> Any:
+    """Return what places the bands and clamps of a pin: the lengths and names of its profile, or
+    all of it.
+    """
+    keys = "length", "connection", "name", "ear_of"
+    segments = [[segment.get(key) for key in keys] for segment in pin.get("profile", ())]
+    return [segments, pin.get("clamp")] if segments else pin
