@@ -184,11 +184,16 @@ def for_task(study: Study, task: Task, requirement: Requirement) -> Requirement:
     return replace(requirement, joints=_joints(study, task), factors=factors, every=every)
 
 
+def needs_fine_cells(task: Task) -> bool:
+    """Return whether cells of contact must be fine in every case: the stress of lugs, and of the
+    parts of a hardened pin, has no error of cells of its own.
+    """
+    return bool(task.material.hardened) or any(lug.shank for lug in task.lugs)
+
+
 def _needs_every_case(study: Study, task: Task) -> bool:
     """Return whether the required factor against yield does not say enough of a minor case."""
-    # The stress of lugs and of the parts of a hardened pin has no error of contact's cells of its
-    # own, so that these must be fine in every case.
-    if task.material.hardened or any(lug.shank for lug in task.lugs):
+    if needs_fine_cells(task):
         return True
     pin, cases = task.pin.name, [loads.case for loads in task.loads]
     return any(asks_more_than_yield(study, pin, case) for case in cases)
