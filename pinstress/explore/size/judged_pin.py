@@ -45,7 +45,7 @@ def judged_pin(results: Results, pin: str) -> JudgedPin:
         "" if worst is None else _stricter(worst),
         why,
         bool(why)
-        and all(p.outcome in (SAFE, DEPENDS) for p in rows)
+        and all(p.outcome in (SAFE, DEPENDS) for p in (*rows, *_unsolved(results, pin)))
         and not _strict_check(results, pin),
         tuple((p.case, factor) for p in rows if (factor := _counted(p)) is not None),
     )
@@ -86,6 +86,8 @@ def why_missed(results: Results, pin: str) -> str:
     singular = [p.case for p in rows if p.verdict == "singular"]
     if not rows:
         return "the new study gives no safety factor"
+    if unsolved := _unsolved(results, pin):
+        return f"in {unsolved[0].case} there is no stress: {unsolved[0].note}"
     missing = [p.case for p in rows if p.outcome == FAILS]
     depends = [p.case for p in rows if p.outcome == DEPENDS]
     loose = [p.case for p in rows if p.verdict != "singular" and p.outcome == NOT_DECIDED]
@@ -120,6 +122,11 @@ def why_missed(results: Results, pin: str) -> str:
         case = f" ({worst.case})" if worst.case else ""
         return f"{worst.check} is met as described, but not over the {worst.reason}{case}"
     return ""
+
+
+def _unsolved(results: Results, pin: str) -> list[PinResult]:
+    """Return the rows of a pin that need a factor and have no stress."""
+    return [p for p in results.pins if p.pin == pin and p.required and p.max_von_mises is None]
 
 
 def _strict_check(results: Results, pin: str) -> JudgedCheck | None:

@@ -12,6 +12,7 @@ import pytest
 import pinstress
 from geometry import Pin
 from pinstress.analysis.plan import Plan, prepare
+from pinstress.explore.size.judged_pin import judged_pin
 from pinstress.explore.size.least_weight import LightStudy, lighten
 from pinstress.explore.size.lightest_pin import Lightest, problem_of
 from pinstress.explore.size.other_dimensions import paths_of, written_study
@@ -420,3 +421,26 @@ def test_in_contact_stress_has_the_derivatives_of_differences() -> None:
         expected = (more[name].value - less[name].value) / 0.04
         off = 0.1 if "beneath" in name else 0.005
         assert float(place.slope.sum()) == pytest.approx(expected, rel=off)
+
+
+UNHELD = """
+title = "A pin that is not held in a case of small loads"
+units = "mm-N-s"
+material.steel = { youngs_modulus = "205 GPa", poisson_ratio = 0.3, yield_strength = 600 }
+case.pull = { kind = "given", forces = { L = [0, 500], M = [0, -1000], R = [0, 500] } }
+case.light = { kind = "given", forces = { L = [0, 5], M = [0, -9], R = [0, 5] } }
+analysis = { required_safety_factor = 2, tolerance = 0.1, limit_load = "never" }
+[pin.P]
+material = "steel"
+profile = [
+  { length = 10, diameter = 20, connection = "L" },
+  { length = 20, diameter = 20, connection = "M" },
+  { length = 10, diameter = 20, connection = "R" },
+]
+"""
+
+
+def test_a_case_without_a_stress_leaves_the_factor_open() -> None:
+    judged = judged_pin(pinstress.run(pinstress.study_from(UNHELD)), "P")
+    assert judged.why.startswith("in light there is no stress: ")
+    assert not judged.depends
