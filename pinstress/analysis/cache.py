@@ -30,7 +30,7 @@ CACHE_VARIABLE = "PINSTRESS_CACHE"  # the folder; empty or CACHE_OFF: none
 CACHE_OFF = "off"
 MAX_CACHE_SIZE = 10**9  # bytes of all files; the longest unused go first
 # Packages that have a hand in an answer.
-SOURCE_PACKAGES = ("assess", "fea", "geometry", "pinbase", "pinstress", "reports")
+SOURCE_PACKAGES = ("assess", "fea", "geometry", "loads", "pinbase", "pinstress", "reports")
 # On which answers depend.
 REQUIRED_PACKAGES = (
     "pinstress",

@@ -2,7 +2,8 @@
 
 Every full answer is that of `pinstress.run` on the changed study, to the last bit. A quick one of a
 pin in contact is scaled from the study as it is (pinstress.analysis.scaled), or in full where its
-lugs press on it elsewhere, or on arcs too narrow for rough cells. Both are the same
+lugs press on it elsewhere, or on arcs too narrow for rough cells, and where the stress of lugs
+or of a hardened surface is wanted, which needs fine ones. Both are the same
 whatever was asked before: what is remembered has the content of everything it depends on as its
 key, and nothing is updated in place.
 """
@@ -22,7 +23,7 @@ from pinbase.processes.threads import one_thread
 from pinbase.records import pack, unpack
 from pinstress.analysis.assessed.situations import assessed
 from pinstress.analysis.gather.gather import rows_of
-from pinstress.analysis.plan import Plan, prepare
+from pinstress.analysis.plan import Plan, for_task, needs_fine_cells, prepare
 from pinstress.analysis.results import RunResults, run_results, solve
 from pinstress.analysis.reused_loads import reused_loads
 from pinstress.analysis.scaled import (
@@ -36,7 +37,7 @@ from pinstress.analysis.scaled import (
     scaled_row,
     too_rough,
 )
-from pinstress.analysis.solve import for_task, solve_tasks, unjudged
+from pinstress.analysis.solve import solve_tasks, unjudged
 from pinstress.analysis.stored import PinOutcome, cache_key
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.choices import ChoiceError
@@ -196,10 +197,13 @@ class Engine:
     def _outcomes(self, plan: Plan, accuracy: Accuracy) -> list[PinOutcome]:
         if accuracy == "full":
             return self._solve(plan, plan.tasks)
-        return [
-            (self._scaled(plan, task) if scalable(task) else None) or self._rough(plan, task)
-            for task in plan.tasks
-        ]
+        return [self._quick(plan, task) for task in plan.tasks]
+
+    def _quick(self, plan: Plan, task: Task) -> PinOutcome:
+        """The outcome of a task, scaled or on rough cells where either will do."""
+        if task.lugs and needs_fine_cells(task):
+            return self._solve(plan, [task])[0]
+        return (self._scaled(plan, task) if scalable(task) else None) or self._rough(plan, task)
 
     def _rough(self, plan: Plan, task: Task) -> PinOutcome:
         """The outcome of a task on rough cells; in full where these are too large."""

@@ -8,12 +8,13 @@ from functools import partial
 from typing import Literal
 
 from fea.core.memory import allowed_memory
-from fea.core.requirement import Model, Requirement
+from fea.core.requirement import Joints, Model, Requirement
 from pinstress.analysis import checks
 from pinstress.analysis.published_quantities import published_values
 from pinstress.study.model.cases import CaseLoads, case_loads
 from pinstress.study.model.mechanism.linkage import any_linkage, determined
 from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.model.requirements import asks_more_than_yield, required_factors
 from pinstress.study.model.sequence import chosen_cases, require_times
 from pinstress.study.model.tasks import Task, require_models, tasks
 from pinstress.study.reading.choices import (
@@ -174,3 +175,37 @@ def requirement_of(
         table.excluded_distance,
         memory=allowed_memory(require_positive("memory_limit", memory, endless=True)),
     )
+
+
+def for_task(study: Study, task: Task, requirement: Requirement) -> Requirement:
+    """Return a requirement with the joints and the factors of a task."""
+    factors = required_factors(study, task.pin.name, (loads.case for loads in task.loads))
+    every = requirement.every or _needs_every_case(study, task)
+    return replace(requirement, joints=_joints(study, task), factors=factors, every=every)
+
+
+def needs_fine_cells(task: Task) -> bool:
+    """Return whether cells of contact must be fine in every case: the stress of lugs, and of the
+    parts of a hardened pin, has no error of cells of its own.
+    """
+    return bool(task.material.hardened) or any(lug.shank for lug in task.lugs)
+
+
+def _needs_every_case(study: Study, task: Task) -> bool:
+    """Return whether the required factor against yield does not say enough of a minor case."""
+    if needs_fine_cells(task):
+        return True
+    pin, cases = task.pin.name, [loads.case for loads in task.loads]
+    return any(asks_more_than_yield(study, pin, case) for case in cases)
+
+
+def _joints(study: Study, task: Task) -> Joints:
+    """Return the joints by which lugs hold a pin."""
+    joints = study.table.analysis.joints
+    if joints == "contact" or joints == "foundation":
+        return joints
+    # A beam on foundations gives no pressure around the bores of lugs.
+    if any(lug.shank for lug in task.lugs):
+        return "contact"
+    # A beam sees no holes; damage depends on stress itself, not on a limit.
+    return "auto" if task.pin.revolved and study.table.fatigue is None else "contact"

@@ -29,7 +29,7 @@ def reused_loads(raw: Mapping[str, Any], memo: Memo) -> LoadsOf:
     """
 
     def loads_of(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
-        content = _content(study, raw)
+        content = content_of_loads(study, raw)
         keys = {name: ("loads", name, content) for name in cases if _reusable(study, name)}
         known: dict[str, CaseLoads] = {}
         for name, key in keys.items():
@@ -53,8 +53,11 @@ def _reusable(study: Study, case: str) -> bool:
     return study.table.mechanism is not None and not isinstance(study.table.case[case], GivenCase)
 
 
-def _content(study: Study, raw: Mapping[str, Any]) -> bytes:
-    """Return a hash of all on which the loads of a mechanism depend."""
+def content_of_loads(study: Study, raw: Mapping[str, Any]) -> bytes:
+    """Return a hash of all on which the loads of a mechanism depend; empty without one.
+
+    raw: the content of the study.
+    """
     mechanism, table = study.table.mechanism, study.table
     if mechanism is None:
         return b""
@@ -66,7 +69,7 @@ def _content(study: Study, raw: Mapping[str, Any]) -> bytes:
         if joint.weight is None and joint.fixed_in is None and name in table.pin
     ]
     weights = [(raw["pin"][x], table.material[table.pin[x].material].density) for x in weighed]
-    along = [_lengths(raw["pin"][x]) for x in table.pin] if bands_count(study) else []
+    along = [_places(raw["pin"][x]) for x in table.pin] if bands_count(study) else []
     depends = [tables, joints, weights, along]
     return hashlib.sha256(json.dumps(depends, default=str).encode()).digest()
 
@@ -86,6 +89,10 @@ def bands_count(study: Study) -> bool:
     )
 
 
-def _lengths(pin: Mapping[str, Any]) -> Any:
-    """Return what places the bands of a pin: the lengths of its profile, or all of it."""
-    return [segment.get("length") for segment in pin.get("profile", ())] or pin
+def _places(pin: Mapping[str, Any]) -> Any:
+    """Return what places the bands and clamps of a pin: the lengths and names of its profile, or
+    all of it.
+    """
+    keys = "length", "connection", "name", "ear_of"
+    segments = [[segment.get(key) for key in keys] for segment in pin.get("profile", ())]
+    return [segments, pin.get("clamp")] if segments else pin

@@ -55,10 +55,8 @@ RANGE_REMARK = "the range is that of the joint as the study has it"
 
 
 def scalable(task: Task) -> bool:
-    """Return whether rows of a task may be scaled: those of a pin without cuts in its lugs, all of
-    one strength.
-    """
-    return bool(task.lugs) and isinstance(task.pin, Pin) and not task.material.hardened
+    """Return whether rows of a task may be scaled: those of a pin without cuts in its lugs."""
+    return bool(task.lugs) and isinstance(task.pin, Pin)
 
 
 def coarse(requirement: Requirement, lasting: bool) -> Requirement:

@@ -12,7 +12,7 @@ from assess.fatigue.records import PointHistory
 from assess.opinion.opinions import Opinion
 from fea.core.memory import allowed_memory, solid_memory
 from fea.core.peak import Maximum
-from fea.core.requirement import Joints, Requirement
+from fea.core.requirement import Requirement
 from fea.support.records import JointResult
 from pinbase.memo import Memo
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
@@ -21,10 +21,9 @@ from pinstress.analysis import checks
 from pinstress.analysis.assessed.limits import limit_loads, limit_seconds, lug_collapses
 from pinstress.analysis.assessed.situations import assessed
 from pinstress.analysis.cache import OutcomeStore
-from pinstress.analysis.plan import Plan
+from pinstress.analysis.plan import Plan, for_task
 from pinstress.analysis.stored import Entry, PinOutcome, cache_key, independent_of_memory
 from pinstress.study.model.pins import shape_notes
-from pinstress.study.model.requirements import asks_more_than_yield, required_factors
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from reports.data.fields import Field
@@ -199,35 +198,6 @@ def problem_of(task: Task, memo: Memo | None = None) -> PinProblem:
         task.pin, task.material, task.lugs, task.loads, task.between, task.also, task.clamps,
         memo,
     )  # fmt: skip
-
-
-def for_task(study: Study, task: Task, requirement: Requirement) -> Requirement:
-    """Return a requirement with the joints and the factors of a task."""
-    factors = required_factors(study, task.pin.name, (loads.case for loads in task.loads))
-    every = requirement.every or _needs_every_case(study, task)
-    return replace(requirement, joints=_joints(study, task), factors=factors, every=every)
-
-
-def _needs_every_case(study: Study, task: Task) -> bool:
-    """Return whether the required factor against yield does not say enough of a minor case."""
-    # The stress of lugs and of the parts of a hardened pin has no error of contact's cells of its
-    # own, so that these must be fine in every case.
-    if task.material.hardened or any(lug.shank for lug in task.lugs):
-        return True
-    pin, cases = task.pin.name, [loads.case for loads in task.loads]
-    return any(asks_more_than_yield(study, pin, case) for case in cases)
-
-
-def _joints(study: Study, task: Task) -> Joints:
-    """Return the joints by which lugs hold a pin."""
-    joints = study.table.analysis.joints
-    if joints == "contact" or joints == "foundation":
-        return joints
-    # A beam on foundations gives no pressure around the bores of lugs.
-    if any(lug.shank for lug in task.lugs):
-        return "contact"
-    # A beam sees no holes; damage depends on stress itself, not on a limit.
-    return "auto" if task.pin.revolved and study.table.fatigue is None else "contact"
 
 
 def _solve(plan: Plan, task: Task, keep: Keep | None, memo: Memo | None, tell: Tell) -> PinOutcome:

@@ -15,9 +15,8 @@ from fea.core.memory import too_much
 from fea.core.peak import Maximum
 from geometry import CutPin, Pin, PinLike
 from loads import read_regular
-from pinstress.analysis.assessed.limits import collapse_factors, rung_of
-from pinstress.analysis.plan import Plan
-from pinstress.study.model.requirements import required_factors
+from pinstress.analysis.assessed.limits import collapse_factors, lugs_asked, rung_of
+from pinstress.analysis.plan import Plan, for_task
 from pinstress.study.model.tasks import Task
 from reports.data.changes import Remedy
 from reports.data.fields import Field
@@ -86,6 +85,7 @@ def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
         study.table.analysis.joints,
         study.table.fatigue is not None,
         rung_of(plan, task.pin.name),
+        lugs_asked(plan, task),
         collapse_factors(study, task),
         task.loads,
         task.left_out,
@@ -94,8 +94,7 @@ def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
         task.shanks,
         [(case.reactions.times, case.range) for case in cases],
         task.material,
-        replace(plan.requirement, memory=None),
-        required_factors(study, task.pin.name, (loads.case for loads in task.loads)),
+        replace(for_task(study, task, plan.requirement), memory=None),
         plan.also,
         plan.sensitive,
         plan.explained,

@@ -112,7 +112,7 @@ def _resolved(directory: Path) -> Path:
     """Return the user's path with links resolved."""
     try:
         return directory.resolve()
-    except FileNotFoundError:  # only the current folder is asked for
+    except FileNotFoundError:  # only the current folder is looked up
         raise InputError(
             f"--out: {directory} would lie in the current folder, which no longer exists; change "
             "to another folder",

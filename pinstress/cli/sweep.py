@@ -31,7 +31,7 @@ from pinstress.explore.sweep.parts import (
     identity,
     is_ours,
 )
-from pinstress.explore.sweep.summary import summary
+from pinstress.explore.sweep.summary import UNSOLVED_VERDICTS, summary
 from pinstress.explore.sweep.sweep import Report, planned, solved
 from pinstress.explore.sweep.table import read_table, table_of, write_table
 from pinstress.study.reading.errors import InputError, cannot_write_out
@@ -107,7 +107,7 @@ def _told(directory: Path, table: pa.Table, way: Way) -> int:
     if way.opens:
         open_page(directory / DESIGNS_PAGE)
     verdicts = set(table["verdict"].unique().to_pylist())
-    return int(verdicts == {"failed"})
+    return int(verdicts <= {*UNSOLVED_VERDICTS})
 
 
 def _write(directory: Path, table: pa.Table) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from pinbase.errors import ArgumentError
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
 from pinstress.explore.sweep.evaluate import DesignRow, Evaluator, rows_without_maximum
+from pinstress.explore.sweep.laws import Floats
 from pinstress.explore.sweep.number import Number, number_at, si_value
 from pinstress.explore.sweep.workers import PROCESS_DIED
 from pinstress.study.model.lugs import with_given_lugs
@@ -18,6 +19,7 @@ from pinstress.study.reading.file import Study
 from reports.data.curve import CurvePoint, FactorCurve
 
 USUAL_RANGE = 0.5, 2.0  # times the number in the study
+SAME_VALUE = 1e-9  # of the range: a value that is the nominal one but for round-off
 STRESS = "stress"
 
 Ends = tuple[float | str | None, float | str | None]
@@ -48,9 +50,7 @@ def curve(
     if pins is None and number.path[0] == "pin":
         pins = [str(number.path[1])]
     evaluator = Evaluator(study, [number], pins)
-    values = np.linspace(low, high, points)
-    if low < number.nominal < high:
-        values = np.union1d(values, number.nominal)
+    values = values_between(low, high, number.nominal, points)
     # Neighbours have most in common, so each process takes one part of the range.
     parts = np.array_split(values, min(jobs, len(values)))
     work = [Job(key, partial(_solved, evaluator, part)) for part in parts]
@@ -69,6 +69,15 @@ def curve(
         study.system.stress, tuple(solved), with_given_lugs(study, names),
         checks_besides_yield(study),
     )  # fmt: skip
+
+
+def values_between(low: float, high: float, nominal: float, points: int) -> Floats:
+    """Return evenly spaced values, and the nominal one, which may be one of them, if between."""
+    values = np.linspace(low, high, points)
+    if not low < nominal < high:
+        return values
+    same = np.abs(values - nominal) <= SAME_VALUE * (high - low)
+    return np.union1d(np.where(same, nominal, values), nominal)
 
 
 def _number(study: Study, key: str) -> Number:

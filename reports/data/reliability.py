@@ -91,8 +91,8 @@ class Risk:
     worst of it; None where nothing that has no law is open.
     unbounded: the probability that the row fails or is singular, so that its factor is not known;
     None where no design is singular.
-    loose: the part of the plain samples in which the pin is no longer pressed into a lug at the
-    temperature of the case.
+    loose: the probability that the pin is no longer pressed into a lug at the temperature of the
+    case; None where it is in all designs.
     curve: of the distribution (factor, probability to be lower, by plain (0) or importance sampling
     (1)).
     """
@@ -113,7 +113,7 @@ class Risk:
     beneath: Spread | None = None
     over_open: Spread | None = None
     unbounded: Spread | None = None
-    loose: float = 0.0
+    loose: Spread | None = None
     drivers: tuple[Driver, ...] = ()
     curve: tuple[tuple[float, float, int], ...] = ()
 
@@ -167,8 +167,9 @@ class Risk:
         """Return, in words, what makes the probability of failure larger than the allowed one."""
         deep = self.beneath is not None and self.beneath.high > allowed
         over_open = self.over_open is not None and self.over_open.high > allowed
+        loose = self.loose is not None and self.loose.high > allowed
         reasons = {
-            "what retains a pin that comes loose": self.loose > allowed,
+            "what retains a pin that comes loose": loose,
             "what lies beneath contact": deep,
             "what the study leaves open": over_open and not deep,
         }

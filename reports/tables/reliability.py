@@ -117,9 +117,9 @@ def remark(risk: Risk) -> str:
             "outside the excluded zones: the probability of that or of failure is "
             f"{chance_range(risk.unbounded)}"
         )
-    if risk.loose:
+    if risk.loose is not None:
         said.append(
-            f"its press fit is lost in {chance(risk.loose)} of the plain samples, and what else "
+            f"its press fit is lost with the probability {chance_range(risk.loose)}, and what else "
             "retains the pin is not judged"
         )
     if risk.unknown:

@@ -123,8 +123,13 @@ def test_a_pin_that_comes_loose_in_many_random_designs_is_not_safe(required: str
     found = assess(varying, nominal, 1, lambda _, __: None)
     (risk,) = found.risks
     assert nominal.pins[0].lost_fits == ()
-    assert 0.1 < risk.loose < 0.5
+    assert risk.loose is not None
+    assert 0.1 < risk.loose.value < 0.5
     assert risk.failures == 0
-    assert risk.loose > found.probability
+    assert risk.loose.value > found.probability
     sure = replace(risk, sampled=Spread(0.0, 0.0, 0.01), mesh=None)
     assert sure.result(found.probability) == "depends"
+    # So few samples may show less than it is.
+    rarely = replace(sure, loose=Spread(0.05, 0.001, 0.25))
+    assert rarely.result(found.probability) == "depends"
+    assert replace(sure, loose=None).result(found.probability) == "safe"

@@ -11,7 +11,7 @@ import pytest
 import pinstress
 from fea.core.requirement import MINOR_CASE
 from pinstress import study_from
-from pinstress.analysis.solve import for_task
+from pinstress.analysis.plan import for_task
 from pinstress.cli.commands import run_command_line
 from pinstress.explore.reliability.designs import for_values
 from tests.support.each import each

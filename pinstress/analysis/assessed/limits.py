@@ -123,12 +123,18 @@ def limit_asked(peak: Maximum, task: Task, rung: Rung) -> bool:
     return rung == "solid" or factor < 1.0
 
 
+def lugs_asked(plan: Plan, task: Task) -> bool:
+    """Return whether the limit loads of the lugs of a task are requested."""
+    rung = rung_of(plan, task.pin.name)
+    return bool(task.given) and (rung == "solid" or (rung is not None and plan.limit_load))
+
+
 def lug_collapses(plan: Plan, task: Task, tell: Tell) -> tuple[LugCollapse, ...]:
     """Return the limit loads of the lugs that the study gives for a pin, along their shanks, where
     the study or the run requests limit loads of more than the rows that yield.
     """
-    profile, rung = task.pin.profile, rung_of(plan, task.pin.name)
-    if profile is None or not task.given or not (rung == "solid" or (rung and plan.limit_load)):
+    profile = task.pin.profile
+    if profile is None or not lugs_asked(plan, task):
         return ()
     tell(f"pin {task.pin.name}, limit loads of lugs")
     pin, same = on_structure(profile, task.given), Memo()

@@ -56,15 +56,11 @@ def change(requirement: Requirement, task: Task, solutions: tuple[Solution, ...]
     def required_of(solution: Solution) -> float:
         return requirement.of_case(solution.peak.case).required or 1.0
 
-    worst = max(
-        solutions,
-        key=lambda s: max(s.peak.max_von_mises or 0.0, _beneath(s)) * required_of(s),
-    )
+    worst = max(solutions, key=lambda s: _counted(s) * required_of(s))
     peak, required = worst.peak, required_of(worst)
     if strength is None or not peak.max_von_mises:
         return None
-    stress = peak.max_von_mises if peak.verdict == "singular" else peak.upper_end
-    if max(stress, _beneath(worst)) <= strength / required:
+    if _counted(worst) <= strength / required:
         return None
     high = max(peak.upper_end, _beneath(worst))
     failing = FailingCase(task, worst, strength / required / high)
@@ -85,6 +81,15 @@ def change(requirement: Requirement, task: Task, solutions: tuple[Solution, ...]
         given_time=None if impulse is None else impulse.time,
         singular=peak.verdict == "singular",
     )
+
+
+def _counted(solution: Solution) -> float:
+    """Return the stress that decides whether a case fails, Pa: with its error, unless that is
+    singular, or that beneath contact.
+    """
+    peak = solution.peak
+    stress = peak.max_von_mises if peak.verdict == "singular" else peak.upper_end
+    return max(stress or 0.0, _beneath(solution))
 
 
 def _beneath(solution: Solution) -> float:

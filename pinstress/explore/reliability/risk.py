@@ -54,10 +54,10 @@ class RiskColumn:
         selected = answers.system if self.row is None else answers
         return np.asarray(selected.unbounded[:, self.row or 0])
 
-    def loose(self, answers: Answers) -> float:
-        """Return the part of the designs in which the pin comes loose."""
+    def loose(self, answers: Answers) -> NDArray[np.bool_]:
+        """Return whether the pin comes loose, (n,)."""
         selected = answers.system if self.row is None else answers
-        return float(selected.loose[:, self.row or 0].mean())
+        return np.asarray(selected.loose[:, self.row or 0])
 
     def depends(self, answers: Answers) -> bool:
         """Return whether the stress beneath contact ever governs."""
@@ -95,6 +95,11 @@ class Sample:
         growths: of the stress of each row over what is open.
         """
         margin = 1.0 - settings.factor * column.deep(self.answers, growths)
+        return probability(self.draws, margin, 0.0, settings.confidence)
+
+    def loose(self, settings: ReliabilityTable, column: RiskColumn) -> Estimate:
+        """Return the probability that the pin comes loose."""
+        margin = np.where(column.loose(self.answers), -1.0, 1.0)
         return probability(self.draws, margin, 0.0, settings.confidence)
 
     def quantile(self, settings: ReliabilityTable, column: RiskColumn) -> Estimate:
@@ -153,7 +158,7 @@ def risk_of(
         beneath=_beneath(sampled, weighted, row, settings),
         over_open=_over_open(sampled, weighted, row, settings, growths),
         unbounded=_unbounded(sampled, weighted, row, settings),
-        loose=row.column.loose(sampled.answers),
+        loose=_loose(sampled, weighted, row, settings),
         curve=(*_curve(sampled, row, 0), *(_curve(weighted, row, 1) if weighted else ())),
     )
 
@@ -193,6 +198,15 @@ def _unbounded(
     if not any(row.column.unbounded(x.answers).any() for x in (sampled, weighted) if x):
         return None
     return _narrower(lambda sample: sample.unbounded(settings, row.column), sampled, weighted)
+
+
+def _loose(
+    sampled: Sample, weighted: Sample | None, row: AssessedRow, settings: ReliabilityTable
+) -> Spread | None:
+    """Return the probability that the pin comes loose; None where it does in no design."""
+    if not any(row.column.loose(x.answers).any() for x in (sampled, weighted) if x):
+        return None
+    return _narrower(lambda sample: sample.loose(settings, row.column), sampled, weighted)
 
 
 def _narrower(

@@ -55,7 +55,8 @@ def _outcome(results: Results, pin: str, why: str) -> str:
     """
     if not why:
         return SAFE
-    rows = {p.outcome for p in results.pins if p.pin == pin and p.safety_factor is not None}
+    solved = [p for p in results.pins if p.pin == pin and p.safety_factor is not None]
+    rows = {p.outcome for p in (*solved, *_unsolved(results, pin))}
     if FAILS in rows or _strict_check(results, pin):
         return FAILS
     worst = worst_checks(results)[pin]
@@ -98,6 +99,8 @@ def why_missed(results: Results, pin: str) -> str:
     singular = [p.case for p in rows if p.verdict == "singular"]
     if not rows:
         return "the new study gives no safety factor"
+    if unsolved := _unsolved(results, pin):
+        return f"in {unsolved[0].case} there is no stress: {unsolved[0].note}"
     missing = [p.case for p in rows if p.outcome == FAILS]
     depends = [p.case for p in rows if p.outcome == DEPENDS]
     loose = [p.case for p in rows if p.verdict != "singular" and p.outcome == NOT_DECIDED]
@@ -132,6 +135,11 @@ def why_missed(results: Results, pin: str) -> str:
         case = f" ({worst.case})" if worst.case else ""
         return f"{worst.check} is met as described, but not over the {worst.reason}{case}"
     return ""
+
+
+def _unsolved(results: Results, pin: str) -> list[PinResult]:
+    """Return the rows of a pin that need a factor and have no stress."""
+    return [p for p in results.pins if p.pin == pin and p.required and p.max_von_mises is None]
 
 
 def _strict_check(results: Results, pin: str) -> JudgedCheck | None:

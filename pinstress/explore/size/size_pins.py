@@ -11,12 +11,13 @@ import numpy as np
 
 from pinbase.processes.pool import Job, ProcessDied, Progress, in_parallel
 from pinstress.analysis.plan import Plan, all_loads
+from pinstress.analysis.reused_loads import content_of_loads
 from pinstress.analysis.solve import effort
 from pinstress.explore.size.scaled_study import resized_study
 from pinstress.explore.size.size_pin import SizingGoal, SizingResult, size_pin
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.pins import pin as pin_of
-from pinstress.study.reading.file import Study
+from pinstress.study.reading.file import Study, raw_study
 
 if TYPE_CHECKING:
     from pinstress.explore.sweep.cluster import Cluster
@@ -114,6 +115,7 @@ def loaded_more(plan: Plan, goal: SizingGoal, sized: Sequence[SizingResult]) -> 
     Stress grows at most with the largest force, or with what is added to it at any instant.
     """
     new, cases = new_study(plan.study, goal, sized), list(plan.loads)
+    content = content_of_loads(new, raw_study(new))
     after: dict[str, CaseLoads] | None = None
     out = []
     for result in sized:
@@ -125,7 +127,7 @@ def loaded_more(plan: Plan, goal: SizingGoal, sized: Sequence[SizingResult]) -> 
             goal.standard,
             goal.written,
         )
-        if solved.table.mechanism == new.table.mechanism:
+        if content_of_loads(solved, raw_study(solved)) == content:
             continue
         after = after or all_loads(new, cases)
         more = goal.of_pin(result.pin)

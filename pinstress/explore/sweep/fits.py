@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 
 from pinbase.errors import ArgumentError
@@ -9,7 +10,7 @@ from pinstress.explore.sweep.number import Number
 from pinstress.study.schema.iso286 import CLASS_PATTERN, deviations
 from pinstress.study.schema.shown import as_text
 from pinstress.study.schema.thermal_units import difference_of
-from pinstress.study.schema.units import UnitSystem, to_si
+from pinstress.study.schema.units import UnitSystem, split, to_si
 
 PLUS_MINUS_PATTERN = re.compile(r"(?:±|\+/?-)\s*([^+-].*)")
 TOLERANCE_EXAMPLES = 'write for instance "+0.1 mm -0.05 mm", "±0.1 mm" or "h7"'
@@ -46,11 +47,27 @@ def _deviations(text: str, number: Number, system: UnitSystem) -> tuple[float, f
                 f"cannot read {as_text(text)}; {TOLERANCE_EXAMPLES}", "not-a-tolerance"
             )
         low, high = sorted(_si(part, number, system) for part in parts)
+        _require_units(text, parts, number, system)
     if not low < high:
         raise ArgumentError(
             f"{as_text(text)} has no width; {TOLERANCE_EXAMPLES}", "not-a-tolerance"
         )
     return low, high
+
+
+def _require_units(text: str, parts: list[str], number: Number, system: UnitSystem) -> None:
+    """Raise ArgumentError where one deviation alone has a unit, unless the other is the same in it:
+    on a drawing one unit is of both.
+    """
+    (value, unit), (other, other_unit) = (split(part) or (0.0, "") for part in parts)
+    if bool(unit) == bool(other_unit):
+        return
+    bare = other if unit else value
+    both = (_si(f"{bare!r} {one}".strip(), number, system) for one in ("", unit or other_unit))
+    if not math.isclose(*both):
+        raise ArgumentError(
+            f"{as_text(text)} has a unit for one deviation only; give both theirs", "missing-unit"
+        )
 
 
 def _si(text: str, number: Number, system: UnitSystem) -> float:

@@ -106,8 +106,8 @@ class LogNormal:
         """Return the law of its logarithm."""
         variance = math.log1p((self.deviation / self.mean) ** 2)
         centre = math.log(self.mean) - 0.5 * variance
-        low = math.log(self.low) if self.low > 0.0 else -math.inf
-        return Normal(centre, math.sqrt(variance), low, math.log(self.high))
+        low, high = (math.log(x) if x > 0.0 else -math.inf for x in (self.low, self.high))
+        return Normal(centre, math.sqrt(variance), low, high)
 
     @property
     def within(self) -> float:
@@ -125,8 +125,7 @@ class LogNormal:
     def text(self, show: Show, spread: Show) -> str:
         """Describe the law as Uniform does."""
         text = f"lognormal, mean {show(self.mean)}, deviation {spread(self.deviation)}"
-        low = self.low if self.low > 0.0 else -math.inf
-        return text + _limits(low, self.high, show)
+        return text + _limits(self.low, self.high, show)
 
 
 @dataclass(frozen=True)

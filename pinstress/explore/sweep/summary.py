@@ -30,10 +30,10 @@ def summary(table: pa.Table, console: Console) -> None:
         ["design", "pin", "max_von_mises", "safety_factor", "outcome", "verdict", "reason", "code"]
     ).to_pylist()
     designs = {row["design"] for row in rows}
-    failed = {row["design"] for row in rows if row["verdict"] == "failed"}
+    failed = {row["design"] for row in rows if row["verdict"] in UNSOLVED_VERDICTS}
     console.print(
         f"{len(designs):,} design{'s' * (len(designs) != 1)}, {len(failed):,} failed"
-        + (" in some row" if len({row["pin"] for row in rows}) > 1 else ""),
+        + " in some row" * (len(rows) > len(designs)),
         highlight=False,
     )
     for line in _reasons(rows):
@@ -49,7 +49,8 @@ def summary(table: pa.Table, console: Console) -> None:
         grid.add_row(pin, *_range(of_pin))
         if required is not None or any(r["outcome"] == FAILS for r in rows):
             below = {r["design"] for r in of_pin if _below(r, required)}
-            solved = len({r["design"] for r in of_pin if r["verdict"] not in UNSOLVED_VERDICTS})
+            lacking = {r["design"] for r in of_pin if r["verdict"] in UNSOLVED_VERDICTS}
+            solved = len(designs) - len(lacking - below)
             of = f" of {solved:,} solved" if solved < len(designs) else ""
             short.append(f"{pin} {len(below):,}{of}")
     console.print(grid)
@@ -85,7 +86,7 @@ def _below(row: dict[str, Any], required: float | None) -> bool:
 
 def _reasons(rows: list[dict[str, Any]]) -> list[str]:
     """Return the commonest reasons of failure, by code, each with an example."""
-    failed = [row for row in rows if row["verdict"] == "failed"]
+    failed = [row for row in rows if row["verdict"] in UNSOLVED_VERDICTS]
     counts = Counter(row["code"] for row in failed)
     lines = []
     for code, _ in counts.most_common(MAX_PRINTED_REASONS):

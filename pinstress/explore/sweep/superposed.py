@@ -10,7 +10,8 @@ from fea.core.requirement import Requirement
 from geometry import ArgumentError
 from pinbase.memo import Memo
 from pinbase.records import digest
-from pinstress.analysis.solve import for_task, problem_of
+from pinstress.analysis.plan import for_task
+from pinstress.analysis.solve import problem_of
 from pinstress.analysis.stored import shape_of
 from pinstress.explore.sweep.outcomes import bare_row
 from pinstress.study.model.cases import CaseLoads

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pinbase.arrays import Floats
+from pinbase.keys import key_part
 from pinstress.study.reading.choices import select
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.sequence import SequenceTable
@@ -63,13 +64,14 @@ def require_times(study: Study, times: Mapping[str, Floats | None]) -> None:
     for name in complete(study, times):
         count = 0
         for i, step in enumerate(study.table.sequence[name].steps, 1):
-            course, where = times[step.case], f"sequence.{name}.steps[{i}]"
+            course, where = times[step.case], f"sequence.{key_part(name)}.steps[{i}]"
             count += step.repeat * (2 if course is None else len(course))
             if (course is None) == (step.duration is None):
                 what = "is at rest; give its" if course is None else "has its own time; remove the"
                 raise study.error(f"{where}: {step.case} {what} duration", code="give-one")
         if count > MAX_SEQUENCE_INSTANTS:
             raise study.error(
-                f"sequence.{name}: {count:,} instants; the limit is {MAX_SEQUENCE_INSTANTS:,}",
+                f"sequence.{key_part(name)}: {count:,} instants; the limit is "
+                f"{MAX_SEQUENCE_INSTANTS:,}",
                 code="too-large",
             )

@@ -184,10 +184,10 @@ def closed_message(where: str, pin: str) -> str:
 def _of_sequences(table: StudyTable) -> Iterator[Wrong]:
     for name, sequence in table.sequence.items():
         if name in table.case:
-            text = f"sequence.{name}: a case has this name too; rename one"
+            text = f"sequence.{key_part(name)}: a case has this name too; rename one"
             yield Wrong(text, code="duplicate-case")
         for i, step in enumerate(sequence.steps, 1):
-            where = f"sequence.{name}.steps[{i}]"
+            where = f"sequence.{key_part(name)}.steps[{i}]"
             case = table.case.get(step.case)
             if isinstance(case, InstantCase):
                 text = f"{where}.case: an instant of a motion does not last; name the motion"
@@ -236,7 +236,7 @@ def _of_fatigue(table: StudyTable, fatigue: FatigueTable) -> Iterator[Wrong]:
     """
     for case in fatigue.occurrences:
         known = {**table.case, **table.sequence}
-        yield from known_name(f"fatigue.occurrences.{case}", "case", case, known)
+        yield from known_name(f"fatigue.occurrences.{key_part(case)}", "case", case, known)
     try:
         flight([*fatigue.occurrences.values()])
     except ArgumentError as error:

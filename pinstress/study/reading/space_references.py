@@ -56,7 +56,7 @@ def of_space(mechanism: SpaceMechanismTable) -> Iterator[Wrong]:
         if spring.slide is not None:
             yield from _moved(f"{where}.slide", mechanism, spring.slide, None, True)
     for name, torsion in mechanism.torsion_spring.items():
-        where = f"mechanism.torsion_spring.{name}.joint"
+        where = f"mechanism.torsion_spring.{key_part(name)}.joint"
         yield from _moved(where, mechanism, torsion.joint, torsion.connection, False)
 
 

@@ -77,7 +77,9 @@ force = [0, 0, 5000]
 
 
 def test_a_side_load_depends_on_where_links_bear_on_their_pins(computed: list[list[str]]) -> None:
-    """Only with a side load: a longer spacer on pin E moves links apart, a thicker one does not."""
+    """Only with a side load: a longer spacer on pin E moves links apart, a thicker one does not.
+    The link that carries pin B lies at its clamp.
+    """
     text, folder = load_study(shipped_studies()[GEAR]).text, shipped_studies()[GEAR].parent
     longer, thicker = {"pin.E.profile[3].length": 5.0}, {"pin.E.profile[3].diameter": 3.5}
     plane, memo = study_from(text, folder), Memo()
@@ -88,8 +90,10 @@ def test_a_side_load_depends_on_where_links_bear_on_their_pins(computed: list[li
     before = _require_same(aside, memo)
     assert np.array_equal(_require_same(changed_study(aside, thicker), memo), before)
     assert len(computed) == 2
-    assert not np.array_equal(_require_same(changed_study(aside, longer), memo), before)
-    assert len(computed) == 3
+    other_end: dict[str, Any] = {"pin.B.clamp[1]": "end"}
+    for k, changes in enumerate((longer, other_end), 3):
+        assert not np.array_equal(_require_same(changed_study(aside, changes), memo), before)
+        assert len(computed) == k
 
 
 def _require_same(study: Study, memo: Memo) -> Any:

@@ -7,15 +7,16 @@ from typing import Any
 
 import pytest
 
-from fea.core.peak import meets_limit
+from fea.core.peak import Maximum, meets_limit
 from fea.support.records import FRICTION
 from pinbase.records import plain
 from pinstress import Engine, changed_study, load_study, run, shipped_studies, study_from
 from pinstress.analysis import engine as engine_module
 from pinstress.analysis.scaled import SCALED_CODE
 from pinstress.analysis.solve import unjudged
+from pinstress.analysis.stored import PinOutcome
 from reports.data.row import PinResult
-from tests.support.each import sampled
+from tests.support.each import each, sampled
 
 STUDY = """
 title = "A pin in three lugs"
@@ -52,6 +53,8 @@ FORCES = {"left": [0, 8000], "middle": [0, -16000], "right": [0, 8000]}
 SMALL_FORCES = {"left": [0, 100], "middle": [0, -200], "right": [0, 100]}
 MIDDLE = "pin.P.profile[3].diameter"
 STRENGTH = "material.steel.yield_strength"
+SHANK = "edge_radius = 0.5", "edge_radius = 0.5\nshank = { width = 50 }"
+HARDENED = 'yield_strength = "600 MPa"', "hardened = { surface = 900, core = 600, depth = 1 }"
 
 
 @pytest.fixture(scope="module")
@@ -311,3 +314,24 @@ def test_ranges_of_a_landing_are_scaled() -> None:
     apart = abs(ours.landing.max_von_mises / theirs.landing.max_von_mises - 1.0)
     assert apart.max() <= ours.landing.error
     assert meets_limit(ours.maximum, 1e9) == meets_limit(theirs.maximum, 1e9)
+
+
+@each("wanted", [SHANK, HARDENED])
+def test_what_needs_fine_cells_is_solved_in_full(
+    wanted: tuple[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The stress of lugs, or of a hardened surface, says nothing of the error of rough cells."""
+    asked: list[str | None] = []
+
+    def unsolved(plan: Any, **_: Any) -> list[PinOutcome]:
+        asked.append(plan.requirement.cells)
+        return [PinOutcome((PinResult(Maximum("P", "pull", "harmonic", "failed", "")),))]
+
+    def impossible(*_: Any) -> None:
+        raise ArithmeticError
+
+    monkeypatch.setattr(engine_module, "solve_tasks", unsolved)
+    monkeypatch.setattr(engine_module, "unjudged", impossible)
+    assert STUDY.count(wanted[0]) >= 1
+    quick(Engine(study_from(STUDY.replace(*wanted, 1))), {})
+    assert asked == [None]

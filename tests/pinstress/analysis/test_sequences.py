@@ -171,6 +171,12 @@ def test_what_is_wrong_is_named(tmp_path: Path, old: str, new: str, code: str, n
         describe(load_study(hoist(tmp_path, DUTY.replace(old, new, 1))))
 
 
+def test_a_sequence_is_named_as_the_study_writes_it(tmp_path: Path) -> None:
+    text = DUTY.replace("sequence.shift", 'sequence."long shift"').replace(', duration = "6 s"', "")
+    with raises(InputError, "missing-key", 'sequence."long shift".steps[2]: '):
+        describe(load_study(hoist(tmp_path, text)))
+
+
 def test_a_sequence_that_is_chosen_brings_its_cases(tmp_path: Path) -> None:
     study = load_study(hoist(tmp_path))
     assert {t.case for t in loads_only(study, cases=["shift"]).reactions} == {

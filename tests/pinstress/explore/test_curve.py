@@ -10,7 +10,7 @@ import pytest
 
 import pinstress
 from pinstress.cli.commands import run_command_line
-from pinstress.explore.curve import curve
+from pinstress.explore.curve import curve, values_between
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.in_python import changed_study, study_from
 from reports.data.curve import CurvePoint, FactorCurve
@@ -28,6 +28,14 @@ def point(value: float, factor: float | None, pin: str = "P", case: str = "c") -
 
 def of(*points: CurvePoint, required: float = 10.0) -> FactorCurve:
     return FactorCurve("s", "k", "mm", 1.0, required, "MPa", points)
+
+
+@each(("nominal", "count"), [(6e-3, 9), (19e-3 / 3.0, 10), (12e-3, 9)])
+def test_the_value_of_the_study_is_one_of_the_points_once(nominal: float, count: int) -> None:
+    """6 mm, between 1 and 11 mm, is the middle but for the last digit."""
+    values = values_between(1e-3, 11e-3, nominal, 9)
+    assert len(values) == count
+    assert (nominal in values) == (nominal < 11e-3)
 
 
 @each(

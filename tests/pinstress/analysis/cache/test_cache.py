@@ -16,6 +16,7 @@ from pinbase.records import pack
 from pinstress.analysis import cache as cache_module
 from pinstress.analysis.cache import Cache, user_cache
 from pinstress.analysis.stored import PinOutcome
+from pinstress.explore.sweep.versions import OWN_PACKAGES
 from reports.data.row import PinResult
 from tests.support.each import each
 from tests.support.programs.folder_contents import contents, flipped
@@ -49,16 +50,18 @@ def test_a_damaged_entry_is_none_and_is_replaced(
     assert contents(tmp_path) == {key: sound}
 
 
+@each("room", OWN_PACKAGES)
 def test_a_change_in_the_source_is_another_program(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    room: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "pinstress" / "analysis").mkdir(parents=True)
-    (tmp_path / "fea" / "core").mkdir(parents=True)
+    """Also in that of loads: what was swept or sampled is known by the study alone."""
+    (tmp_path / "pinstress" / "analysis").mkdir(parents=True, exist_ok=True)
+    (tmp_path / room / "core").mkdir(parents=True, exist_ok=True)
     module = tmp_path / "pinstress" / "analysis" / "cache.py"
     monkeypatch.setattr(cache_module, "__file__", str(module))
     seen = set()
     for source in ("x = 1", "x = 2"):
-        (tmp_path / "fea" / "core" / "stress.py").write_text(source)
+        (tmp_path / room / "core" / "stress.py").write_text(source)
         seen.add(cache_module.program())
     assert len(seen) == 2
 

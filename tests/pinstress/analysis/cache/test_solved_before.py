@@ -150,6 +150,23 @@ def test_lugs_and_fatigue_are_part_of_the_question(joints: str, old: str, new: s
     assert len({pack(cache_key(plan, plan.tasks[0])) for plan in plans}) == 2
 
 
+def test_a_requirement_on_rupture_is_part_of_the_question() -> None:
+    """With it, minor cases are solved as accurately as the others."""
+    stated = '[[require]]\ncheck = "rupture"\nfactor = 3\n'
+    text = IN_LUGS.replace("JOINTS", "prescribed").replace(
+        "yield_strength = 600", "yield_strength = 600\nultimate_strength = 700"
+    )
+    plans = [prepare(study_from(x)) for x in (text, text + stated)]
+    assert len({pack(cache_key(plan, plan.tasks[0])) for plan in plans}) == 2
+
+
+def test_limit_loads_of_lugs_are_part_of_the_question() -> None:
+    """`run --limit-load` finds them, and a run without it does not."""
+    text = IN_LUGS.replace("JOINTS", "prescribed").replace('limit_load = "always"\n', "")
+    plans = [prepare(study_from(text), limit_load=asked) for asked in (False, True)]
+    assert len({pack(cache_key(plan, plan.tasks[0])) for plan in plans}) == 2
+
+
 def test_options_are_part_of_the_question(solve: Solve) -> None:
     assert solve(TWO_PINS, "--vtk", "solid") == ["A", "B"]  # more fields
     assert solve(TWO_PINS, "--tolerance", "0.3") == ["A", "B"]

@@ -8,9 +8,13 @@ from pathlib import Path
 import pytest
 
 import pinstress
+from fea.core.peak import Maximum
+from fea.core.requirement import Requirement
+from fea.support.support import Solution
 from geometry import Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
-from pinstress.analysis.remedies.changes import FROM_FILE
+from pinstress.analysis.plan import prepare
+from pinstress.analysis.remedies.changes import FROM_FILE, change
 from pinstress.cli.commands import run_command_line
 from reports.data.changes import Remedy, command
 from reports.data.decision import factor_ends
@@ -62,6 +66,25 @@ def weak() -> pinstress.Study:
 def only(results: Results) -> Remedy:
     (found,) = results.changes
     return found
+
+
+def test_the_worst_case_is_that_which_may_fail_with_its_error(weak: pinstress.Study) -> None:
+    """Not that of the largest stress, which may be known better."""
+    (task,) = prepare(weak).tasks
+    strength = task.material.yield_strength or 0.0
+    requirement = Requirement(required=1.0)
+    sure, rough = (
+        Solution(
+            Maximum("B", case, "harmonic", "converged", "", share * strength, error * strength),
+            None,
+            task.loads[0],
+        )
+        for case, share, error in (("sure", 0.99, 0.0), ("rough", 0.97, 0.05))
+    )
+    found = change(requirement, task, (sure, rough))
+    assert found is not None
+    assert found.case == "rough"
+    assert found.load_factor == pytest.approx(1.0 / 1.02)
 
 
 def test_each_remedy_is_enough(weak: pinstress.Study) -> None:

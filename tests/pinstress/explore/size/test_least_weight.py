@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 
 import pinstress
+from assess.judgement import NOT_DECIDED
 from geometry import Pin
 from pinstress.analysis.plan import Plan, prepare
+from pinstress.explore.size.judged_pin import judged_pin
 from pinstress.explore.size.least_weight import LightStudy, lighten
 from pinstress.explore.size.lightest_pin import Lightest, problem_of
 from pinstress.explore.size.other_dimensions import paths_of, written_study
@@ -351,3 +353,26 @@ def test_a_pin_that_a_run_has_weaker_than_its_search_is_searched_again(
     assert found.passes == len(aims) == 2
     assert aims[0] == 2.0
     assert 2.0 <= min(low_factor(p) or 0.0 for p in pinstress.run(found.study).pins) <= 2.02
+
+
+UNHELD = """
+title = "A pin that is not held in a case of small loads"
+units = "mm-N-s"
+material.steel = { youngs_modulus = "205 GPa", poisson_ratio = 0.3, yield_strength = 600 }
+case.pull = { kind = "given", forces = { L = [0, 500], M = [0, -1000], R = [0, 500] } }
+case.light = { kind = "given", forces = { L = [0, 5], M = [0, -9], R = [0, 5] } }
+analysis = { required_safety_factor = 2, tolerance = 0.1, limit_load = "never" }
+[pin.P]
+material = "steel"
+profile = [
+  { length = 10, diameter = 20, connection = "L" },
+  { length = 20, diameter = 20, connection = "M" },
+  { length = 10, diameter = 20, connection = "R" },
+]
+"""
+
+
+def test_a_case_without_a_stress_leaves_the_factor_open() -> None:
+    judged = judged_pin(pinstress.run(pinstress.study_from(UNHELD)), "P")
+    assert judged.why.startswith("in light there is no stress: ")
+    assert judged.outcome == NOT_DECIDED

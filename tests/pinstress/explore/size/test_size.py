@@ -16,10 +16,12 @@ from pinstress.analysis.plan import prepare
 from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE, MAX_TRIALS, NoSizeError, smallest
 from pinstress.analysis.results import run
 from pinstress.cli.commands import run_command_line
+from pinstress.explore.size.judged_pin import JudgedPin
 from pinstress.explore.size.pin_answers import PinAnswer, SizedStudy, Tell
 from pinstress.explore.size.scaled_study import moved, resized, resized_study
 from pinstress.explore.size.section_law import Accuracy
-from pinstress.explore.size.size_pin import SizingGoal, size_pin
+from pinstress.explore.size.size_pin import SizingGoal, SizingResult, size_pin
+from pinstress.explore.size.size_pins import loaded_more
 from pinstress.explore.size.standard_diameters import StandardDiameters
 from pinstress.study.model.pins import pin, weight
 from pinstress.study.reading.file import load_study, parse_study
@@ -177,6 +179,23 @@ def test_a_stated_weight_changes_with_the_shape() -> None:
     assert stated[1] > 2.0 * stated[0]
     assert stated[1] - stated[0] == pytest.approx(more, rel=1e-3)
     assert after.body == before.body
+
+
+@each("stated", [True, False])
+def test_a_pin_is_sized_again_for_the_weight_of_another(stated: bool) -> None:
+    """Whether the weight of pin J is stated or that of its profile."""
+    text = (ROOT / "studies" / "grenier2008.toml").read_text(encoding="utf-8")
+    weight_of_j = "weight = { value = 7.576721476472222,"
+    assert weight_of_j in text
+    text = text if stated else text.replace(weight_of_j, f"# {weight_of_j}")
+    study = parse_study(ROOT / "studies" / "grenier2008.toml", text)
+    plan = prepare(study, pins=["A", "J"], cases=["landing"])
+    near = JudgedPin("", "", "", "", SAFE, (("landing", 10.0),))
+    sized = [
+        SizingResult("A", 1.0, None, 10.0, "converged", judged=near, others=(("J", 1.0),)),
+        SizingResult("J", 3.0, None, 10.0, "converged", judged=near, others=(("A", 1.0),)),
+    ]
+    assert "A" in loaded_more(plan, SizingGoal(10.0), sized)
 
 
 def test_an_eye_that_becomes_too_narrow_grows() -> None:

@@ -67,6 +67,11 @@ def test_a_lognormal_law_that_is_cut_off_stays_within() -> None:
     assert law.within == pytest.approx(high - low)
 
 
+def test_a_lognormal_law_that_is_cut_off_above_says_so() -> None:
+    assert LogNormal(10.0, 2.0, 0.0, 12.0).text(str, str).endswith("cut off at 0.0 and 12.0")
+    assert LogNormal(10.0, 2.0).text(str, str).endswith("deviation 2.0")
+
+
 def _number(nominal: float, dimension: str = "length") -> Number:
     return Number("key", ("pin",), dimension, nominal, "mm", 1e-3)
 
@@ -77,6 +82,8 @@ def _number(nominal: float, dimension: str = "length") -> Number:
         ("+0.1 mm -0.05 mm", -50.0, 100.0),
         ("-0.05 +0.1", -50.0, 100.0),
         ("+0.1/0", 0.0, 100.0),
+        ("+0.1 -0.05 mm", -50.0, 100.0),  # the study's own unit
+        ("0 -2e-4 in", -5.08, 0.0),
         ("±0.1 mm", -100.0, 100.0),
         ("h7", -30.0, 0.0),
         ("H7", 0.0, 30.0),

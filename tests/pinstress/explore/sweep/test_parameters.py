@@ -118,11 +118,17 @@ def test_the_unit_of_a_dimension_can_be_read(dimension: str, system: object) -> 
         (f'"{DIAMETER}" = {{ normal = [2, 0] }}', "not-positive", "deviation"),
         (f'"{DIAMETER}" = {{ lognormal = [-2, 1] }}', "not-positive", "mean"),
         (f'"{DIAMETER}" = {{ tolerance = "x" }}', "not-a-tolerance", "write for instance"),
+        (f'"{DIAMETER}" = {{ tolerance = "+0.1 -0.05 mm" }}', "missing-unit", "give both theirs"),
         (f'"{FORCE}" = {{ tolerance = "h7" }}', "no-tolerance-class", "is for lengths"),
         (f'"{DIAMETER}" = {{ tolerance = "h3" }}', "no-tolerance-class", "5 to 16"),
         (f'"{DIAMETER}" = {{ from = 1, to = 2, within = [1, 2] }}', "not-applicable", "cuts off"),
         (
             f'"{DIAMETER}" = {{ normal = [2, 0.1], within = [4, 5] }}',
+            "limits-far-off",
+            "of the law's probability",
+        ),
+        (
+            f'"{DIAMETER}" = {{ lognormal = [2, 0.1], within = [-1, 0] }}',
             "limits-far-off",
             "of the law's probability",
         ),

@@ -293,3 +293,28 @@ def test_rows_that_are_not_converged_are_counted(capsys: pytest.CaptureFixture[s
     told = capsys.readouterr().out
     assert f"not converged (see verdict, error_estimate): B {rough}\n" in told
     assert f" of {40 - found['failed']} solved\n" in told
+
+
+UNHELD = """
+title = "A pin that is not held in one of two cases"
+units = "mm-N-s"
+material.steel = { youngs_modulus = "205 GPa", poisson_ratio = 0.3, yield_strength = 600 }
+case.pull = { kind = "given", forces = { L = [500, 0], R = [-500, 0] } }
+case.push = { kind = "given", forces = { L = [500, 0], R = [-100, 0] } }
+analysis = { required_safety_factor = 2, tolerance = 0.2, model = "beam" }
+vary.parameters."pin.P.profile[1].length" = { from = 10, to = 11, steps = 2 }
+[pin.P]
+material = "steel"
+profile = [
+  { length = 10, diameter = 20, connection = "L" },
+  { length = 10, diameter = 20, connection = "R" },
+]
+"""
+
+
+def test_pins_that_are_not_held_are_told(capsys: pytest.CaptureFixture[str]) -> None:
+    """Nothing is known of their factor in that case, and the factors of others are not all."""
+    summary(pinstress.sweep(pinstress.study_from(UNHELD)), Console(width=200))
+    told = capsys.readouterr().out
+    assert told.startswith("2 designs, 2 failed in some row\n  2 couple-imbalance: for instance")
+    assert "P 0 of 0 solved" in told
