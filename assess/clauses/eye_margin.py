@@ -44,7 +44,7 @@ def not_axial(text: CheckText, s: Situation, loaded: LoadedEye) -> Margin | None
 
 
 def lacks_pull(loaded: LoadedEye) -> str:
-    """What a clause for a pull along the shank lacks where a force acts across it, or only pushes;
+    """The lack of a clause for a pull along the shank where a force acts across it, or only pushes;
     else empty.
     """
     at = f"at lug {loaded.connection}"

@@ -38,9 +38,9 @@ from assess.opinion.calculix_joint_mesh import (
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.support.lugs.lug import Lug
-from fea.support.lugs.rings import graded
 from geometry import ArgumentError, Pin
 from geometry.mesh.hexahedra import fillets_of
+from geometry.shape.rings import graded
 
 DEFAULT_FINENESS = Fineness()
 MIN_FLAT_LENGTH = 1e-3  # of a band's length: a shorter flat part between rounded edges is none

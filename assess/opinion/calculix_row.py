@@ -8,8 +8,8 @@ from assess.opinion.calculix_joint_answer import JointOpinion
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.section.section_stress import AtSection, SectionField
-from fea.support.lugs.rings import ring, ringed
 from geometry import Pin
+from geometry.shape.rings import ring, ringed
 from pinbase.arrays import Floats, Ints, Mask
 
 MIN_PRESSURE_SHARE = 0.02  # of the largest pressure

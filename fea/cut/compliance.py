@@ -105,7 +105,7 @@ def added_compliance(
     bands: Sequence[tuple[float, float]],
     loads: Sequence[tuple[UnitLoad, ...]],
 ) -> AddedCompliance:
-    """By how much cuts make a pin more compliant under unit loads.
+    """The compliance that cuts add to a pin under unit loads.
 
     pin: without its cuts.
     pieces: about its cuts. bands: loaded ones with cuts in them (fea.cut.region.loaded_bands).

@@ -110,17 +110,17 @@ def _rows(text: bytes, row: bytes, count: int) -> PlainRows | None:
         )
     except pa.ArrowInvalid:
         return None
-    found = {name: table[name].to_numpy() for name in types}
-    numbers = found[rows]
+    columns = {name: table[name].to_numpy() for name in types}
+    numbers = columns[rows]
     if len(numbers) != count or len(set(names)) < len(names):
         return None
-    if any(not np.array_equal(found[name], numbers) for name in places):
+    if any(not np.array_equal(columns[name], numbers) for name in places):
         return None
     if numbers[0] < 1 or (np.diff(numbers) <= 0).any():
         return None
     return PlainRows(
         numbers,
         tuple(name.decode() for name in names),
-        np.stack([found[name] for name in values], axis=1),
-        tuple(frozenset(found[name].tolist() if name else ()) for name in styles),
+        np.stack([columns[name] for name in values], axis=1),
+        tuple(frozenset(columns[name].tolist() if name else ()) for name in styles),
     )

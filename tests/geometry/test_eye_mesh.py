@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fea.support.lugs.rings import annulus, graded
 from geometry import Pin, Segment
 from geometry.mesh.eye_mesh import eye_mesh
+from geometry.shape.rings import annulus, graded
 
 PIN = Pin("P", (Segment(0.02, 0.02, connection="A"),))
 EYE = annulus(PIN, "A", 0.05, graded(0.02, 5))

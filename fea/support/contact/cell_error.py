@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fea.support.lugs.rings import USUAL_RING_COUNT
+from geometry.shape.rings import USUAL_RING_COUNT
 
 # Of the tolerance: the part that the cells may use. Chosen by judgement; the rest is for meshes and
 # instants (MIN_TOLERANCE_SHARE of fea.core.requirement).

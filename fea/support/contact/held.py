@@ -34,10 +34,10 @@ from fea.support.contact.resolution import RESOLUTIONS, Resolution
 from fea.support.contact.solve_joint import ContactModel
 from fea.support.contact.variations import ResolutionComparison, compare, nowhere, uncompared
 from fea.support.hardened_row import PartSearch, hardened_row, in_core
-from fea.support.lugs.rings import USUAL_RING_COUNT, whole_names
 from fea.support.prescribed import imbalance
 from fea.support.support import PinProblem, Solution, StressReading
 from geometry import CutPin, PinLike
+from geometry.shape.rings import USUAL_RING_COUNT, whole_names
 
 
 def cells_matter(peak: Maximum, limit: float) -> bool:

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from fea.core.pin_loads import Floats, LoadAmounts, PinLoads, UnitLoad
 from fea.core.pressed import PressedArcs
-from fea.support.lugs.rings import ringed_name
 from geometry import Pin
+from geometry.shape.rings import ringed_name
 
 MODE_TOLERANCE = 2e-3  # of the largest amplitude: what a pattern must add to any instant's
 ROUGH_MODE_TOLERANCE = 3e-2  # the same for instants that cannot govern

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from fea.support.lugs.rings import USUAL_RING_COUNT
+from geometry.shape.rings import USUAL_RING_COUNT
 
 # Half angle of contact times the harmonics that follow its pressure to 2 %, and sectors for each of
 # these; measured on the clevis of benchmarks/joints/narrow_arcs.py.
@@ -18,7 +18,7 @@ MAX_CELLS = 6000  # a dense matrix of them takes 300 MB
 class Resolution:
     """The resolution of contact.
 
-    rings: of a band with sharp edges (lugs.rings).
+    rings: of a band with sharp edges (geometry.shape.rings).
     sectors: over its circumference.
     highest: harmonic of elasticity that is computed.
     across: elements over the pin's diameter where flexibilities are found.

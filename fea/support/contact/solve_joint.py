@@ -46,14 +46,14 @@ from fea.support.lugs.changes import with_stiffness
 from fea.support.lugs.fit import fitted, on_structure
 from fea.support.lugs.links import link_forces, link_moments, link_numbers, tilting_bands
 from fea.support.lugs.lug import Bushing, Lug
-from fea.support.lugs.rings import (
+from geometry import CutPin, Pin
+from geometry.shape.rings import (
     annulus,
     beside_fillets,
     ring_ends,
     ringed,
     rings,
 )
-from geometry import CutPin, Pin
 from pinbase.arrays import Ints
 from pinbase.memo import Memo
 

@@ -45,8 +45,8 @@ from fea.support.contact.pressure_loads import (
 from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.changes import joint_variations
 from fea.support.lugs.lug import Lug
-from fea.support.lugs.rings import USUAL_RING_COUNT
 from fea.support.records import JointRange, Variation, range_ends
+from geometry.shape.rings import USUAL_RING_COUNT
 
 # Of the largest amplitude: what a pattern must add to the pressures of a varied joint. Chosen by
 # judgement, coarser than MODE_TOLERANCE since only ratios of maxima follow from it.

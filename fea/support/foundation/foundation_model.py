@@ -37,8 +37,8 @@ from fea.support.foundation.supported_beam import Response, SupportedBeam, refin
 from fea.support.lugs.fit import fitted, on_structure
 from fea.support.lugs.links import link_forces, link_moments, tilting_bands
 from fea.support.lugs.lug import Lug
-from fea.support.lugs.rings import graded, ring, ringed
 from geometry import Pin, Segment
+from geometry.shape.rings import graded, ring, ringed
 
 # Of the plane's compliance, fitted to the largest moments of 60 random pins
 # (python -m benchmarks foundation).

@@ -13,8 +13,8 @@ from fea.core.mesh_history import MeshHistory
 from fea.core.peak import Maximum
 from fea.support.contact.cell_error import unresolved
 from fea.support.contact.resolution import MAX_CELLS, Resolution
-from fea.support.lugs.rings import ring_ends
 from fea.support.records import JointResult
+from geometry.shape.rings import ring_ends
 from pinstress.explore.chart.mesh_sequences import Climb
 from pinstress.explore.chart.single_joint import JointProblem, JointRung
 

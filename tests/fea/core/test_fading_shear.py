@@ -17,8 +17,8 @@ from fea.core.tractions import tractions_of
 from fea.singular.singularities import singularities_of
 from fea.solve.solve import solve_pin
 from fea.support.contact.pressure_loads import others_along
-from fea.support.lugs.rings import ringed
 from geometry import Pin, Segment
+from geometry.shape.rings import ringed
 
 PIN = Pin(
     "P",

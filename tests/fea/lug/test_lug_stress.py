@@ -15,9 +15,9 @@ from fea.lug.through_thickness import EyeStress, eye_stress
 from fea.support.contact.flexibility import lug_rings
 from fea.support.foundation.plane_contact import half_angle, largest_pressure
 from fea.support.lugs.lug import Bushing, Lug, Shank
-from fea.support.lugs.rings import annulus, graded
 from geometry import Pin, Segment
 from geometry.shape.lug_outline import HeadShape, LugOutline
+from geometry.shape.rings import annulus, graded
 from pinbase.arrays import Floats
 
 STEEL = Material("steel", 210e9, 0.3, yield_strength=700e6)

@@ -11,9 +11,9 @@ from fea.harmonic.assembly import Section
 from fea.support.contact.flexibility import half_plane, layered, lug_rings, wavy_flexibility
 from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Bushing, Lug
-from fea.support.lugs.rings import annulus, graded
 from geometry import Pin, Segment
 from geometry.mesh.eye_mesh import eye_mesh
+from geometry.shape.rings import annulus, graded
 from tests.support.each import each
 from tests.support.exact.layered_annulus import widening
 

@@ -16,8 +16,8 @@ from fea.support.contact.contact import ContactProblem
 from fea.support.contact.contact_state import ContactState
 from fea.support.contact.flexibility import half_plane, lug_rings, pin_rings
 from fea.support.lugs.lug import Lug
-from fea.support.lugs.rings import annulus, graded, ring, ringed
 from geometry import Pin, Segment
+from geometry.shape.rings import annulus, graded, ring, ringed
 from tests.support.each import each
 
 E, NU = 210e9, 0.3

@@ -17,9 +17,9 @@ from fea.support.foundation.plane_contact import (
     plane_stiffness,
 )
 from fea.support.lugs.lug import Lug
-from fea.support.lugs.rings import annulus
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
+from geometry.shape.rings import annulus
 
 STEEL = Material("steel", 210e9, 0.3)
 EVEN = Material("no lateral strain", 210e9, 0.0, density=1.0)  # plane in any length

@@ -9,9 +9,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from fea.core.pin_loads import Floats
-from geometry import Band, Pin, Segment
-from geometry.shape.pin import SHOULDER
+from geometry.shape.pin import SHOULDER, Band, Pin
+from geometry.shape.segment import Segment
+from pinbase.arrays import Floats
 
 USUAL_RING_COUNT = 8  # rings of a band with sharp edges, if it is not long
 MAX_RING_LENGTH = 0.25  # ring, of the diameter, if there are so many

@@ -14,8 +14,8 @@ from fea.core.pin_loads import Floats, PinLoads
 from fea.support.contact.resolution import Resolution
 from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
-from fea.support.lugs.rings import MAX_RING_LENGTH, graded, ring_ends, ringed, rings
 from geometry import Band, Pin, Segment
+from geometry.shape.rings import MAX_RING_LENGTH, graded, ring_ends, ringed, rings
 from tests.support.each import each
 
 BAND = Band("A", 0.0, 0.02, 0.01)
