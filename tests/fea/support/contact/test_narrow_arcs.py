@@ -84,9 +84,10 @@ def test_the_error_of_cells_covers_that_on_narrow_arcs_of_one_lug_with_round_edg
 def test_the_half_angle_is_known_whatever_the_cells(
     fine: dict[float, tuple[ResolutionComparison, float]],
 ) -> None:
+    """It is where a lug presses most; counted is the least of all lugs."""
     sector = 2.0 * np.pi / FINE.sectors
     for load, (truth, counted) in fine.items():
-        assert counted - sector < truth.half_angle < counted + 1.5 * sector
+        assert counted - sector < truth.half_angle < counted + 2.0 * sector
         assert on(ROUGH, load)[0].half_angle == pytest.approx(truth.half_angle, rel=0.15)
 
 
