@@ -1,8 +1,9 @@
 """The stress of a part of one yield strength of a pin with a hardened surface (fea.core.hardened).
 
 Of a pin with prescribed loads all points of the part are read. Where lugs press on a pin, its case
-is read at the surface (fea.harmonic.free_surface), and its core beneath free surface. Beneath
-lugs bending is that of sections, and the rest belongs to contact (fea.harmonic.beneath).
+is read at the surface (fea.harmonic.free_surface), and its core beneath free surface and in bores,
+which are not hardened. Beneath lugs bending is that of sections, and the rest belongs to contact
+(fea.harmonic.beneath).
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from fea.core.pressed import ARC_COUNT, PressedArcs
 from fea.harmonic.beneath import Away
 from fea.harmonic.field import HarmonicField
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.superposition import Circumference
+from fea.harmonic.superposition import Circumference, Crest
 from geometry import Pin
 from pinbase.arrays import Floats, Ints, Mask
 
@@ -82,9 +83,9 @@ class PartField:
     """The stress of a part of a pin in one case (fea.core.solution.StressMaxima).
 
     pin: as it is meshed.
-    where: "away" from pressed cells, also "beside" them where the surface is free, or all that lies
-    "beneath" contact, farther than that distance from them; of pins with prescribed loads all is
-    read.
+    where: "away" from pressed cells, and on surfaces that belong to a core, as bores; "beside" them
+    beneath free surface; or all that lies "beneath" contact, farther than that distance from them;
+    of pins with prescribed loads all is read.
     """
 
     def __init__(
@@ -94,38 +95,44 @@ class PartField:
 
     def maxima(self, loads: Loads, least: float = 0.0) -> Floats:
         """The largest stress (T,), Pa, at every instant, or `least` where it does not exceed it."""
-        around = self._around(loads)
-        return around.maxima(self._read(around), least)
+        each = [around.maxima(read, least) for around, read in self._places(loads)]
+        return np.asarray(np.max(each, axis=0))
 
     def largest(self, loads: Loads) -> tuple[float, int]:
         """The largest of these, Pa, and the number of its instant."""
-        around = self._around(loads)
-        top = around.top(self._read(around))
+        _, top = self._top(loads)
         return top.value, top.instant
 
     def maximum(self, loads: Loads) -> PartMaximum:
         """The largest of these, and where it is."""
-        around = self._around(loads)
-        top = around.top(self._read(around))
+        around, top = self._top(loads)
         r, z = (float(x) for x in around.fields.points[top.point])
         depth, case = None, self.part.case
         if case is not None:
             depth = float(depth_below(hardened_edges(self.pin, case), np.array([[r, z]]))[0])
         return PartMaximum(top.value, at_angle((r, z), top.angle), depth, top.instant)
 
-    def _around(self, loads: Loads) -> Circumference:
+    def _top(self, loads: Loads) -> tuple[Circumference, Crest]:
+        tops = [(around, around.top(read)) for around, read in self._places(loads)]
+        return max(tops, key=lambda x: x[1].value)
+
+    def _places(self, loads: Loads) -> list[tuple[Circumference, Mask]]:
+        """The stress with where it is read on the circumference, and the points of the part."""
         fields = self.field.fields
         if loads.pressed is None or (self.where != "beneath" and self.part.part != "core"):
-            return self.field.reader(loads)
+            return [self._read(self.field.reader(loads))]
         if self.where == "beneath":
-            return Circumference(fields, loads, Away(fields.points, loads.pressed))
+            return [self._read(Circumference(fields, loads, Away(fields.points, loads.pressed)))]
         away = Away(fields.points, loads.pressed) if self.where == "away" else None
-        return Circumference(fields, loads, BeneathFree(fields.points, loads.pressed, away))
+        region = BeneathFree(fields.points, loads.pressed, away)
+        inside, read = self._read(Circumference(fields, loads, region))
+        read[: fields.skin] = False  # bores are read as free surface is
+        return [(inside, read), *([self._read(self.field.reader(loads))] if away else [])]
 
-    def _read(self, around: Circumference) -> Mask:
-        """Mask (S,) of the points of the part outside of singular zones."""
+    def _read(self, around: Circumference) -> tuple[Circumference, Mask]:
+        """The stress, and a mask (S,) of the points of the part outside of singular zones."""
         read = around.fields.outside(self.field.singularities)
-        return read & part_mask(around.fields, self.pin, self.part)
+        return around, read & part_mask(around.fields, self.pin, self.part)
 
 
 def part_mask(fields: MeridianFields, pin: Pin, part: StrengthPart) -> Mask:

@@ -72,7 +72,9 @@ class _LoadedLug:
 
     def load(self, waves: Floats, angle: Floats, times: Floats | None) -> LugLoad:
         """The load by pressures. angle: of the shank, (T,) rad. times: (T,) s, or None."""
-        return LugLoad(self.force(waves), waves[:, :, self.rows], self.length, angle, times)
+        load = LugLoad(self.force(waves), waves[:, :, self.rows], self.length, angle, times)
+        # Round-off touches nothing in a clearance; an interference presses with any force.
+        return load if self.lug.clearance < 0.0 else load.without_round_off()
 
     def largest(
         self, waves: Floats, angle: Floats, times: Floats | None

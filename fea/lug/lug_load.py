@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fea.support.contact.bending import SAME_FORCE
 from pinbase.arrays import Floats
 
 
@@ -57,6 +58,12 @@ class LugLoad:
         """The middles of the rings, (R,) m from the middle of the lug."""
         ends = np.cumsum(self.length)
         return np.asarray(ends - 0.5 * self.length - 0.5 * ends[-1])
+
+    def without_round_off(self) -> LugLoad:
+        """The load without a force that is round-off of those of its rings, which make a couple."""
+        size = np.linalg.norm(self.first, axis=2) @ self.length
+        force = np.linalg.norm(np.einsum("trp,r->tp", self.first, self.length), axis=1)
+        return replace(self, force=self.force * (force > SAME_FORCE * size)[:, None])
 
     def at(self, instant: int) -> LugLoad:
         """The load at one instant."""

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.error_model import between_clamps
-from fea.beam.line_load import acting, shares
+from fea.beam.line_load import acting, loads_sections, shares
 from fea.beam.plastic_interaction import Ring, cased_rings, plastic_use
 from fea.beam.round_section import Circle, thinnest_section
 from fea.beam.stress import RZ, TZ, ZZ, section_stress
@@ -140,8 +140,7 @@ class SectionField:
 
     def _felt(self, loads: Loads) -> LoadAmounts:
         """The loads without those that cause no section forces."""
-        known = set(self.forces.loads)
-        amounts = {load: x for load, x in loads.coefficients().items() if load in known}
+        amounts = {load: x for load, x in loads.coefficients().items() if loads_sections(load)}
         return LoadAmounts(loads.case, amounts, len(loads))
 
     def maxima(self, loads: Loads, least: float = 0.0) -> Floats:

@@ -19,7 +19,6 @@ from collections.abc import Iterable
 import numpy as np
 
 from fea.core.hardened import Hardened
-from fea.core.pin_loads import PinLoads
 from fea.core.places import CaseCrushing
 from fea.support.contact.joint_contact import JointContact
 from pinbase.arrays import Floats, Ints
@@ -100,7 +99,6 @@ def beneath_strips(pressure: Floats, width: float, depths: Floats, nu: float) ->
     return out
 
 
-def pressed_most(loads: PinLoads) -> Ints:
-    """The instants at which the force of some link across the pin is largest."""
-    across = np.hypot(loads.forces[..., 0], loads.forces[..., 1])
-    return np.unique(across.argmax(axis=0))
+def pressed_most(forces: Floats) -> Ints:
+    """The instants at which the force on some lug is largest. forces: of the lugs, (T, L, 2) N."""
+    return np.unique(np.linalg.norm(forces, axis=2).argmax(axis=0))

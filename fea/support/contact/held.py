@@ -189,7 +189,7 @@ class HeldContact:
         )  # fmt: skip
         if search is not None:
             place = in_core(place, search, material.strength_parts(model.pin.length))
-            place = replace(place, crushing=self._crushing(case, contact))
+            place = replace(place, crushing=self._crushing(solution.loads, contact))
         over = known.row.range(row, place.beneath)
         torques = self._friction_torques(solution.loads.links)
         joint = contact_result(contact, over, solution.loads, known.row.left_out, torques)
@@ -274,10 +274,15 @@ class HeldContact:
             cells,
         )  # fmt: skip
 
-    def _crushing(self, case: PinLoads, at_row: JointContact) -> CaseCrushing | None:
-        """The stress beneath the pressures at the row's instant, and where links pull most."""
-        links, material = self.contact.instants[case.case], self.problem.material
-        most = (self.contact.joined(links, t) for t in pressed_most(links).tolist())
+    def _crushing(self, loads: PinLoads, at_row: JointContact) -> CaseCrushing | None:
+        """The stress beneath the pressures at the row's instant, and where a lug presses most.
+
+        loads: on the rings at all instants.
+        """
+        links, material = loads.links, self.problem.material
+        forces = [loads.forces[:, rows, :2].sum(axis=1) for rows, *_ in self.model.by_lug()]
+        instants = pressed_most(np.stack(forces, axis=1)).tolist()
+        most = (self.contact.joined(links, t) for t in instants)
         return case_crushing((at_row, *most), material.hardened, material.poisson_ratio)
 
     def _at_row(self, reading: StressReading, peak: Maximum, case: PinLoads) -> Solution:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from fea.core.pin_loads import Floats, LoadAmounts, PinLoads, UnitLoad
 from fea.core.pressed import PressedArcs
 from geometry import Pin
+from geometry.shape.pin import SHOULDER
 from geometry.shape.rings import ringed_name
 
 MODE_TOLERANCE = 2e-3  # of the largest amplitude: what a pattern must add to any instant's
@@ -52,7 +53,7 @@ class PressureLoads(PinLoads):
         """The resultants of the pressures on the rings, and the shares of axial forces."""
         return PinLoads(
             self.case, self.surfaces, self.forces, self.moments, body=self.body,
-            times=self.times, bands=self.bands,
+            times=self.times, always=across_all(self.surfaces), bands=self.bands,
         )  # fmt: skip
 
     @property
@@ -170,7 +171,14 @@ def resultants(pin: Pin, rings: tuple[str, ...], waves: Floats, links: PinLoads)
         even, across = (np.abs(x).max(axis=(1, 2), initial=0.0) for x in waves[:2])
         loaded = (across > EVEN_PRESSURE_ROUND_OFF * even)[:, None, None]
         axial.forces[:, : len(rings), :2] = np.where(loaded, -0.5 * waves[1] * area[:, None], 0.0)
-    return axial
+    return replace(axial, always=(*axial.always, *across_all(rings)))
+
+
+def across_all(surfaces: Sequence[str]) -> tuple[UnitLoad, ...]:
+    """The unit loads across the pin on all of some surfaces: contact may open at a ring at some
+    instants, and press on it at others.
+    """
+    return tuple(UnitLoad(x, "force", 1) for x in surfaces if not x.startswith(SHOULDER))
 
 
 def pressure_modes(

@@ -67,14 +67,15 @@ class FoundationRange:
         given = stress_bounds(self.own, own)
         if given.bounds is None:
             return None, given.why
-        over, left_out = [], []
+        over, left_out, unheld = [], [], []
         for joint in self.varied:
             if joint.stress is None:
                 left_out.append(f"{joint.what} {joint.value}")
                 continue
             try:
                 varied = joint.stress.model.solve(loads)
-            except SolveError:  # lugs that are free to tilt may leave a couple on the pin
+            except SolveError as error:  # lugs that are free to tilt may leave a couple on the pin
+                unheld.append(f"{joint.what} {joint.value} ({error})")
                 continue
             varied_bounds = stress_bounds(joint.stress, varied)
             if varied_bounds.bounds is None:
@@ -95,8 +96,9 @@ class FoundationRange:
         bounds = [given.bounds, *(v.interval for v in over if v.interval)]
         ends = min(low for low, _ in bounds), max(high for _, high in bounds)
         beyond = f"beyond the range of the measurements, and not included: {', '.join(left_out)}"
-        whole = JointRange(ends, tuple(over), "foundation", self.assumed)
-        return whole, beyond if left_out else ""
+        none = f"not included: {'; '.join(unheld)}"
+        remarks = [text for text, of in ((beyond, left_out), (none, unheld)) if of]
+        return JointRange(ends, tuple(over), "foundation", self.assumed), "; ".join(remarks)
 
 
 def prescribed_ranges(

@@ -140,6 +140,23 @@ def test_without_force_there_is_no_stress() -> None:
     assert not largest(lug(), load(np.zeros((2, 2))))
 
 
+def test_a_couple_alone_is_no_force_of_round_off() -> None:
+    """It would be lost in a clearance, and with it the stress of all lugs of a pin."""
+    pressure = np.zeros((2, 1, 4, 2))
+    pressure[1, 0, :, 0] = 2e8, 1e8, -1e8, -2e8 * (1.0 + 1e-12)
+    length = np.full(4, THICKNESS / 4.0)
+    force = math.pi * RADIUS * np.einsum("trp,r->tp", pressure[1], length)
+    assert force.any()
+    given = LugLoad(force, pressure, length, np.zeros(1)).without_round_off()
+    assert not given.force.any()
+    eye = EyeStress(np.tile(np.eye(4), (2, 1, 1)))
+    make = partial(LugInPlane, lug(clearance=2e-5), STEEL, 0.0, RADIUS)
+    (free,) = bore_stresses(make, eye, given)
+    assert (free.place, free.von_mises > 0.0) == ("free", True)
+    even = load(np.array([-50e3, 0.0]))
+    assert (even.without_round_off().force == even.force).all()
+
+
 def test_an_eccentric_bore_is_stressed_more_at_the_thin_side() -> None:
     """Of a head whose end is nearer to the bore."""
     middle, near = (

@@ -11,7 +11,9 @@ from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.core.places import PartPlace
 from fea.core.requirement import Requirement
-from fea.solve.solve import DEFAULT_REQUIREMENT, solve_pin
+from fea.solve.solve import DEFAULT_REQUIREMENT, solve, solve_pin
+from fea.support.lugs.lug import Lug
+from fea.support.support import PinProblem
 from geometry import ArgumentError, Pin, Segment
 from tests.fea.support.tension_bar import Fillet, largest_on_offset
 
@@ -131,3 +133,21 @@ def test_models_without_a_field_by_depth_refuse() -> None:
     for need in (Requirement(model="beam"), Requirement(model="solid")):
         with pytest.raises(ArgumentError, match="hardened surface"):
             row(pin, steel(pin, 0.001), loads, need)
+
+
+def test_bore_beneath_a_lug_counts_with_the_core() -> None:
+    """A tube that its lugs squeeze has its largest stress in its bore, which is not hardened."""
+    bands = (0.01, "L"), (0.001, None), (0.02, "M"), (0.001, None), (0.01, "R")
+    pin = Pin("P", tuple(Segment(x, 0.02, 0.012, connection=name) for x, name in bands))
+    forces = 2e4 * np.array([[[-0.5, 0.0, 0.0], [1.0, 0.0, 0.0], [-0.5, 0.0, 0.0]]])
+    loads = PinLoads("c", ("L", "M", "R"), forces)
+    material = steel(pin, 0.001)
+    lugs = tuple(Lug(name, 0.05, material.elastic_part, tilt=2e4) for name in "LMR")
+    need = Requirement(0.1, joints="contact", cells="alone")
+    (solution,) = solve(PinProblem(pin, material, lugs, (loads,)), need)
+    peak = solution.peak
+    assert peak.places is not None
+    surface, core = peak.places.surface, parts(peak)["core"]
+    assert math.hypot(*surface.location[:2]) == pytest.approx(0.006)
+    assert core.max_von_mises == pytest.approx(surface.max_von_mises)
+    assert peak.safety_factor(None) == pytest.approx(CORE / surface.max_von_mises)

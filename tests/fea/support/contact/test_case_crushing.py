@@ -6,7 +6,7 @@ Reference: K. L. Johnson, Contact Mechanics (1985), (4.49); von Mises 0.558 p0 a
 import numpy as np
 import pytest
 
-from fea.support.contact.case_crushing import beneath_strips
+from fea.support.contact.case_crushing import beneath_strips, pressed_most
 
 
 def on_axis(z: np.ndarray, nu: float) -> np.ndarray:
@@ -43,3 +43,12 @@ def test_core_deeper_than_that_is_crushed_by_less() -> None:
         float(on_axis(np.array([1.5]), 0.3)[0]), rel=5e-3
     )
     assert stress[at >= 1.5].max() < 0.50 < stress[at >= 0.5].max()
+
+
+def test_a_lug_of_a_structure_is_pressed_most_where_no_link_pulls_most() -> None:
+    """It takes what two links leave, most of it where these pull alike."""
+    first, second = np.array([10.0, 8.0, -9.0]), np.array([-9.0, 8.0, 10.0])
+    along = np.stack([first, second, -first - second], axis=1)
+    forces = np.stack([along, np.zeros_like(along)], axis=2)
+    assert pressed_most(forces).tolist() == [0, 1, 2]
+    assert pressed_most(forces[:, :2]).tolist() == [0, 2]

@@ -326,6 +326,17 @@ def test_clearance_that_is_wide_for_a_small_load_is_left_out() -> None:
     assert "clearance" in remark
 
 
+def test_the_range_says_what_no_lug_holds() -> None:
+    """Forces whose couple is taken by the tilt of the lugs, which cannot be free then."""
+    pin, lugs = usual()
+    uneven = replace(PULL, forces=PULL.forces * [[[0.8], [1.0], [1.2]]])
+    found, remark = FoundationRange(pin, STEEL, lugs, 0.1, assumed=True).at(uneven)
+    assert found is not None
+    assert ("tilt", "free") not in {(v.what, v.value) for v in found.variations}
+    assert remark.startswith("not included: tilt free (pin ")
+    assert "which no lug reacts" in remark
+
+
 def test_why_there_is_no_range() -> None:
     """One row for each case that was solved."""
     pin, lugs = usual()
