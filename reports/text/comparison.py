@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from reports.data.comparison import CHANGE_KINDS, UNCHANGED, RunComparison, unchanged
 from reports.data.requirement_pairs import GONE, LOST, LOWERED, NEWLY_MET
 from reports.format.files import markdown
-from reports.format.numbers import engineering
-from reports.format.ranges import END_DIGITS, MAX_DIGITS
+from reports.format.numbers import MAX_DIGITS, engineering
+from reports.format.ranges import END_DIGITS
 from reports.tables.column import Table
 from reports.tables.comparison import (
     forces_table,

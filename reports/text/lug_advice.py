@@ -26,6 +26,7 @@ from reports.data.overview import PinLine
 from reports.data.results import LugSketch, PinShape, Results
 from reports.data.row import Units
 from reports.format.numbers import engineering
+from reports.format.ranges import factor_text
 from reports.format.units import unit_name
 
 MAX_STRENGTH_RATIO = 3.0  # times the strength, which no other steel has
@@ -138,7 +139,7 @@ def _needs(check: JudgedCheck, results: Results) -> Needs:
     where = "at the bore" if _at_bore(check) else check.check
     if wall == "hole":
         where = "at the hole about its bushing"
-    factor = f"factor {engineering(check.factor, 3)} {where}"
+    factor = f"factor {factor_text(check.factor, check.required)} {where}"
     return Needs(check.pin, wall, factor, _or(ways, _pressed(lug)))
 
 

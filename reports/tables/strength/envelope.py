@@ -10,7 +10,7 @@ from reports.data.envelope import EnvelopeCell, case_names, envelope, omitted_no
 from reports.data.mechanics import PeakReaction
 from reports.data.results import Results
 from reports.data.row import Units
-from reports.format.numbers import DASH
+from reports.format.numbers import DASH, beside_limit
 from reports.tables.column import Column, Table, fields, unit_columns
 
 # Of more cases the terminal has the matrix of the worst, and on the page those that govern no pin
@@ -165,4 +165,8 @@ def cell_text(cell: EnvelopeCell) -> str:
     """Return the utilisation of a cell as text."""
     if cell.used is None:
         return DASH
-    return "∞" if cell.used == inf else f"{cell.used:.2f}"
+    if cell.used == inf:
+        return "∞"
+    text = f"{cell.used:.2f}"
+    hidden = cell.used > 1.0 >= float(text)
+    return beside_limit(cell.used, 1.0, 3, at_most=True) if hidden else text
