@@ -76,10 +76,8 @@ def short(value: float) -> str:
 
 def like(value: float, given: float) -> str:
     """Return a number rounded to as many decimals as a given one has."""
-    _, _, decimals = repr(float(given)).partition(".")
-    if "e" in decimals or decimals == "0":
-        decimals = ""
-    return f"{value:,.{len(decimals)}f}".replace("-", "−")
+    _, _, decimals = f"{Decimal(repr(float(given))):f}".partition(".")
+    return f"{value:,.{len(decimals.rstrip('0'))}f}".replace("-", "−")
 
 
 def finite(value: float | None) -> float | None:
@@ -115,5 +113,6 @@ def threshold(value: float) -> str:
     """Return a value at which something changes, with three digits: "22.8×10⁻⁶", "0.000387", "0.1",
     "88,900".
     """
-    few = SMALL_NUMBER <= abs(value) < LARGE_NUMBER
-    return f"{value:.3g}" if few else engineering(value, 3)
+    rounded = float(f"{value:.3g}")
+    few = SMALL_NUMBER <= abs(rounded) < LARGE_NUMBER
+    return f"{rounded:g}".replace("-", "−") if few else engineering(value, 3)

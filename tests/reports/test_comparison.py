@@ -20,7 +20,7 @@ from reports.data.comparison import (
 )
 from reports.page.comparison import PicturePair, write_comparison
 from reports.plots.comparison import comparison_plot
-from reports.tables.comparison import inputs_table, rows_table
+from reports.tables.comparison import inputs_table, per_cent, rows_table
 from reports.tables.json_results import to_json
 from reports.text.comparison import headline, review, write_markdown
 from tests.support.each import each
@@ -48,6 +48,15 @@ def test_the_same_run_has_no_change(run: dict[str, Any]) -> None:
     assert {row.kind for row in found.rows} == {UNCHANGED}
     assert (found.inputs, found.forces, found.margins, found.versions) == ((), (), (), ())
     assert comparison_plot(found) is None
+
+
+@each(
+    ("change", "text"),
+    [(19.0, "+1,900 %"), (-0.5, "−50 %"), (0.0, "+0 %"), (2e-7, "+20×10⁻⁶ %"), (None, "–")],
+)
+def test_a_change_in_per_cent(change: float | None, text: str) -> None:
+    """Twenty times the force was "+1.9e+03 %"."""
+    assert per_cent(change) == text
 
 
 def test_a_margin_for_comparison_hides_no_other(run: dict[str, Any]) -> None:
