@@ -104,6 +104,31 @@ def test_factors_are_told_apart_by_equally_many_digits(
     assert f": {said};" in review(found)
 
 
+def test_of_many_pins_those_that_changed_most_are_named(run: dict[str, Any]) -> None:
+    """Those first by name were, whatever their change, and "1 more pins"."""
+
+    def of(factors: dict[str, float]) -> dict[str, Any]:
+        row = run["pins"][0]
+        return run | {"pins": [row | {"pin": x, "safety_factor": f} for x, f in factors.items()]}
+
+    before = dict.fromkeys("ABCDEFG", 2.0)
+    after = before | dict.fromkeys("BCDEF", 2.1) | {"A": 1.99, "G": 0.5}
+    said = review(compare(of(before), of(after)))
+    assert said.startswith("Pin B: 2.00 to 2.10, pin C:")
+    assert "pin G: 2.00 to 0.500, 1 more pin;" in said
+
+
+def test_markdown_escapes_names_in_every_sentence(run: dict[str, Any], tmp_path: Path) -> None:
+    one = {**run, "pins": [run["pins"][0] | {"pin": "A_b_<i>", "error_estimate": 1.0}]}
+    stress = one["pins"][0]["max_von_mises"]
+    other = changed(one, max_von_mises=2.0 * stress, max_von_mises_interval=None)
+    write_markdown(compare(one, other), tmp_path / "comparison.md")
+    text = (tmp_path / "comparison.md").read_text(encoding="utf-8")
+    assert "Largest change of a maximum: pin A" in text
+    assert "A_b" not in text
+    assert "<i>" not in text
+
+
 def test_a_change_is_beyond_the_errors_or_within(run: dict[str, Any]) -> None:
     """Ranges of 100 to 120 and of the other maximum with its error."""
     base = changed(run, max_von_mises=110.0, error_estimate=10.0, max_von_mises_interval=None)
