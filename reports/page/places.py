@@ -90,7 +90,7 @@ def _at(row: PlaceRow) -> list[str]:
 
 def _acting(section: SectionPlace | None, units: Units) -> str:
     """Return the forces and moments at the section that are not zero, as text."""
-    if section is None:
+    if section is None or not section.max_von_mises:
         return ""
     moment = f"{units.force}·{units.length}"
     every = (
