@@ -20,6 +20,7 @@ from assess.clauses.ekvall import BORE_EXPONENT, TESTED_WIDTHS
 from assess.judgement import FAILS
 from assess.margin import PinMargin
 from pinbase.grouped import grouped
+from pinbase.rounding import rounded_up
 from reports.data.headline import JudgedCheck, checks_of
 from reports.data.lug_modes import BORE_STRESS, bore_wall, lug_mode
 from reports.data.overview import PinLine
@@ -221,8 +222,8 @@ def _stronger(check: JudgedCheck, units: Units) -> str:
     if margin is None or margin.dimension != "stress" or margin.allowable is None:
         return f"{engineering(100.0 * (check.used - 1.0), 2)} % more strength"
     kind = "a yield" if margin.level == "limit" else "an ultimate"
-    strength = f"{engineering(check.used * margin.allowable, 3)} {unit_name('stress', units)}"
-    return f"{kind} strength of {strength}"
+    strength = engineering(rounded_up(check.used * margin.allowable), 3)
+    return f"{kind} strength of {strength} {unit_name('stress', units)}"
 
 
 def _bore(shape: PinShape, lug: LugSketch) -> float:
