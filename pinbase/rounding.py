@@ -9,5 +9,16 @@ ROUND_OFF = 1e-9  # by which a value may exceed the digits that it is rounded up
 
 def rounded_up(value: float, digits: int = 3) -> float:
     """Return a positive limit that must be exceeded, rounded up to some digits: 0.0229."""
-    last = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
+    last = _last_digit(value, digits)
     return last * math.ceil(value / last * (1.0 - ROUND_OFF))
+
+
+def rounded_down(value: float, digits: int = 3) -> float:
+    """Return a positive limit that must not be exceeded, rounded down to some digits."""
+    last = _last_digit(value, digits)
+    return last * math.floor(value / last * (1.0 + ROUND_OFF))
+
+
+def _last_digit(value: float, digits: int) -> float:
+    """Return the unit of the last of the digits that are shown of a number."""
+    return 10.0 ** (math.floor(math.log10(value)) + 1 - digits)

@@ -55,10 +55,9 @@ def _write_tables(results: Results, directory: Path, others: Sequence[Table[Any]
     directory.mkdir(parents=True, exist_ok=True)
     write_json(results, directory / "results.json")
     tables = [*others, *load_tables(results)]
-    for table in tables:
-        table.write(directory)
+    files = {table.name: table.write(directory).name for table in tables}
     shown = sheets(tables)
-    left_out = [table.name for table in tables if table not in shown]
+    left_out = [files[table.name] for table in tables if table not in shown]
     write_workbook(results, shown, directory / "tables.xlsx", left_out)
     write_published(results, directory)
     if results.reactions:

@@ -49,6 +49,7 @@ from pinstress.study.schema.pins import PinTable
 from pinstress.study.schema.require import RequireTable, level_of
 from pinstress.study.schema.units import UnitSystem
 from pinstress.study.schema.vary import VaryTable
+from reports.format.numbers import counted
 
 MAX_SHOWN_JUMPS = 6
 
@@ -229,21 +230,22 @@ def _mechanism(study: Study, mechanism: AnyLinkage) -> list[str]:
         return _in_space(study, mechanism)
     mobility = determined(study, mechanism)
     lines = [
-        f"mechanism: {len(mechanism.bodies)} bodies, {len(mechanism.joints)} joints, "
-        f"{len(mechanism.connections)} connections{_teeth(mechanism)}, "
+        f"mechanism: {counted(len(mechanism.bodies), 'body', 'bodies')}, "
+        f"{counted(len(mechanism.joints), 'joint')}, "
+        f"{counted(len(mechanism.connections), 'connection')}{_teeth(mechanism)}, "
         + (f"driven by {', '.join(mechanism.driven)}" if mechanism.driven else "no drive")
     ]
-    counted = _counted(mobility)
+    movable = _counted(mobility)
     if ring := four_bar(mechanism):
         drawn = "crossed" if ring.crossed else "open"
-        counted += f"; four-bar {'-'.join(ring.joints)}: {ring.kind}, drawn {drawn}"
+        movable += f"; four-bar {'-'.join(ring.joints)}: {ring.kind}, drawn {drawn}"
     if not mobility.redundant:
-        return [*lines, counted]
+        return [*lines, movable]
     if mobility.shared and not mechanism.sharing:
         error = undetermined(mechanism, mobility)
         raise study.error(f"mechanism: {error}{fit_offer(study, error)}", code=error.code)
     rule = ", ".join(f"{'/'.join(s.connections)}" for s in mechanism.sharing)
-    return [*lines, counted + _redundant(mobility, f"the sharing rule for {rule}")]
+    return [*lines, movable + _redundant(mobility, f"the sharing rule for {rule}")]
 
 
 def _in_space(study: Study, linkage: SpaceLinkage) -> list[str]:
@@ -253,7 +255,7 @@ def _in_space(study: Study, linkage: SpaceLinkage) -> list[str]:
     joints = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
     rule = "a sharing rule" if linkage.sharing else "the stiffness of the links"
     return [
-        f"mechanism in space: {len(mechanism.body)} bodies, joints: {joints}, "
+        f"mechanism in space: {counted(len(mechanism.body), 'body', 'bodies')}, joints: {joints}, "
         + (f"driven by {', '.join(linkage.driven)}" if linkage.driven else "no drive"),
         _counted(mobility) + _redundant(mobility, rule) * bool(mobility.redundant),
     ]

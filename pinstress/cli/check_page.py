@@ -101,6 +101,4 @@ def _model(study: Study, task: Task) -> str:
         return table.model
     if not task.pin.revolved:
         return "harmonic+local" if task.pin.cuts else "solid"
-    if task.lugs:
-        return "beam" if table.joints == "foundation" else "beam or harmonic"
-    return "beam or harmonic"
+    return "beam" if task.lugs and table.joints == "foundation" else "beam or harmonic"

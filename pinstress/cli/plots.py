@@ -24,6 +24,7 @@ from pinstress.cli import manifest
 from pinstress.study.reading.errors import InputError, cannot_write
 from pinstress.study.reading.extras import require_package
 from pinstress.study.reading.file_names import field_name
+from reports.data.changes import as_argument
 from reports.folder.inside import NotPlain, is_inside, read_inside, write_inside
 from reports.folder.results_json import MAX_RESULTS_SIZE
 from reports.page.scripts import REPORT_PAGE, document_of, plots_of
@@ -157,7 +158,7 @@ def report_failed(directory: Path, failed: dict[str, Failed]) -> int:
     by_reason = grouped((failure.reason, name) for name, failure in ordered)
     said = "; ".join(f"{_listed(names)}: {why}" for why, names in by_reason.items())
     ways = ["pdf"] * (PDF_FILE in failed) + ["plots"] * bool(failed.keys() - {PDF_FILE})
-    again = " and ".join(f"`pinstress {way} {directory}`" for way in ways)
+    again = " and ".join(f"`pinstress {way} {as_argument(str(directory))}`" for way in ways)
     click.echo(
         f"Error: not drawn: {said}. All other results in {directory} are complete; {again} "
         f"{'tries' if len(ways) == 1 else 'try'} again.",

@@ -84,7 +84,7 @@ def reliability_and_write(
 def _status(assessment: Reliability) -> int:
     open_ones = [r for r in assessment.risks if r.result(assessment.probability) == NOT_DECIDED]
     for risk in open_ones:
-        click.echo(f"Not decided: pin {risk.pin}, case {risk.case}.", err=True)
+        click.echo(f"Not decided: {name(risk)}.", err=True)
     deep = [r for r in assessment.risks if r.result(assessment.probability) == DEPENDS]
     for risk in deep:
         what = " and ".join(risk.depends_on(assessment.probability))

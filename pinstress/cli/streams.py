@@ -26,11 +26,20 @@ ASCII_REPLACEMENTS = {
     "·": ".",
     "…": ".",
     "±": "~",
-    "≥": ">",
+    "≥": ">=",
+    "≈": "~",
+    "→": "->",
+    "∞": "inf",
+    "⌀": "dia ",
+    "°": " deg",
+    "µ": "u",
+    "†": "+",
+    "‡": "++",
     "“": '"',
     "”": '"',
     "’": "'",
 }
+SUPERSCRIPTS = dict(zip("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789", strict=True))
 RETRY_INTERVAL = 0.005  # s
 # Errors of a pipe whose reader went away, on Windows the second.
 BROKEN_PIPE_ERRORS = (errno.EPIPE, errno.EINVAL) if os.name == "nt" else (errno.EPIPE,)
@@ -105,8 +114,16 @@ def _text(outlet: Outlet, old: TextIO | None, errors: str) -> TextIO:
 
 def _plain(error: UnicodeError) -> tuple[str, int]:
     assert isinstance(error, UnicodeEncodeError)
-    bad = error.object[error.start : error.end]
-    return "".join(ASCII_REPLACEMENTS.get(c, "?") for c in bad), error.end
+    places = range(error.start, error.end)
+    return "".join(_replacement(error.object, k) for k in places), error.end
+
+
+def _replacement(text: str, k: int) -> str:
+    """Return what stands for character number k of a text: of an exponent "^-6"."""
+    if text[k] not in SUPERSCRIPTS:
+        return ASCII_REPLACEMENTS.get(text[k], "?")
+    begins = text[k - 1 : k] not in SUPERSCRIPTS
+    return "^" * begins + SUPERSCRIPTS[text[k]]
 
 
 @contextmanager

@@ -52,8 +52,8 @@ class CurvePoint:
         factor, stress = self.safety_factor, self.max_von_mises
         if factor is None or not stress:
             return None
-        error = min(self.error_estimate or 0.0, stress)
-        return factor * stress / (stress + error), factor * stress / max(stress - error, 1e-3)
+        error = (self.error_estimate or 0.0) / stress
+        return factor / (1.0 + error), factor / (1.0 - error) if error < 1.0 else math.inf
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,8 @@ from pinbase.dimensions import (
     Velocity,
 )
 
+MIN_TRANSMISSION_ANGLE = 40.0  # degrees; below it forces increase rapidly
+
 
 @dataclass(frozen=True)
 class PowerLedger:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Sequence
 from decimal import Decimal
 
 DASH = "–"
 SUPERSCRIPT_DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 MARGIN_DIGITS = 3
+MAX_DIGITS = 9  # of a number beside its limit
 COMPONENT_ROUND_OFF = 1e-9  # of the largest component; anything smaller is round-off
 # From which on, and below which, three digits would need an exponent
 LARGE_NUMBER, SMALL_NUMBER = 1e3, 1e-4
@@ -29,6 +31,26 @@ def engineering(value: float | None, digits: int = 4) -> str:
         return _plain(rounded, digits, size)
     power = 3 * (size // 3)
     return f"{_plain(float(Decimal(rounded).scaleb(-power)), digits, size - power)}×{ten_to(power)}"
+
+
+def counted(number: int, noun: str, plural: str = "") -> str:
+    """Return a number with its noun: "1 pin", "1,200 rows"."""
+    return f"{number:,} {noun if number == 1 else plural or f'{noun}s'}"
+
+
+def beside_limit(value: float, limit: float, digits: int, at_most: bool = False) -> str:
+    """Return a number with `digits` significant digits, or more where rounding would hide that it
+    misses a limit.
+
+    at_most: whether the limit is an upper one.
+    """
+    meets = operator.le if at_most else operator.ge
+    enough = (
+        n
+        for n in range(digits, MAX_DIGITS)
+        if meets(float(f"{value:.{n - 1}e}"), limit) == meets(value, limit)
+    )
+    return engineering(value, next(enough, MAX_DIGITS))
 
 
 def margin_text(margin: float | None) -> str:
@@ -59,10 +81,8 @@ def short(value: float) -> str:
 
 def like(value: float, given: float) -> str:
     """Return a number rounded to as many decimals as a given one has."""
-    _, _, decimals = repr(float(given)).partition(".")
-    if "e" in decimals or decimals == "0":
-        decimals = ""
-    return f"{value:,.{len(decimals)}f}".replace("-", "−")
+    _, _, decimals = f"{Decimal(repr(float(given))):f}".partition(".")
+    return f"{value:,.{len(decimals.rstrip('0'))}f}".replace("-", "−")
 
 
 def finite(value: float | None) -> float | None:
@@ -98,5 +118,6 @@ def threshold(value: float) -> str:
     """Return a value at which something changes, with three digits: "22.8×10⁻⁶", "0.000387", "0.1",
     "88,900".
     """
-    few = SMALL_NUMBER <= abs(value) < LARGE_NUMBER
-    return f"{value:.3g}" if few else engineering(value, 3)
+    rounded = float(f"{value:.3g}")
+    few = SMALL_NUMBER <= abs(rounded) < LARGE_NUMBER
+    return f"{rounded:g}".replace("-", "−") if few else engineering(value, 3)

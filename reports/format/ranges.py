@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
 from fea.support.records import JointRange
-from reports.data.decision import utilisation
+from reports.data.decision import limit, utilisation
 from reports.data.row import PinResult, SharingRange
-from reports.format.numbers import DASH, engineering
+from reports.format.numbers import DASH, beside_limit, engineering
 
 END_DIGITS = 3  # digits of factors and of an interval's ends
-MAX_DIGITS = 9
 ERROR_PART_WORDS = {  # of an error, in words
     "mesh": "mesh",
     "time": "time",
@@ -34,24 +31,20 @@ def error_range(pin: PinResult, to: str = " to ") -> str:
 
 def factor_range(pin: PinResult, to: str = " to ") -> str:
     """Return the safety factor or its interval with three digits, which is what loads deserve."""
-    interval = pin.safety_factor_interval
-    if interval is None:
-        return factor_text(pin.safety_factor, pin.required or 1.0)
-    low, high = interval
-    return to.join(
-        [engineering(low, END_DIGITS), DASH if high is None else engineering(high, END_DIGITS)]
-    )
+    ends = pin.safety_factor_interval or (pin.safety_factor,)
+    return to.join(factor_text(end, limit(pin)) for end in ends)
 
 
-def factor_text(factor: float | None, required: float) -> str:
+def factor_text(factor: float | None, required: float, digits: int = END_DIGITS) -> str:
     """Return a factor with three digits, or more where rounding would carry it past `required`."""
-    if factor is None or not math.isfinite(factor):
-        return DASH
-    for digits in range(END_DIGITS, MAX_DIGITS):
-        rounded = float(f"{factor:.{digits - 1}e}")
-        if (rounded >= required) == (factor >= required):
-            return engineering(factor, digits)
-    return engineering(factor, MAX_DIGITS)
+    return DASH if factor is None else beside_limit(factor, required, digits)
+
+
+def used_text(used: float, digits: int = END_DIGITS) -> str:
+    """Return a utilisation in per cent, with more digits where rounding would hide that it exceeds
+    100 %.
+    """
+    return f"{beside_limit(100.0 * used, 100.0, digits, at_most=True)} %"
 
 
 def utilisation_range(pin: PinResult, required: float) -> str:
@@ -59,7 +52,8 @@ def utilisation_range(pin: PinResult, required: float) -> str:
     used = utilisation(pin, required)
     if used is None:
         return DASH
-    return f"{' to '.join(dict.fromkeys(engineering(100.0 * end, END_DIGITS) for end in used))} %"
+    ends = (used_text(end).removesuffix(" %") for end in used)
+    return f"{' to '.join(dict.fromkeys(ends))} %"
 
 
 def variation_range(over: JointRange | SharingRange | None) -> str:

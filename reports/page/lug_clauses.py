@@ -8,7 +8,8 @@ from assess.margin import Margin
 from pinbase.keys import lug_key
 from reports.data.lug_modes import LUG_MODES, lug_mode
 from reports.data.row import PinResult, Units
-from reports.format.numbers import engineering, short
+from reports.format.numbers import short
+from reports.format.ranges import factor_text
 from reports.format.work_words import passing_text, work_text
 from reports.tables.strength.margins import MarginRow
 
@@ -91,6 +92,6 @@ def _cell(margins: list[Margin], row: PinResult, units: Units) -> ClauseCell | N
     )
     lines = f"{m.method} ({m.clause})", work_text(m, units), m.omits
     return ClauseCell(
-        engineering(m.safety_factor, 3), short(float(f"{m.factor:.4g}")), m.used > 1.0,
+        factor_text(m.safety_factor, m.factor), short(float(f"{m.factor:.4g}")), m.used > 1.0,
         tuple(filter(None, numbers)), tuple(filter(None, lines)),
     )  # fmt: skip

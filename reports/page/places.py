@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fea.core.places import BENEATH_DISTANCE, ContactEdge, ContactPlace, SectionPlace
 from reports.data.row import PinResult, Units
 from reports.format.numbers import DASH, components, engineering, short
-from reports.format.ranges import factor_text
+from reports.format.ranges import factor_text, used_text
 from reports.tables.column import Column, Grid, Table, read_only, texts
 from reports.tables.stress.places import PlaceRow, place_rows
 
@@ -90,7 +90,7 @@ def _at(row: PlaceRow) -> list[str]:
 
 def _acting(section: SectionPlace | None, units: Units) -> str:
     """Return the forces and moments at the section that are not zero, as text."""
-    if section is None:
+    if section is None or not section.max_von_mises:
         return ""
     moment = f"{units.force}·{units.length}"
     every = (
@@ -101,7 +101,7 @@ def _acting(section: SectionPlace | None, units: Units) -> str:
     )
     acting = [f"{name} {engineering(size)} {unit}" for name, size, unit in every if size]
     use = section.plastic_utilisation
-    of = "" if use is None else f"; {engineering(100.0 * use, 2)} % of its fully plastic capacity"
+    of = "" if use is None else f"; {used_text(use, 2)} of its fully plastic capacity"
     return f"Section at z = {engineering(section.z)} {units.length}: {', '.join(acting)}{of}."
 
 

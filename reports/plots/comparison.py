@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from reports.data.comparison import RunComparison
-from reports.plots.spec import Plot, Spec, clipped, rows
+from reports.plots.spec import Plot, Spec, labels, rows
 from reports.tables.comparison import changed_rows
 
 COMPARISON_PLOT_NAME = "comparison"
@@ -13,13 +13,15 @@ MAX_PLOT_ROWS = 40  # rows
 def comparison_plot(comparison: RunComparison) -> Plot | None:
     """Return points with ranges on a logarithmic axis; None without two numbers to compare."""
     data: list[Spec] = []
-    for pair in changed_rows(comparison)[:MAX_PLOT_ROWS]:
+    pairs = changed_rows(comparison)[:MAX_PLOT_ROWS]
+    pins, cases = labels(x.pin for x in pairs), labels(x.case for x in pairs)
+    for pair in pairs:
         for run, side in zip("AB", (pair.first, pair.second), strict=True):
             if side is None or not side.maximum:
                 continue
             ends = side.low or side.maximum, side.high or side.maximum
             low = max(ends[0], 1e-3 * side.maximum)
-            row = f"{clipped(pair.pin)}, {clipped(pair.case)}"
+            row = f"{pins[pair.pin]}, {cases[pair.case]}"
             data.append({"row": row, "run": run, "x": side.maximum, "low": low, "high": ends[1]})
     if not data:
         return None

@@ -3,21 +3,32 @@
 from __future__ import annotations
 
 from reports.data.curve import CURVE_NAME, CurvePoint, FactorCurve
-from reports.plots.spec import NUMBER_FORMAT, Plot, Spec, clipped, headed, instant, level, rows
+from reports.plots.spec import (
+    NUMBER_FORMAT,
+    Plot,
+    Spec,
+    clipped,
+    headed,
+    instant,
+    labels,
+    level,
+    rows,
+)
 
 MIN_FACTOR_SHARE = 1e-3  # of a factor: the lower end of an error bar on the logarithmic axis
 
 
 def curve_plot(curve: FactorCurve) -> Plot:
     """Return a line for each pin, by the case with its smallest factor, with the error as bars."""
-    data = [_row(point) for pin in curve.pins for point in curve.least(pin)]
+    names = {pin: f"pin {label}" for pin, label in labels(curve.pins).items()}
+    data = [_row(point, names[pin]) for pin in curve.pins for point in curve.least(pin)]
     unit = f" [{curve.unit}]" if curve.unit else ""
     x = {"field": "x", "type": "quantitative", "title": f"{clipped(curve.key, 60)}{unit}",
          "scale": {"nice": False, "zero": False, "padding": 12}}  # fmt: skip
     y = {"field": "factor", "type": "quantitative", "title": "factor of safety",
          "scale": {"type": "log", "nice": False, "padding": 12}}  # fmt: skip
     key = {"field": "pin", "type": "nominal", "title": None,
-           "scale": {"domain": [f"pin {clipped(pin)}" for pin in curve.pins]}}  # fmt: skip
+           "scale": {"domain": list(names.values())}}  # fmt: skip
     tooltip = [{"field": name, "title": title, "format": NUMBER_FORMAT}
                for name, title in (("x", "value"), ("factor", "factor"))]  # fmt: skip
     tooltip += [{"field": name, "title": name} for name in ("pin", "case", "outcome")]
@@ -40,10 +51,10 @@ def curve_plot(curve: FactorCurve) -> Plot:
     return Plot(CURVE_NAME, caption, spec)
 
 
-def _row(point: CurvePoint) -> Spec:
+def _row(point: CurvePoint, name: str) -> Spec:
     """Return a point; one without a factor breaks the line."""
     ends, factor = point.factor_ends, point.safety_factor
-    row: Spec = {"x": point.value, "factor": factor, "pin": f"pin {clipped(point.pin)}",
+    row: Spec = {"x": point.value, "factor": factor, "pin": name,
                  "case": point.case, "outcome": point.outcome}  # fmt: skip
     if factor is None or ends is None:
         return row

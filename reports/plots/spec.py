@@ -6,7 +6,8 @@ reports.plots.draw.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -195,8 +196,9 @@ def _merged(panels: Sequence[dict[str, Floats]]) -> list[dict[str, Floats]]:
         else:
             groups.append([k])
     groups = groups or [[0]]
-    keys = {clipped(", ".join(names[k] for k in g), 48): names[g[0]] for g in groups}
-    return [{key: panel[name] for key, name in keys.items()} for panel in panels]
+    together = {", ".join(names[k] for k in g): names[g[0]] for g in groups}
+    key = labels(together, 48)
+    return [{key[head]: panel[name] for head, name in together.items()} for panel in panels]
 
 
 def _needed(x: Abscissa, panels: Sequence[Panel], merged: list[dict[str, Floats]]) -> Mask:
@@ -248,6 +250,13 @@ def _coincide(some: Floats, other: Floats, tolerance: float) -> NDArray[np.bool_
 def clipped(name: str, most: int = 24) -> str:
     """Return a name short enough for a label."""
     return name if len(name) <= most else name[: most - 1] + "…"
+
+
+def labels(names: Iterable[str], most: int = 24) -> dict[str, str]:
+    """Return the label of each name, short enough unless two of them would be the same."""
+    texts = {name: clipped(name, most) for name in names}
+    counts = Counter(texts.values())
+    return {name: text if counts[text] == 1 else name for name, text in texts.items()}
 
 
 def still(spec: Spec) -> Spec:

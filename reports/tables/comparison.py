@@ -135,4 +135,7 @@ def _range(side: Side | None) -> str:
 
 def per_cent(change: float | None) -> str:
     """Return a change with its sign."""
-    return DASH if change is None else f"{100.0 * change:+.3g} %".replace("-", "−")
+    if change is None:
+        return DASH
+    rounded = float(f"{100.0 * change:.3g}")
+    return f"{'+' * (rounded >= 0.0)}{short(rounded)} %"

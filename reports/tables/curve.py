@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from reports.data.curve import CURVE_NAME, CurvePoint, FactorCurve
 from reports.format.numbers import DASH, engineering, percent
+from reports.format.ranges import factor_text
 from reports.tables.column import Column, Table, fields
 
 
@@ -39,7 +40,8 @@ def _columns(curve: FactorCurve) -> list[Column[CurvePoint]]:
         Column("max_von_mises", lambda p: p.max_von_mises, "",
                f"max von\nMises [{curve.stress_unit}]"),
         Column("error_estimate", lambda p: p.error_estimate, "", "±", error),
-        Column("safety_factor", lambda p: p.safety_factor, "", "factor"),
+        Column("safety_factor", lambda p: p.safety_factor, "", "factor",
+               lambda p: factor_text(p.safety_factor, curve.required or 1.0, 4)),
         Column("outcome", lambda p: p.outcome, "", "result", numeric=False),
         Column("depends_on", lambda p: p.depends_on),
         Column("verdict", lambda p: p.verdict, "", "verdict", numeric=False, rank=1),

@@ -11,7 +11,7 @@ from typing import TypeVar
 
 from pinbase.records import plain
 from reports.data.reliability import ByErrors, Driver, Reliability, Risk, Spread
-from reports.format.numbers import DASH, engineering, finite
+from reports.format.numbers import DASH, counted, engineering, finite
 from reports.tables.column import Column, Table, fields, read_only, texts
 
 RELIABILITY_SCHEMA = "pinstress-reliability/1"
@@ -123,8 +123,14 @@ def remark(risk: Risk) -> str:
             "retains the pin is not judged"
         )
     if risk.unknown:
-        said.append(f"{risk.unknown} designs have no result and count both ways")
+        count = f"count{'s' * (risk.unknown == 1)} both ways"
+        said.append(f"{without_result(risk.unknown)} and {count}")
     return "; ".join(said)
+
+
+def without_result(designs: int) -> str:
+    """Return that a number of designs have no result."""
+    return f"{counted(designs, 'design')} {'has' if designs == 1 else 'have'} no result"
 
 
 def chance(value: float | None) -> str:

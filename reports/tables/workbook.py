@@ -43,7 +43,7 @@ def write_workbook(
 ) -> None:
     """Write the tables, numbers as numbers, after a first sheet that describes them.
 
-    left_out: names of tables that are CSV files only.
+    left_out: files of the other tables.
     """
     import xlsxwriter
 
@@ -81,11 +81,12 @@ def _about(
         ("made by", ", ".join(f"{k} {v}" for k, v in sorted(results.versions.items()))),
         ("how to read", RESULT_ROWS_NOTE),
         *VERDICT_MEANINGS.items(),
-        ("sheets", f"{', '.join(sheets)}; all tables are CSV files, too"),
+        ("sheets", f"{', '.join(sheets)}; each is a CSV file, too"),
     ]
     if left_out:
-        files = ", ".join(f"{name}.csv" for name in left_out)
-        lines.append(("not here", f"long tables, which are only in the same folder: {files}"))
+        lines.append(
+            ("not here", f"long tables, which are only in the same folder: {', '.join(left_out)}")
+        )
     sheet.set_column(0, 0, 14)
     sheet.set_column(1, 1, 100)
     for row, (name, text) in enumerate(lines):

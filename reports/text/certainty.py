@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from assess.judgement import DEPENDS, FAILS, NOT_DECIDED
+from reports.data.decision import limit
 from reports.data.dependence import (
     BENEATH_CONTACT,
     IMPULSE_RANGES_TOGETHER,
@@ -73,8 +74,9 @@ def excess_stress(lines: Sequence[PinLine]) -> Content:
     rows = _failing(lines)
     if not rows:
         return []
-    nearest = max(rows, key=lambda r: r.safety_factor or 0.0)
-    ratio = (nearest.required or 1.0) / (nearest.safety_factor or 1.0)
+    ratio, nearest = min(
+        ((limit(row) / (row.safety_factor or 1.0), row) for row in rows), key=lambda x: x[0]
+    )
     stress = f"{'Even ' * (len(rows) > 1)}{nearest.pin} has"
     if ratio >= MIN_TIMES:
         return [f"{stress} {engineering(ratio, 2)} times the permitted stress."]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 from reports.data.comparison import CHANGE_KINDS, UNCHANGED, RunComparison, unchanged
 from reports.data.requirement_pairs import GONE, LOST, LOWERED, NEWLY_MET
 from reports.format.files import markdown
-from reports.format.numbers import engineering
-from reports.format.ranges import END_DIGITS, MAX_DIGITS
+from reports.format.numbers import MAX_DIGITS, engineering
+from reports.format.ranges import END_DIGITS
 from reports.tables.column import Table
 from reports.tables.comparison import (
     forces_table,
@@ -48,16 +49,18 @@ def review(comparison: RunComparison) -> str:
     Example: "Pin E: 1.21 to 1.54; two requirements newly met, none lost."
     """
     changes = _factor_changes(comparison)
-    shown = changes[:MAX_NAMED_PINS]
-    shown += [f"{len(changes) - len(shown)} more pins"] * (len(changes) > len(shown))
+    largest = sorted(changes, key=changes.__getitem__, reverse=True)[:MAX_NAMED_PINS]
+    shown = [words for words in changes if words in largest]
+    if more := len(changes) - len(shown):
+        shown.append(f"{more} more pin{'s' * (more > 1)}")
     factors = ", ".join(shown) or "no factor of a pin changed"
     parts = [factors, _requirement_changes(comparison)]
     text = "; ".join(part for part in parts if part)
     return f"{text[0].upper()}{text[1:]}."
 
 
-def _factor_changes(comparison: RunComparison) -> list[str]:
-    """Return the pins whose lowest factor changed, in words."""
+def _factor_changes(comparison: RunComparison) -> dict[str, float]:
+    """Return the pins whose lowest factor changed, in words, each with the size of its change."""
     factors: dict[str, tuple[list[float], list[float]]] = {}
     runs: dict[str, set[int]] = {}
     for row in comparison.rows:
@@ -66,15 +69,16 @@ def _factor_changes(comparison: RunComparison) -> list[str]:
             if side is not None:
                 runs.setdefault(row.pin, set()).add(k)
                 known[k].extend([] if side.factor is None else [side.factor])
-    words = []
+    words = dict[str, float]()
     for pin in sorted(factors):
         if len(runs[pin]) == 1:
-            words.append(f"pin {pin} {'is gone' if 0 in runs[pin] else 'is new'}")
+            words[f"pin {pin} {'is gone' if 0 in runs[pin] else 'is new'}"] = math.inf
             continue
         first, second = (min(side, default=None) for side in factors[pin])
         before, after = _apart(first, second)
         if before != after and not unchanged(first, second):
-            words.append(f"pin {pin}: {before} to {after}")
+            size = abs(math.log(second / first)) if first and second else math.inf
+            words[f"pin {pin}: {before} to {after}"] = size
     return words
 
 
@@ -159,7 +163,7 @@ def write_markdown(comparison: RunComparison, path: Path) -> None:
     parts = ["# Two runs compared"]
     for letter, folder, title in zip("AB", comparison.folders, comparison.titles, strict=True):
         parts.append(f"{letter}: {markdown.escaped(folder)}, {markdown.escaped(title)}")
-    parts += [markdown.escaped(review(comparison)), headline(comparison)]
+    parts += [markdown.escaped(said(comparison)) for said in (review, headline)]
     for title, table, remark in sections(comparison):
         if table.rows or remark:
             parts.append(f"## {title}")

@@ -128,7 +128,8 @@ def _total(rows: Sequence[LightRow], required: float | None, what: str, unit: st
         was, scaled, now = (sum(row.weights[k] or 0.0 for row in known) for k in range(3))
         yield (
             f"Together: {what} {engineering(was, 3)} {unit}; with the factor, only scaled "
-            f"{engineering(scaled, 3)}, least {engineering(now, 3)}, {1.0 - now / scaled:.1%} less."
+            f"{engineering(scaled, 3)}, least {engineering(now, 3)}, {_saved(1.0 - now / scaled)} "
+            "less."
         )
     yield (
         "residual: part of the weight's gradient that active constraints do not balance; 0 at an "

@@ -61,7 +61,7 @@ def _path(
         return None
     load = skeleton.applied[0]
     applied = float(load.sizes[min(_instant(skeleton, rows[0]), len(load.sizes) - 1)])
-    if any(abs(force / applied - 1.0) > SAME_FORCE for force in forces.values() if applied):
+    if any(abs(force - applied) > SAME_FORCE * applied for force in forces.values()):
         return None
     bodies = {row.pin: {x.body for x in row.loads} for row in rows if row.pin in forces}
     frame = {c for c, _, joint in skeleton.connections if joint in skeleton.ground}

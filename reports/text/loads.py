@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from reports.data.mechanics import PeakReaction, ReactionTable
+from reports.data.motion import MIN_TRANSMISSION_ANGLE
 from reports.data.results import Results
 from reports.format.numbers import DASH, engineering, short
 from reports.tables.column import Column, Table, read_only
@@ -56,6 +57,13 @@ def unresolved(table: ReactionTable, unit: str) -> str:
     )
 
 
+def least_angle(low: float) -> float:
+    """Return a transmission angle with one decimal, or more where that hides that it is small."""
+    small = low < MIN_TRANSMISSION_ANGLE
+    rounded = (round(low, decimals) for decimals in range(1, 17))
+    return next(x for x in rounded if (x < MIN_TRANSMISSION_ANGLE) == small)
+
+
 def remarks(results: Results) -> list[str]:
     """Return drives with mean and RMS, power balance, condition number and transmission angles."""
     lines = []
@@ -92,10 +100,10 @@ def remarks(results: Results) -> list[str]:
             f"number {engineering(m.worst_condition[0], 3)}"
         )
         for link, (low, _) in m.poorest.items():
-            if low < 40.0:
+            if low < MIN_TRANSMISSION_ANGLE:
                 lines.append(
-                    f"{m.case}: minimum transmission angle of {link} is {short(round(low, 1))} "
-                    "deg; below 40 deg forces increase rapidly"
+                    f"{m.case}: minimum transmission angle of {link} is {short(least_angle(low))} "
+                    f"deg; below {MIN_TRANSMISSION_ANGLE:.0f} deg forces increase rapidly"
                 )
     for case in results.reactions:
         if case.note:

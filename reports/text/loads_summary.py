@@ -6,15 +6,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from reports.data.mechanics import DriveTable, PeakReaction, ReactionTable
-from reports.data.motion import LinkageMotion
+from reports.data.motion import MIN_TRANSMISSION_ANGLE, LinkageMotion
 from reports.data.results import Results
 from reports.format.files import markdown
 from reports.format.numbers import engineering, short
 from reports.tables.column import Column, Grid, Table, read_only, texts
 from reports.tables.loads.drop import drop_words, impulse_grid, peak_grid
-from reports.text.loads import unresolved
-
-MIN_TRANSMISSION_ANGLE = 40.0  # transmission angle in degrees below which forces increase rapidly
+from reports.text.loads import least_angle, unresolved
 
 
 @dataclass(frozen=True)
@@ -128,7 +126,7 @@ def _checks(motion: LinkageMotion, results: Results) -> list[str]:
             if low < MIN_TRANSMISSION_ANGLE
             else ""
         )
-        lines.append(f"Minimum transmission angle: {low:.1f}°, {link}{when(at)}{warning}.")
+        lines.append(f"Minimum transmission angle: {least_angle(low)}°, {link}{when(at)}{warning}.")
     worst, at = motion.worst_condition
     lines.append(f"Maximum condition number: {engineering(worst, 3)}{when(at)}.")
     return lines

@@ -20,12 +20,14 @@ from assess.clauses.ekvall import BORE_EXPONENT, TESTED_WIDTHS
 from assess.judgement import FAILS
 from assess.margin import PinMargin
 from pinbase.grouped import grouped
+from pinbase.rounding import rounded_up
 from reports.data.headline import JudgedCheck, checks_of
 from reports.data.lug_modes import BORE_STRESS, bore_wall, lug_mode
 from reports.data.overview import PinLine
 from reports.data.results import LugSketch, PinShape, Results
 from reports.data.row import Units
 from reports.format.numbers import engineering
+from reports.format.ranges import factor_text
 from reports.format.units import unit_name
 
 MAX_STRENGTH_RATIO = 3.0  # times the strength, which no other steel has
@@ -138,7 +140,7 @@ def _needs(check: JudgedCheck, results: Results) -> Needs:
     where = "at the bore" if _at_bore(check) else check.check
     if wall == "hole":
         where = "at the hole about its bushing"
-    factor = f"factor {engineering(check.factor, 3)} {where}"
+    factor = f"factor {factor_text(check.factor, check.required)} {where}"
     return Needs(check.pin, wall, factor, _or(ways, _pressed(lug)))
 
 
@@ -220,8 +222,8 @@ def _stronger(check: JudgedCheck, units: Units) -> str:
     if margin is None or margin.dimension != "stress" or margin.allowable is None:
         return f"{engineering(100.0 * (check.used - 1.0), 2)} % more strength"
     kind = "a yield" if margin.level == "limit" else "an ultimate"
-    strength = f"{engineering(check.used * margin.allowable, 3)} {unit_name('stress', units)}"
-    return f"{kind} strength of {strength}"
+    strength = engineering(rounded_up(check.used * margin.allowable), 3)
+    return f"{kind} strength of {strength} {unit_name('stress', units)}"
 
 
 def _bore(shape: PinShape, lug: LugSketch) -> float:

@@ -295,7 +295,7 @@ def _other_ways(results: Results, article: str) -> Content:
     """
     worst: Remedy = results.changes[0]
     row = results[worst.pin, worst.case]
-    strength = f"{engineering(worst.yield_strength, 3)} {results.units.stress}"
+    strength = f"{engineering(rounded_up(worst.yield_strength), 3)} {results.units.stress}"
     given = row.yield_strength or 0.0
     # The strength counts errors, and the stress beneath contact, which the factor leaves out.
     contact = row.maximum.places.contact if row.maximum.places else None
@@ -307,7 +307,7 @@ def _other_ways(results: Results, article: str) -> Content:
     else:
         parts.append(f"{article} yield strength of {strength} for {worst.pin}.")
     if worst.impulse_time and worst.given_time:
-        needed, unit = engineering(worst.impulse_time, 3), results.units.time
+        needed, unit = engineering(rounded_up(worst.impulse_time), 3), results.units.time
         longest = float(row.landing.impulse_time.max()) if row.landing else worst.impulse_time
         parts.append(
             f"Nor an impulse of at most {short(longest)} {unit}: {worst.pin} needs {needed} {unit}."

@@ -15,11 +15,15 @@ from reports.tables.reliability import (
     remark,
     risks_table,
     ways_table,
+    without_result,
 )
 from reports.text.fitted_table import print_table
 
 if TYPE_CHECKING:
     from rich.console import Console
+
+
+MAX_REASONS = 5  # of designs without a result, that are named: the most frequent
 
 
 def sentence(reliability: Reliability, risk: Risk) -> str:
@@ -56,8 +60,10 @@ def remarks(reliability: Reliability) -> Iterator[str]:
         if text := remark(risk):
             yield f"{name(risk)}: {text}."
     reasons = sorted(reliability.reasons.items(), key=lambda item: (-item[1], item[0]))
-    for reason, count in reasons[:5]:
-        yield f"{count:,} designs have no result: {reason}."
+    for reason, count in reasons[:MAX_REASONS]:
+        yield f"{without_result(count)}: {reason}."
+    if others := sum(count for _, count in reasons[MAX_REASONS:]):
+        yield f"{without_result(others)} for other reasons (reliability.json)."
     yield from reliability.notes
 
 

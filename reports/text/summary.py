@@ -6,13 +6,13 @@ from collections.abc import Iterable
 
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
 from pinbase.grouped import grouped
-from reports.data.decision import common_factor, largest_factor
+from reports.data.decision import common_factor, largest_factor, worst_first
 from reports.data.governing import governing
 from reports.data.headline import JudgedCheck, pins_with, worst_checks
 from reports.data.results import Results
 from reports.data.row import PinResult
 from reports.data.unknowns import without_range
-from reports.format.numbers import short
+from reports.format.numbers import counted, short
 from reports.format.words import BEYOND_YIELD, but_words, over_words, undecided_because
 
 ALL_CONVERGED = "All maxima have converged"
@@ -44,7 +44,7 @@ def _against_required(results: Results) -> str:
     safe = pins_with(worst, SAFE, BELOW_YIELD)
     factor = "" if required is None else f" (required factor {short(required)})"
     text = (
-        f"{len(safe)} of {_count(len(worst), 'pin')} {_is(len(worst))} {good} in all cases{factor}"
+        f"{len(safe)} of {counted(len(worst), 'pin')} {_is(len(worst))} {good} in all cases{factor}"
     )
     for state in (FAILS, YIELDS, DEPENDS, NOT_DECIDED):
         here = [check for check in worst if check.outcome == state]
@@ -75,17 +75,14 @@ def _due_to(check: JudgedCheck) -> str:
 def _depending(results: Results) -> str:
     """Return sentences on the rows whose outcome changes within a range of the study."""
     text = ""
-    rows = [p for p in results.pins if p.outcome == DEPENDS]
+    rows = [p for p in worst_first(results) if p.outcome == DEPENDS]
     if len(rows) > 1 or (rows and pins_with(worst_checks(results).values(), FAILS, YIELDS)):
         clauses = (
             f"{p.pin} ({p.case}), {but_words(p.depends_on, results.units, 'not')}"
             for p in rows[:MAX_LISTED_CASES]
         )
-        more = (
-            f"; and {len(rows) - MAX_LISTED_CASES} rows more"
-            if len(rows) > MAX_LISTED_CASES
-            else ""
-        )
+        others = len(rows) - MAX_LISTED_CASES
+        more = f"; and {counted(others, 'more row')}" if others > 0 else ""
         text = f"Safe as described: {'; '.join(clauses)}{more}."
     for over in ("joint", "landing", "links", "strength"):
         some = [
@@ -179,12 +176,8 @@ def _within(row: PinResult, tolerance: float) -> bool:
     return error is not None and error <= tolerance * (row.max_von_mises or 0.0)
 
 
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}" + ("" if number == 1 else "s")
-
-
 def _of(number: int, total: int) -> str:
-    return f"{number} of {_count(total, 'row')}"
+    return f"{number} of {counted(total, 'row')}"
 
 
 def _is(number: int) -> str:

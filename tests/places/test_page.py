@@ -93,6 +93,17 @@ def test_the_three_places_have_their_own_numbers(results: Results) -> None:
     )
 
 
+def test_a_section_without_stress_has_no_forces_to_name(results: Results) -> None:
+    """It said "Section at z = 0 in: ."."""
+    pin = first(row(results, BOTH))
+    assert pin.places is not None
+    assert pin.places.section is not None
+    idle = replace(pin.places.section, max_von_mises=0.0, shear_force=0.0, bending_moment=0.0)
+    part = places_part(with_values(pin, places=replace(pin.places, section=idle)), UNITS)
+    assert part is not None
+    assert not any(note.startswith("Section") for note in part.notes)
+
+
 def test_a_sharp_edge_has_no_peak(results: Results) -> None:
     part = places_part(first(row(results, BOTH)), UNITS)
     assert part is not None

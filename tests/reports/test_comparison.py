@@ -20,7 +20,7 @@ from reports.data.comparison import (
 )
 from reports.page.comparison import PicturePair, write_comparison
 from reports.plots.comparison import comparison_plot
-from reports.tables.comparison import inputs_table, rows_table
+from reports.tables.comparison import inputs_table, per_cent, rows_table
 from reports.tables.json_results import to_json
 from reports.text.comparison import headline, review, write_markdown
 from tests.support.each import each
@@ -48,6 +48,15 @@ def test_the_same_run_has_no_change(run: dict[str, Any]) -> None:
     assert {row.kind for row in found.rows} == {UNCHANGED}
     assert (found.inputs, found.forces, found.margins, found.versions) == ((), (), (), ())
     assert comparison_plot(found) is None
+
+
+@each(
+    ("change", "text"),
+    [(19.0, "+1,900 %"), (-0.5, "−50 %"), (0.0, "+0 %"), (2e-7, "+20×10⁻⁶ %"), (None, "–")],
+)
+def test_a_change_in_per_cent(change: float | None, text: str) -> None:
+    """Twenty times the force was "+1.9e+03 %"."""
+    assert per_cent(change) == text
 
 
 def test_a_margin_for_comparison_hides_no_other(run: dict[str, Any]) -> None:
@@ -93,6 +102,31 @@ def test_factors_are_told_apart_by_equally_many_digits(
     one = {**run, "pins": run["pins"][:1]}
     found = compare(*(changed(one, safety_factor=x) for x in (before, after)))
     assert f": {said};" in review(found)
+
+
+def test_of_many_pins_those_that_changed_most_are_named(run: dict[str, Any]) -> None:
+    """Those first by name were, whatever their change, and "1 more pins"."""
+
+    def of(factors: dict[str, float]) -> dict[str, Any]:
+        row = run["pins"][0]
+        return run | {"pins": [row | {"pin": x, "safety_factor": f} for x, f in factors.items()]}
+
+    before = dict.fromkeys("ABCDEFG", 2.0)
+    after = before | dict.fromkeys("BCDEF", 2.1) | {"A": 1.99, "G": 0.5}
+    said = review(compare(of(before), of(after)))
+    assert said.startswith("Pin B: 2.00 to 2.10, pin C:")
+    assert "pin G: 2.00 to 0.500, 1 more pin;" in said
+
+
+def test_markdown_escapes_names_in_every_sentence(run: dict[str, Any], tmp_path: Path) -> None:
+    one = {**run, "pins": [run["pins"][0] | {"pin": "A_b_<i>", "error_estimate": 1.0}]}
+    stress = one["pins"][0]["max_von_mises"]
+    other = changed(one, max_von_mises=2.0 * stress, max_von_mises_interval=None)
+    write_markdown(compare(one, other), tmp_path / "comparison.md")
+    text = (tmp_path / "comparison.md").read_text(encoding="utf-8")
+    assert "Largest change of a maximum: pin A" in text
+    assert "A_b" not in text
+    assert "<i>" not in text
 
 
 def test_a_change_is_beyond_the_errors_or_within(run: dict[str, Any]) -> None:

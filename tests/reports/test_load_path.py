@@ -63,7 +63,8 @@ def test_there_is_no_path_where_several_loads_act_or_forces_differ(landing: Resu
     unit = landing.units.force
     plain = f"E, J and A carry up to 196 {unit}, others 19.0."
     several = skeleton(force("wheel"), force("EF", 1.0))
-    for other in (several, skeleton(force("leg")), skeleton(force("wheel", 50.0)), skeleton()):
+    others = [skeleton(force("wheel", size)) for size in (50.0, 0.0)]  # that of weights alone
+    for other in (several, skeleton(force("leg")), *others, skeleton()):
         assert load_path(replace(landing, space=(other,)), rows()) == plain
     assert load_path(replace(landing, space=()), rows()) == plain
 

@@ -10,6 +10,7 @@ import pytest
 
 from reports.data.results import Results
 from reports.files import write_loads
+from reports.text.loads import remarks
 from reports.text.loads_summary import write_loads_summary
 from tests.support.results.four_bar_results import four_bar
 
@@ -70,6 +71,13 @@ def test_summary_warns_of_poor_transmission(turning: Results, tmp_path: Path) ->
     motion = replace(turning.motion[0], transmission={"rod at B": low, "none": np.nan * low})
     text = summary(replace(turning, motion=(motion,)), tmp_path)
     assert "20.0°, rod at B at 3 s, below 40°" in text
+
+
+def test_an_angle_that_is_too_small_is_not_rounded_to_the_limit(turning: Results) -> None:
+    """It said "is 40 deg; below 40 deg forces increase rapidly"."""
+    motion = replace(turning.motion[0], transmission={"rod at B": np.array([80.0, 39.97])})
+    said = remarks(replace(turning, motion=(motion,)))
+    assert any("of rod at B is 39.97 deg; below 40 deg" in line for line in said)
 
 
 def test_summary_of_a_held_case_and_of_odd_names(turning: Results, tmp_path: Path) -> None:

@@ -6,7 +6,16 @@ import pytest
 
 from reports.format.drawing.spread import rows
 from reports.format.file_names import plot_name
-from reports.format.numbers import DASH, engineering, like, margin_text, ratio, short, threshold
+from reports.format.numbers import (
+    DASH,
+    counted,
+    engineering,
+    like,
+    margin_text,
+    ratio,
+    short,
+    threshold,
+)
 from tests.support.each import each
 
 
@@ -38,6 +47,18 @@ def test_short_keeps_what_was_given() -> None:
 
 def test_like_takes_the_published_decimals() -> None:
     assert (like(7.7781745, 7.78), like(11.04, 11.0)) == ("7.78", "11")
+    assert (like(1.26e-5, 1.2e-5), like(2.04e22, 2e22)[:2]) == ("0.000013", "20")
+
+
+def test_one_of_a_thing_is_singular() -> None:
+    """It said "1 others", "1 rows more" and "1 bodies"."""
+    assert [counted(n, "row") for n in (0, 1, 2, 1200)] == [
+        "0 rows",
+        "1 row",
+        "2 rows",
+        "1,200 rows",
+    ]
+    assert [counted(n, "body", "bodies") for n in (1, 2)] == ["1 body", "2 bodies"]
 
 
 def test_ratio_needs_both() -> None:
@@ -63,6 +84,8 @@ def test_plot_names_are_safe_and_differ() -> None:
         (2.28e-5, "22.8×10⁻⁶"),
         (88_912.0, "88,900"),
         (0.0, "0"),
+        (999.7, "1,000"),
+        (-25.0, "−25"),
     ],
 )
 def test_a_value_at_which_something_changes(value: float, expected: str) -> None:

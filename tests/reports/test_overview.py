@@ -24,6 +24,7 @@ from reports.format.place_words import along_words
 from reports.format.words import headline, result_words
 from reports.page.factor_curve import draw_factor_curve
 from reports.page.overview import overview_part
+from reports.tables.strength.changes import changes_table
 from reports.tables.strength.overview import (
     FactorAxis,
     bar,
@@ -124,6 +125,18 @@ def test_a_pin_within_its_error_is_told_of_the_tolerance(few: Results) -> None:
     steps = actions(replace(alone, changes=(remedy,)), [line])
     assert steps.repairs == ["A smaller tolerance may decide A."]
     assert steps.remarks[-1].startswith("A yield strength of ")
+
+
+def test_what_is_needed_is_enough_as_written(few: Results) -> None:
+    """651.2 was 651, with which a pin still failed, and a load factor of 0.8328 was 0.833."""
+    remedy = Remedy("A", "hard", 1.5, 651.24, 0.8328, True, 1.1, "", 0.1231, 0.1, False)
+    found = replace(few, changes=(remedy,))
+    remarks = actions(found, pin_lines(found)).remarks
+    assert any(text.startswith("Or a yield strength of 652 ") for text in remarks)
+    assert any("an impulse time of 0.124 instead of 0.1" in text for text in remarks)
+    assert changes_table(found).grid(found.units).body == [
+        ["A", "hard", "1.10", "651.3", "0.832", "0.1 → 0.124"]
+    ]
 
 
 def test_a_check_over_all_cases_has_one_line(few: Results) -> None:

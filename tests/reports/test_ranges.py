@@ -12,11 +12,21 @@ from rich.console import Console
 
 from fea.core.mesh_result import SingularIntensity
 from fea.core.peak import SingularZone
+from reports.data.envelope import EnvelopeCell
+from reports.data.overview import pin_lines
 from reports.data.results import Results
 from reports.data.row import PinResult
-from reports.format.ranges import error_range, error_words, factor_range
+from reports.format.ranges import (
+    error_range,
+    error_words,
+    factor_range,
+    used_text,
+    utilisation_range,
+)
 from reports.format.words import headline
 from reports.tables.json_results import to_json
+from reports.tables.strength.envelope import cell_text
+from reports.tables.strength.overview import spread_words
 from reports.tables.strength.safety_factors import safety_factors_table, write_safety_factors
 from reports.tables.stress.singular_zones import zones_table
 from reports.text.html import safety_factors_html
@@ -55,6 +65,21 @@ def test_in_words(found: Results) -> None:
     assert error_words(wide) == "51,500 to 95,600 over half and twice the excluded distance"
     assert factor_range(with_values(wide, safety_factor_interval=(2.354, None))) == "2.35 to –"
     assert error_words(narrow).startswith("± ")
+
+
+def test_no_rounding_hides_a_miss(found: Results) -> None:
+    """A factor of 1.9996 was 2.00 where 2 is required, and 1.96 was 2.0 among open ranges."""
+    below = with_values(found.pins[0], required=2.0, safety_factor_interval=(1.2, 1.9996))
+    assert factor_range(below) == "1.20 to 1.9996"
+    one = with_values(found.pins[1], required=2.0, safety_factor=1.9996)
+    assert utilisation_range(one, 2.0) == "100.02 %"
+    assert (used_text(1.0004), used_text(0.9996), used_text(2.0)) == ("100.04 %", "100 %", "200 %")
+    cell = EnvelopeCell(one, "fails", 1.004, True, ())
+    assert [cell_text(replace(cell, used=x)) for x in (1.004, 0.996, 0.5)] == [
+        "1.004", "1.00", "0.50",
+    ]  # fmt: skip
+    line = replace(pin_lines(replace(found, pins=(one,)))[0], spread=(1.96, 2.4))
+    assert spread_words(line) == "1.96 to 2.4"
 
 
 def test_no_table_shows_a_factor_without_its_interval(found: Results, tmp_path: Path) -> None:

@@ -89,6 +89,9 @@ def test_pins_whose_ranges_straddle_the_requirement_are_told_apart(results: Resu
         "A has 1.5 times the permitted stress."
     ]
     assert excess_stress([x for x in lines if x.outcome == SAFE]) == []
+    strict = [replace(x, row=with_values(x.row, required=10.0)) if x.pin == "B" else x
+              for x in lines]  # fmt: skip
+    assert excess_stress(strict) == ["Even A has 1.5 times the permitted stress."]
 
 
 def test_a_pin_that_fails_may_be_safe_only_with_both() -> None:

@@ -6,14 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from reports.data.motion import LinkageMotion
+from reports.data.motion import MIN_TRANSMISSION_ANGLE, LinkageMotion
 from reports.data.row import Units
 from reports.format.file_names import plot_name
 from reports.format.numbers import ten_to
 from reports.plots.spec import Abscissa, Panel, Plot, Spec, clipped, curves, level, rows
 from reports.plots.theme import SERIES_COLOURS
 
-MIN_TRANSMISSION_ANGLE = 40.0  # degrees; designers keep transmission angles above
 NEGLIGIBLE_MOTION_SHARE = 1e-9
 MAX_BODIES_PER_PLOT = len(SERIES_COLOURS)  # bodies in one plot
 

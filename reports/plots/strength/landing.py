@@ -8,7 +8,7 @@ from pinbase.dimensions import Floats
 from reports.data.row import LandingRange, Units
 from reports.format.file_names import plot_name
 from reports.format.numbers import short
-from reports.plots.spec import Abscissa, Panel, Plot, clipped, curves, level
+from reports.plots.spec import Abscissa, Panel, Plot, curves, labels, level
 
 
 def landing_plot(
@@ -18,7 +18,12 @@ def landing_plot(
 
     There is a panel per velocity change and a curve per pin; the axes are logarithmic.
     """
-    known = {_label(m): (m, m.safety_factor) for m in members if m.safety_factor is not None}
+    names = labels(m.pin for m in members)
+    known = {
+        _label(names[m.pin], m): (m, m.safety_factor)
+        for m in members
+        if m.safety_factor is not None
+    }
     if not known:
         return None
     first, _ = next(iter(known.values()))
@@ -43,9 +48,8 @@ def landing_plot(
     return Plot(plot_name("landing-range", case), caption, spec)
 
 
-def _label(m: LandingRange) -> str:
-    """Return the name of the pin, with its verdict unless it is converged."""
-    name = clipped(m.pin)
+def _label(name: str, m: LandingRange) -> str:
+    """Return the name of a pin, with its verdict unless it is converged."""
     return f"pin {name}" if m.verdict == "converged" else f"pin {name}, {m.verdict}"
 
 

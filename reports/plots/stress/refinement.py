@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from fea.core.peak import Refinement
 from reports.data.row import PinResult, Units
 from reports.format.file_names import plot_name
-from reports.plots.spec import NUMBER_FORMAT, Plot, Spec, clipped, headed, level, rows
+from reports.plots.spec import NUMBER_FORMAT, Plot, Spec, headed, labels, level, rows
 from reports.plots.theme import dashes
 
 MAXIMUM_HEADING, ENERGY_HEADING = "maximum: deviation [%]", "strain energy: deviation [%]"
@@ -20,20 +20,20 @@ def refinement_plot(case: str, pins: Sequence[PinResult], units: Units) -> Plot:
 
 def pin_refinement_plot(pin: str, cases: Sequence[PinResult], units: Units) -> Plot:
     """Return one pin's maximum and strain energy on its meshes in every case."""
-    name, labels = plot_name("refinement-pin", pin), [clipped(case.case) for case in cases]
-    return _plot(name, f"Pin {pin}", cases, labels, units)
+    names = [*labels(case.case for case in cases).values()]
+    return _plot(plot_name("refinement-pin", pin), f"Pin {pin}", cases, names, units)
 
 
 def _plot(
-    name: str, title: str, pins: Sequence[PinResult], labels: Sequence[str], units: Units
+    name: str, title: str, pins: Sequence[PinResult], called: Sequence[str], units: Units
 ) -> Plot:
     steps = [
         {"x": step.dofs, "value": step.max_von_mises, "y": off, "energy": step.strain_energy,
          "e": energy_off, "row": _text(label, pin)}
-        for label, pin in zip(labels, pins, strict=True)
+        for label, pin in zip(called, pins, strict=True)
         for step, off, energy_off in zip(pin.history, *_deviations(pin.history), strict=True)
     ]  # fmt: skip
-    names = list(dict.fromkeys(_text(*both) for both in zip(labels, pins, strict=True)))
+    names = list(dict.fromkeys(_text(*both) for both in zip(called, pins, strict=True)))
     stress, energy = f"maximum [{units.stress}]", f"strain energy [{units.force} {units.length}]"
     panels = [_panel("y", MAXIMUM_HEADING, ("value", stress), names)]
     known = any(step["e"] is not None for step in steps)

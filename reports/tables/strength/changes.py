@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from fea.core.peak import SingularZone
 from pinbase.grouped import grouped
+from pinbase.rounding import rounded_down, rounded_up
 from reports.data.changes import Remedy, unsized
 from reports.data.results import Results
 from reports.format.numbers import DASH, engineering, short
@@ -34,7 +35,9 @@ SINGULARITY_REMEDIES = {
 COLUMNS: tuple[Column[Remedy], ...] = (
     *texts("pin case"),
     read_only("× diameters", lambda c: engineering(c.diameter_factor, 3), drop_if_empty=True),
-    read_only("yield strength", lambda c: c.yield_strength, "stress", drop_if_empty=True),
+    read_only(
+        "yield strength", lambda c: rounded_up(c.yield_strength, 4), "stress", drop_if_empty=True
+    ),
     read_only("× loads", lambda c: _loads(c), drop_if_empty=True),
     read_only("impulse time", lambda c: _time(c), "time", rank=1, drop_if_empty=True),
 )
@@ -107,10 +110,10 @@ def singularity_remedies(zones: Iterable[SingularZone]) -> list[str]:
 
 def _loads(change: Remedy) -> str:
     about = "" if change.proportional else "≈ "
-    return f"{about}{engineering(change.load_factor, 3)}"
+    return f"{about}{engineering(rounded_down(change.load_factor), 3)}"
 
 
 def _time(change: Remedy) -> str:
     if change.given_time is None or change.impulse_time is None:
         return DASH
-    return f"{short(change.given_time)} → {engineering(change.impulse_time, 3)}"
+    return f"{short(change.given_time)} → {engineering(rounded_up(change.impulse_time), 3)}"

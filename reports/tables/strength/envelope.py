@@ -10,7 +10,7 @@ from reports.data.envelope import EnvelopeCell, case_names, envelope, omitted_no
 from reports.data.mechanics import PeakReaction
 from reports.data.results import Results
 from reports.data.row import Units
-from reports.format.numbers import DASH
+from reports.format.numbers import DASH, beside_limit, counted
 from reports.tables.column import Column, Table, fields, unit_columns
 
 # Of more cases the terminal has the matrix of the worst, and on the page those that govern no pin
@@ -134,7 +134,7 @@ def worst_cases(results: Results, pins: Sequence[str]) -> Table[CaseRow] | None:
             known = worst.get(cell.result.pin)
             if known is None or (cell.used or 0.0) >= (known.used or 0.0):
                 worst[cell.result.pin] = cell
-        rows.append(CaseRow(f"{len(rest)} others", worst))
+        rows.append(CaseRow(counted(len(rest), "other"), worst))
     columns = [
         Column("case", lambda row: row.case, "", "utilisation, * largest", numeric=False),
         *map(_of_pin, pins[:MAX_SHOWN_PINS]),
@@ -165,4 +165,8 @@ def cell_text(cell: EnvelopeCell) -> str:
     """Return the utilisation of a cell as text."""
     if cell.used is None:
         return DASH
-    return "∞" if cell.used == inf else f"{cell.used:.2f}"
+    if cell.used == inf:
+        return "∞"
+    text = f"{cell.used:.2f}"
+    hidden = cell.used > 1.0 >= float(text)
+    return beside_limit(cell.used, 1.0, 3, at_most=True) if hidden else text

@@ -10,6 +10,7 @@ from typing import Any
 from assess.fatigue.records import ERROR_OF_STRESS, CaseHistory, PointFatigue, PointHistory
 from reports.data.results import Fatigue, Results
 from reports.format.numbers import DASH, engineering
+from reports.format.ranges import used_text
 from reports.tables.column import ArrayTable, Column, Table, fields, json_of, read_only, texts
 
 LIFE_PROBABILITIES = ("10 %", "50 %", "90 %")
@@ -143,7 +144,9 @@ def life_words(life: float | None) -> str:
 
 
 def _per_cent(part: float | None) -> str:
-    return DASH if part is None else f"{_or_infinite(100.0 * part)} %"
+    if part is None:
+        return DASH
+    return "∞ %" if part == inf else used_text(part)
 
 
 def _or_infinite(value: float) -> str:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from reports.data.decision import limit
 from reports.data.results import Results
 from reports.data.row import LandingRange
 from reports.format.files import markdown
-from reports.format.numbers import engineering, short
+from reports.format.numbers import DASH, short
+from reports.format.ranges import factor_text
 from reports.tables.column import Column, Grid, Table, fields, read_only, texts
 
 LANDING_NOTE = (
@@ -105,6 +108,7 @@ def landing_blocks(results: Results) -> list[tuple[str, Grid]]:
     They have a row per pin and a column per impulse time.
     """
     units, blocks = results.units, []
+    required = {(row.pin, row.case): limit(row) for row in results.pins}
     for case in dict.fromkeys(r.case for r in results.landing):
         members = [r for r in results.landing if r.case == case]
         first = members[0]
@@ -113,7 +117,7 @@ def landing_blocks(results: Results) -> list[tuple[str, Grid]]:
             here = [i for i, point in enumerate(points) if point == (speed, pulse)]
             columns = [
                 *texts("pin verdict"),
-                *(_at(i, f"{short(first.impulse_time[i])} {units.time}") for i in here),
+                *(_at(i, f"{short(first.impulse_time[i])} {units.time}", required) for i in here),
             ]
             title = f"{case}, velocity change {short(speed)} {units.length}/{units.time}"
             title += f", {pulse} pulse" if len(set(first.pulses)) > 1 else ""
@@ -121,14 +125,17 @@ def landing_blocks(results: Results) -> list[tuple[str, Grid]]:
     return blocks
 
 
-def _at(i: int, heading: str) -> Column[LandingRange]:
-    """Return a column of the factors of safety at a point; for a singular row their interval."""
+def _at(i: int, heading: str, required: Mapping[tuple[str, str], float]) -> Column[LandingRange]:
+    """Return a column of the factors of safety at a point; for a singular row their interval.
+
+    required: the factor of each pin and case.
+    """
 
     def text(r: LandingRange) -> str:
-        factor = None if r.safety_factor is None else float(r.safety_factor[i])
-        if factor is None or r.spread is None:
-            return engineering(factor, 3)
-        return " to ".join(engineering(part * factor, 3) for part in r.spread)
+        if r.safety_factor is None:
+            return DASH
+        factors = (part * float(r.safety_factor[i]) for part in r.spread or (1.0,))
+        return " to ".join(factor_text(x, required[r.pin, r.case]) for x in factors)
 
     return read_only(heading, text)
 

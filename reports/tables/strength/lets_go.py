@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import isfinite
+from math import inf
 
 from reports.data.lets_go import LettingGo, PinSteps, lets_go
 from reports.data.results import Results
 from reports.data.row import PinResult
 from reports.format.numbers import DASH, engineering, short
+from reports.format.ranges import factor_text
 from reports.tables.column import Column, Table, fields, read_only
 
 LETS_GO_NOTE = (
@@ -41,15 +42,14 @@ def _factor(row: StepRow) -> str:
     if step.load_factor is None:
         return DASH
     about = "" if step.in_proportion else "≈ "
-    if step.low is None or step.high is None or step.low == step.high:
-        return f"{about}{engineering(step.load_factor, 3)}"
-    high = engineering(step.high, 3) if isfinite(step.high) else "∞"
-    ends = f"{engineering(step.low, 3)} to {high}"
-    return (
-        f"{about}{ends}"
-        if step.low == step.load_factor
-        else (f"{about}{engineering(step.load_factor, 3)} ({ends})")
+    factor, low, high = (
+        "∞" if end == inf else factor_text(end, step.required or 0.0)
+        for end in (step.load_factor, step.low, step.high)
     )
+    if step.low is None or step.high is None or step.low == step.high:
+        return f"{about}{factor}"
+    ends = f"{low} to {high}"
+    return f"{about}{ends}" if step.low == step.load_factor else f"{about}{factor} ({ends})"
 
 
 def _required(row: StepRow) -> str:

@@ -13,6 +13,7 @@ from reports.data.requirements import keys_in
 from reports.data.results import Results
 from reports.data.row import PinResult, Units
 from reports.format.numbers import DASH, engineering, margin_text, short
+from reports.format.ranges import used_text
 from reports.format.units import unit_name
 from reports.format.work_words import passing_text, work_text
 from reports.tables.column import Column, Table, fields, in_order, read_only, texts
@@ -207,4 +208,4 @@ def _over_joint(row: ArmsRow, moment: float) -> str:
 
 
 def _per_cent(used: float | None) -> str:
-    return f"{engineering(None if used is None else 100.0 * used, 3)} %"
+    return f"{DASH} %" if used is None else used_text(used)

@@ -141,7 +141,7 @@ def spread_words(line: PinLine) -> str:
     """Return the ends of the factor over all that is open; a dash where nothing is."""
     if line.spread is None:
         return DASH
-    low, high = (engineering(end, SPREAD_DIGITS) for end in line.spread)
+    low, high = (factor_text(end, limit(line.row), SPREAD_DIGITS) for end in line.spread)
     return low if low == high else f"{low} to {high}"
 
 

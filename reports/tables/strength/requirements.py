@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from reports.data.requirements import RequirementRow, requirement_rows
 from reports.data.results import Results
-from reports.format.numbers import DASH, engineering, short
+from reports.format.numbers import DASH, short
+from reports.format.ranges import factor_text
 from reports.tables.column import Column, Table, fields, texts
 
 COLUMNS: list[Column[RequirementRow]] = [
@@ -14,7 +15,7 @@ COLUMNS: list[Column[RequirementRow]] = [
     Column("check", lambda row: row.check, "", "requirement", lambda row: row.title, numeric=False),
     Column("required", lambda row: row.required, "", "required", lambda row: short(row.required)),
     Column("reached", lambda row: row.reached, "", "reached",
-           lambda row: engineering(row.reached)),
+           lambda row: factor_text(row.reached, row.required, 4)),
     *texts("outcome"),
     Column("needs", lambda row: row.needs, "", "needs", numeric=False, rank=1, drop_if_empty=True),
     *fields("stated over"),

@@ -32,7 +32,7 @@ SINGULAR_SENSITIVITIES_NOTE = (
     "Of singular rows this is of the maximum outside the excluded zones, whose size goes with the "
     "diameter where they are."
 )
-CHANGING_CELLS_NOTE = "one-sided: {count} cells of contact are about to open or to close."
+CHANGING_CELLS_NOTE = "one-sided: cells of contact about to open or to close: {count}."
 ONE_SIDED_NOTE = (
     "one-sided: stress is as large, within its error, {places}, which may govern instead."
 )

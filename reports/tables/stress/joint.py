@@ -9,6 +9,7 @@ from typing import Any
 from fea.support.records import BandContact, JointRange, JointResult, LugStress, Variation
 from reports.data.results import Results
 from reports.format.numbers import DASH, engineering, short
+from reports.format.ranges import used_text
 from reports.tables.column import (
     PIN_AND_CASE,
     Column,
@@ -165,7 +166,7 @@ def _steps(band: BandContact) -> Iterator[LoadStep]:
 
 
 def _per_cent(share: float | None) -> str:
-    return DASH if share is None else f"{engineering(100.0 * share, 3)} %"
+    return DASH if share is None else used_text(share)
 
 
 def joint_json(joint: JointResult | None) -> dict[str, Any] | None:

@@ -6,9 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from pinbase.processes.apart import Failed
 from pinstress.cli import manifest
 from pinstress.cli.commands import run_command_line
 from pinstress.cli.output_folder import require_replaceable
+from pinstress.cli.plots import report_failed
 from tests.conftest import ROOT
 from tests.support.programs.command_line import ONE_PIN
 
@@ -67,3 +69,9 @@ def test_a_run_draws_plots_and_pins(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert any(name.startswith("surface.") for name in drawn)
     assert any(name.startswith("pin_") for name in drawn)
     require_replaceable(tmp_path / "out")
+
+
+def test_the_command_to_try_again_runs_as_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    """A folder with a blank was two arguments."""
+    assert report_failed(Path("out/my run"), {"plots/a.svg": Failed("no memory")}) == 1
+    assert "`pinstress plots 'out/my run'` tries again." in capsys.readouterr().err

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import json
 import os
 import signal
@@ -20,6 +21,7 @@ from fea.solve.solve import solve
 from pinbase.processes import interrupts
 from pinstress import InputError
 from pinstress.cli.commands import run_command_line
+from pinstress.cli.streams import _plain
 from tests.conftest import ROOT
 from tests.support.each import each, sampled
 from tests.support.programs.command_line import QUICK, run_here
@@ -264,3 +266,17 @@ def test_an_interrupt_that_is_dropped_comes_back(
         assert run_command_line([*RUN, "--jobs", "1"]) == 130
     assert "Interrupted; nothing was written." in capsys.readouterr().err
     assert sorted(p.name for p in tmp_path.iterdir()) == ["study.toml"]
+
+
+@each(
+    ("encoding", "shown"),
+    [
+        ("ascii", "22.8x10^-6 -> 3x10^12, s^2, >= 2 inf, dia 3, 30 deg?"),
+        ("cp1252", "22.8×10^-6 -> 3×10¹², s², >= 2 inf, dia 3, 30°?"),
+    ],
+)
+def test_a_terminal_without_a_character_gets_what_reads_the_same(encoding: str, shown: str) -> None:
+    """A power of ten lost its exponent, "22.8x10??", and ≥ became >."""
+    codecs.register_error("plain", _plain)
+    text = "22.8×10⁻⁶ → 3×10¹², s², ≥ 2 ∞, ⌀3, 30°✕"
+    assert text.encode(encoding, "plain").decode(encoding) == shown

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -65,6 +66,13 @@ def test_the_case_that_counts_is_the_worst_or_one_of_which_nothing_is_known() ->
     idle = CurvePoint(1.0, "P", "rest", 0.0, 0.0, None, "safe")
     beside_idle = of(idle, point(1.0, 3.0, case="a"))
     assert [p.case for p in (*beside_idle.least("P"), *beside_idle.worst("P"))] == ["a", "a"]
+
+
+def test_the_error_of_a_small_stress_is_in_proportion() -> None:
+    """Of 0.0005 MPa the upper end of the factor was half of the factor itself."""
+    point = CurvePoint(1.0, "P", "c", 5e-4, 5e-5, 4.0, "safe")
+    assert point.factor_ends == pytest.approx((4.0 / 1.1, 4.0 / 0.9))
+    assert replace(point, error_estimate=5e-4).factor_ends == pytest.approx((2.0, math.inf))
 
 
 def test_a_curve_is_one_short_line_in_a_notebook() -> None:

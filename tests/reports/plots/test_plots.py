@@ -203,6 +203,15 @@ def test_long_names_are_clipped() -> None:
     assert clipped(30 * "x") == 23 * "x" + "…"
 
 
+def test_names_that_begin_alike_stay_apart() -> None:
+    """Of two curves with the same first 47 letters the first was not drawn."""
+    one, other = (f"{50 * 'x'} {end}" for end in "ab")
+    x = np.linspace(0.0, 1.0, 5)
+    found = curves("t", Abscissa("x", x), [Panel("y", {one: x, other: -x, 60 * "z": 2.0 * x})])
+    assert found["usermeta"]["columns"][1:3] == [f"{one}, y", f"{other}, y"]
+    assert found["usermeta"]["columns"][3] == f"{47 * 'z'}…, y"
+
+
 def test_files_are_the_same_bytes_on_every_run(plots: dict[str, Plot], tmp_path: Path) -> None:
     some = [plots[name] for name in ("motion-check", "linkage.landing")]
     first, again = draw(some, tmp_path / "a"), draw(some, tmp_path / "b")

@@ -13,7 +13,7 @@ from pinstress.study.schema.vary import ReliabilityTable
 from reports.data.reliability import ByErrors, FirstOrder, Reliability, Risk, Spread
 from reports.plots.reliability import distribution_plot
 from reports.tables.reliability import chance_range, factor_interval, remark, risks_table
-from reports.text.reliability import sentence
+from reports.text.reliability import remarks, sentence
 
 PLAIN = Spread(0.03, 0.02, 0.04)
 ROW = Risk("A", "pull", "converged", 1.25, PLAIN, 60, 0, Spread(0.9, 0.8, 1.0))
@@ -69,6 +69,16 @@ def test_the_sentence_and_the_plot() -> None:
     assert [round(p["y"], 2) for p in points] == [-2.33, -1.88, 0.0, -3.09]
     assert distribution_plot(found, ROW) is None
     assert risks_table(found).grid().body[0][5] == "0.03 (0.02 to 0.04)"
+
+
+def test_every_design_without_a_result_is_told() -> None:
+    """Of more than five reasons the others were dropped, and it said "1 designs"."""
+    reasons = {f"reason {k}": 9 - k for k in range(9)}
+    found = Reliability("t", "s", 1.0, 1e-3, 0.95, 2000, 1, (), (ROW,), reasons=reasons)
+    told = list(remarks(found))
+    assert told[0] == "9 designs have no result: reason 0."
+    assert told[5:] == ["10 designs have no result for other reasons (reliability.json)."]
+    assert "1 design has no result and counts both ways" in remark(replace(ROW, unknown=1))
 
 
 def test_the_worst_row_of_each_design() -> None:

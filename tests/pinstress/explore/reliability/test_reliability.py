@@ -183,7 +183,7 @@ def test_nothing_fails_gives_an_upper_bound_only(
     assert _run(tmp_path, text) == 1
     printed = capsys.readouterr()
     assert "is below 0.168 (95 % confidence; no sample fails" in printed.out
-    assert "Not decided: pin A, case pull" in printed.err
+    assert "Not decided: Pin A, pull" in printed.err
     (risk,) = json.loads((tmp_path / "out" / "reliability.json").read_text())["risks"]
     assert risk["sampled"] == {"value": 0.0, "low": 0.0, "high": pytest.approx(0.16843, rel=1e-4)}
     assert "9 standard deviations" in risk["form"]["why"]
@@ -314,4 +314,4 @@ def test_a_pin_that_is_singular_in_many_designs_is_not_safe(
     assert risk["sampled"]["high"] < 0.5 < risk["unbounded"]["high"]
     assert risk["result"] == "not decided"
     assert "unbounded at a corner or an edge in some designs" in " ".join(printed.out.split())
-    assert "Not decided: pin A, case pull" in printed.err
+    assert "Not decided: Pin A, pull" in printed.err
