@@ -22,6 +22,8 @@ DIAGRAM_WIDTH, MIN_DIAGRAM_HEIGHT, MAX_DIAGRAM_HEIGHT = 560.0, 160.0, 560.0
 DIAGRAM_MARGIN = 0.06  # of the size, around the linkage
 LABEL_LETTER_WIDTH, LABEL_LINE_HEIGHT, LABEL_GAP = 7.0, 13.0, 7.0
 SPRING_HALF_WIDTH = 5.0
+SUPPORT_SIZE = 170.0  # of the triangle of a fixed joint, as Vega counts it
+SUPPORT_FOOT = np.sqrt(SUPPORT_SIZE) * np.array([[-0.5, 0.43], [0.5, 0.43]])  # its lower side
 PATH_TOLERANCE = 1e-4  # of the linkage's size: a twentieth of a pixel
 POSITION_TOLERANCE = 1e-6  # of the linkage's size: positions nearer than this are drawn once
 
@@ -188,7 +190,7 @@ def _lines(data: list[Spec], style: str, key: list[str] | None) -> list[Spec]:
 def _joints(motion: LinkageMotion, instants: list[int]) -> list[Spec]:
     """Return rings at joints, with triangles at the fixed ones."""
     layers = []
-    for still, shape, size in ((True, "triangle-up", 170), (False, "circle", 34)):
+    for still, shape, size in ((True, "triangle-up", SUPPORT_SIZE), (False, "circle", 34)):
         shown = [
             {"x": float(x), "y": float(y), "name": name}
             for j, name in enumerate(motion.joints) if (name in motion.ground) or not still
@@ -218,9 +220,12 @@ def _names(motion: LinkageMotion, instants: list[int], frame: _Frame) -> list[Sp
         for k in instants for joints in motion.links
         for pair in zip(joints, (*joints[1:], *joints[:1]), strict=True) if len(joints) > 1
     ]  # fmt: skip
-    segments += [list(ends[k]) for k in instants for ends in motion.springs.values()]
-    ends = frame.pixels(np.array(segments).reshape(1, -1, 2, 2))
     at_pixels = frame.pixels(points)
+    for lines in (motion.slides, motion.springs):
+        segments += [list(ends[k]) for k in instants for ends in lines.values()]
+    ends = frame.pixels(np.array(segments).reshape(1, -1, 2, 2))
+    feet = [at_pixels[motion.joints.index(name)] + SUPPORT_FOOT for name in motion.ground]
+    ends = np.concatenate([ends, np.reshape(feet, (1, -1, 2, 2))], axis=1)
     placed = at_pixels + label_offsets(
         at_pixels[None], sizes, ends, LABEL_GAP, (DIAGRAM_WIDTH, frame.height)
     )
