@@ -473,3 +473,12 @@ def test_springs_between_two_points_are_drawn(moving: Results) -> None:
     assert corners[:2] == pytest.approx(ends[:2], abs=0.02)
     assert corners[-2:] == pytest.approx(ends[2:4], abs=0.02)
     assert "rope <1>" in page.text
+
+
+def test_the_mean_of_a_drive_is_written_as_in_the_terminal(moving: Results) -> None:
+    """A mean of zero was "0.0000"."""
+    force = 0.02 * np.sin(np.linspace(0.0, 2.0 * np.pi, 181))
+    drive = replace(moving.drive[0], force=force)
+    assert drive.mean == 0.0
+    notes = re.findall("mean [^,]*", Reader(render(replace(moving, drive=(drive,)))).text)
+    assert notes == ["mean 0"]
