@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 
 PLAIN_NAME_PATTERN = re.compile(r"[A-Za-z0-9_-]+")  # that TOML needs no quotes for
-NAME_PATTERN = re.compile(r'"([^"]*)"|\'([^\']*)\'|[^."\']+')  # a part of a key
+QUOTED = r'"[^"]*"|(?<![^.])\'[^\']*\''  # a name in quotes; single ones begin a part of a key
+NAME_PATTERN = re.compile(rf"{QUOTED}|[^.\"']+")  # a part of a key
 
 
 def key_part(name: str) -> str:
@@ -17,7 +18,12 @@ def key_part(name: str) -> str:
 
 def names_in(key: str) -> list[str]:
     """Return the names that are the parts of a key, without their quotes."""
-    return [part[part.lastindex or 0] for part in NAME_PATTERN.finditer(key)]
+    return [unquoted(part) for part in NAME_PATTERN.findall(key)]
+
+
+def unquoted(part: str) -> str:
+    """Return the name that a part of a key is, without its quotes."""
+    return part[1:-1] if part[0] in "\"'" and part[0] == part[-1] else part
 
 
 def lug_key(pin: str, connection: str, *parts: str) -> str:

@@ -35,7 +35,7 @@ def lug_stress(text: CheckText, s: Situation) -> list[Margin]:
     lacking = [lug_key(s.pin.name, lug.connection, "shank") for lug in s.sized if lug.shank is None]
     if lacking and s.joint is not None:
         margins.append(text.lacks(s, *lacking))
-    if not s.lug_stresses and any(lug.shank for lug in s.lugs) and s.across.any():
+    if not s.lug_stresses and any(lug.shank for lug in s.lugs) and s.loaded_across:
         margins.append(text.lacks(s, CONTACT_NEED))
     return margins
 

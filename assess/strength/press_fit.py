@@ -51,13 +51,14 @@ def _margins(text: CheckText, s: Situation, lug: Lug) -> Iterator[Margin]:
 
 
 def _passing(lug: Lug, used: float) -> WorkQuantity | None:
-    """The interference that would just pass, at the temperature of the study's dimensions; None
-    where pin and bushing are pressed in, or none would.
+    """The interference that would just pass, the largest of a range, at the temperature of the
+    study's dimensions; None where pin and bushing are pressed in, or none would.
     """
+    of_pin = max(-x for x in (lug.clearance, *(lug.range.clearance or ())))
     if lug.bushing is None:
-        now, grown = -lug.clearance, -lug.growth
+        now, grown = of_pin, -lug.growth
     else:
-        now, grown = lug.bushing.misfit, lug.bushing.outgrown
+        now, grown = max(x.misfit for x in lug.pressed_bushings()), lug.bushing.outgrown
     passes = now / used - grown if used > 0.0 else 0.0
-    both = lug.bushing is not None and lug.clearance < 0.0
+    both = lug.bushing is not None and of_pin > 0.0
     return WorkQuantity("interference", passes, "length") if passes > 0.0 and not both else None

@@ -213,7 +213,7 @@ def support_of(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> str:
     if lugs(study, pin, clamps):
         beam = study.table.analysis.joints == "foundation"
         return f"{'on foundations in' if beam else 'in contact with'} its lugs"
-    return f"clamped at {', '.join(clamps) or 'nowhere (loads must balance)'}"
+    return f"clamped at {', '.join(clamps)}" if clamps else "not clamped: its loads must balance"
 
 
 def _form(pin: PinTable) -> str:
@@ -294,7 +294,7 @@ def _words(study: Study, name: str, loads: CaseLoads) -> str:
         return f"drop, {case.samples:,} instants over {case.duration:g} s, ground on {case.body}"
     if isinstance(case, GroundCase):
         return f"ground, {f'14 CFR {case.rule}' if case.rule else 'stated factors'}, on {case.body}"
-    applied = ", ".join(f"{load.body}" for load in case.apply)
+    applied = ", ".join(dict.fromkeys(load.body for load in case.apply))
     if isinstance(case, MotionCase):
         also = f", loads on {applied}" if applied else ""
         return f"motion, {case.samples:,} instants over {span(study):g} s{also}"

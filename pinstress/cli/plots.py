@@ -6,6 +6,7 @@ each complete or not at all.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -143,11 +144,18 @@ def require_results(directory: Path) -> set[str]:
     known = manifest.listed(directory)
     if known is None:
         raise InputError(
-            f"{directory}: no results of pinstress; name the folder that `pinstress run` or "
-            "`pinstress loads` wrote",
+            f"{directory}: {lacking(directory, 'has no results of pinstress')}; give a folder "
+            "written by `pinstress run` or `pinstress loads`",
             code="no-results",
         )
     return known
+
+
+def lacking(directory: Path, else_lacks: str = "contains no results.json") -> str:
+    """Return why a folder has no results."""
+    if not os.path.lexists(directory):
+        return "no such folder"
+    return else_lacks if directory.is_dir() else "not a folder"
 
 
 def report_failed(directory: Path, failed: dict[str, Failed]) -> int:

@@ -13,7 +13,7 @@ import click
 from pinbase.processes.apart import apart
 from pinbase.processes.pool import preload
 from pinstress.cli.new_file import require_new, write_new
-from pinstress.cli.plots import PICTURE_MODULES, PICTURE_SECONDS
+from pinstress.cli.plots import PICTURE_MODULES, PICTURE_SECONDS, lacking
 from pinstress.study.reading.errors import InputError
 from reports.vtk.read_back import Opened, open_results
 from reports.vtk.render import render_pin, show_pin
@@ -108,7 +108,7 @@ def opened_results(directory: Path) -> Opened:
         return open_results(directory)
     except (FileNotFoundError, NotADirectoryError):
         raise InputError(
-            f"{directory}: contains no results.json; give a folder written by `pinstress run`",
+            f"{directory}: {lacking(directory)}; give a folder written by `pinstress run`",
             code="no-results",
         ) from None
     except (OSError, ValueError) as error:

@@ -18,7 +18,7 @@ from reports.data.results import Results
 from reports.data.row import Units
 from reports.data.skeleton import Skeleton
 from reports.format.file_names import animation_name
-from reports.format.numbers import short
+from reports.format.numbers import engineering, short
 from reports.format.script_json import script_json
 from reports.format.template import rendered
 
@@ -129,6 +129,9 @@ def _strips(scene: Scene, drives: list[DriveTable], shown: Shown, units: Units) 
         strips.append(strip(title, note, 122.0, time[at], curves, colours, shown.force.factor))
     for d, (_, force) in zip(drives, shown.drives, strict=True):
         title = f"drive {d.name}: {'torque' if d.kind == 'rotary' else 'force'} [{force.unit}]"
-        note = f"mean {force(d.mean)}, RMS {force(d.rms)}"
+        note = ", ".join(
+            f"{what} {engineering(size / force.factor)}"
+            for what, size in (("mean", d.mean), ("RMS", d.rms))
+        )
         strips.append(strip(title, note, 82.0, time[at], [d.force[at]], ["plain"], force.factor))
     return strips

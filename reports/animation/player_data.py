@@ -46,6 +46,7 @@ def player_data(scene: Scene, drives: list[DriveTable], units: Units) -> dict[st
             }
             for s in scene.slides
         ],
+        "springs": [pixels(scene.placed(ends[at])) for ends in scene.skeleton.springs.values()],
         "pitch": [pixels(ends.reshape(-1, 4)) for _, ends, _ in scene.pitch],
         "connections": _connections(scene),
         "applied": [

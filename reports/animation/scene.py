@@ -16,6 +16,7 @@ from reports.data.mechanics import ReactionTable
 from reports.data.skeleton import Skeleton
 from reports.format.drawing.projection import PLANE, Projection, isometric, three_views
 from reports.format.drawing.svg_labels import label_offsets
+from reports.format.drawing.zigzag import zigzag
 
 MAX_ARROW_LENGTH, MAX_SPACE_ARROW_LENGTH = 120.0, 80.0  # arrow; in space, which needs room
 APPLIED_GAP = 9.0  # between the tip of an applied load and its point, at which a joint may be
@@ -26,6 +27,7 @@ JOINT_LETTER_WIDTH, JOINT_LINE_HEIGHT, JOINT_LABEL_GAP = 7.6, 15.0, 13.0  # of j
 MAX_NAME_LETTERS = 14  # of a name on the picture
 # Of a slider's shortest and longest length: its cylinder
 CYLINDER_SHARE_OF_SHORTEST, CYLINDER_SHARE_OF_LONGEST = 0.85, 0.3
+SPRING_HALF_WIDTH = 7.0  # also in animation.js
 RAIL_OVERHANG = 30.0  # that a rail goes on past the block
 
 
@@ -72,7 +74,7 @@ class Scene:
         skeleton = self.skeleton
         single = [b for b, joints in enumerate(skeleton.links) if len(joints) < 2]
         parts = [skeleton.position, skeleton.centre[:, single], *skeleton.slides.values()]
-        parts += skeleton.paths.values()
+        parts += [*skeleton.springs.values(), *skeleton.paths.values()]
         box = np.array([[-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]])
         parts += [c.ends[:, :1] + c.radius * box if c.round else c.ends for c in skeleton.pitch]
         return np.concatenate([p.reshape(-1, 3) for p in parts])
@@ -249,6 +251,16 @@ class Scene:
         return f"b{self.skeleton.bodies.index(body) % BODY_COLOUR_COUNT}"
 
     @cached_property
+    def springs(self) -> dict[str, Floats]:
+        """The ends (F, 2, 2) of every spring between two points."""
+        return {n: self.seen(ends[self.instants]) for n, ends in self.skeleton.springs.items()}
+
+    @property
+    def zigzags(self) -> dict[str, Floats]:
+        """The corners (N, 2) of these springs at the first frame."""
+        return {n: zigzag(ends[0], SPRING_HALF_WIDTH) for n, ends in self.springs.items()}
+
+    @cached_property
     def slides(self) -> list[Slide]:
         return [self._slide(name, ends) for name, ends in self.skeleton.slides.items()]
 
@@ -294,6 +306,7 @@ class Scene:
         ]
         lines = [self.joints[few][:, list(pair)] for pair in pairs]
         lines += [slide.ends[few] for slide in self.slides]
+        lines += [ends[few] for ends in self.springs.values()]
         inked = np.stack(lines, axis=1) if lines else np.zeros((len(few), 0, 2, 2))
         picture = (PICTURE_WIDTH, self.view.height)
         return label_offsets(self.joints[few], self.name_sizes, inked, JOINT_LABEL_GAP, picture)

@@ -131,6 +131,7 @@ class LinkageMotion:
     joints: J names, those of pitch points last. ground: joints that are fixed.
     joint_position, joint_velocity, joint_acceleration: (T, J, 2).
     slides: by slider, its two ends (T, 2, 2). pitch: curves of gears and racks.
+    springs: by spring or damper between two points, its ends (T, 2, 2).
     connections: (name, body, joint) in the order of the case's ReactionTable.
     transmission: by link and joint, (T,) degrees; 90 is best, 0 is a dead point.
     condition: (T,), condition number of the loop equations.
@@ -168,6 +169,7 @@ class LinkageMotion:
     paths: dict[str, PointPath] = field(default_factory=dict)
     extremes: Extremes | None = None
     pitch: tuple[PitchCurve, ...] = ()
+    springs: dict[str, Lengths] = field(default_factory=dict)
     applied: tuple[AppliedForce, ...] = ()
     aside: tuple[AppliedForce, ...] = ()
 

@@ -38,6 +38,7 @@ from assess.strength.hand_checks import BENDING_METHODS, METHODS_BY_FORMULA, SHE
 from assess.strength.model_stress import RUPTURE_METHOD, YIELD_METHOD
 from assess.strength.plastic_bending import PLASTIC_METHOD
 from pinbase.grouped import grouped
+from pinbase.keys import QUOTED
 from reports.data.decision import factor_ends
 from reports.data.dependence import depends_on
 from reports.data.results import Results
@@ -64,12 +65,13 @@ METHODS_OF_CHECK: Mapping[RequiredCheck, tuple[str, ...]] = {
 }
 CHECK_OF_METHOD = {m: check for check, methods in METHODS_OF_CHECK.items() for m in methods}
 
-BETWEEN_KEYS = re.compile(r', (?=(?:[^"]*"[^"]*")*[^"]*$)')  # outside of quotes
+LISTED_KEY = re.compile(rf"(?:^|, )((?:{QUOTED}|(?!, ).)+)")  # up to a comma outside of quotes
 
 
 def keys_in(needs: str) -> list[str]:
     """Return the keys of a list in words; a comma in quotes, in a name, does not end one."""
-    return [key for key in BETWEEN_KEYS.split(needs) if key]
+    found: list[str] = LISTED_KEY.findall(needs)
+    return found
 
 
 @dataclass(frozen=True)

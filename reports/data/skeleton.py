@@ -36,7 +36,7 @@ class Skeleton:
     stems: bodies that are drawn from their only joint to their centre of mass.
     joints: J names. ground: joints that are fixed. position: (T, J, 3).
     axes: (T, J, 3), unit vectors along the pins; zero where a joint has no axis.
-    slides: by slider, its two ends (T, 2, 3).
+    slides: by slider, its two ends (T, 2, 3). springs: likewise, of those between two points.
     connections: (name, body, joint) in the order of the case's ReactionTable.
     paths: of named points, (T, 3). applied, couples: of the case's loads, (T, 3).
     aside: the loads across the plane of a planar linkage.
@@ -57,6 +57,7 @@ class Skeleton:
     connections: tuple[tuple[str, str, str], ...]
     stems: tuple[str, ...] = ()
     slides: dict[str, Lengths] = field(default_factory=dict)
+    springs: dict[str, Lengths] = field(default_factory=dict)
     paths: dict[str, Lengths] = field(default_factory=dict)
     applied: tuple[AppliedForce, ...] = ()
     couples: tuple[AppliedCouple, ...] = ()
@@ -105,6 +106,7 @@ def planar_skeleton(motion: LinkageMotion) -> Skeleton:
         axes=axes,
         connections=motion.connections,
         slides={name: _lifted(ends) for name, ends in motion.slides.items()},
+        springs={name: _lifted(ends) for name, ends in motion.springs.items()},
         paths={name: _lifted(path.position) for name, path in motion.paths.items()},
         applied=tuple(
             replace(load, position=_lifted(load.position), force=_lifted(load.force))

@@ -79,6 +79,14 @@ def short(value: float) -> str:
     return head + times + power
 
 
+def drawn(value: float) -> str:
+    """Return a dimension on a drawing: as it was given, or with five digits where it was given in
+    another unit, of which more would say nothing.
+    """
+    given = math.isclose(value, float(f"{value:.6g}"), rel_tol=1e-9)
+    return short(value if given else float(f"{value:.5g}"))
+
+
 def like(value: float, given: float) -> str:
     """Return a number rounded to as many decimals as a given one has."""
     _, _, decimals = f"{Decimal(repr(float(given))):f}".partition(".")

@@ -10,7 +10,7 @@ from reports.data.check import CheckedStudy, PlannedRow
 from reports.data.results import PinShape
 from reports.data.row import Units
 from reports.data.skeleton import Skeleton
-from reports.format.numbers import short
+from reports.format.numbers import drawn
 from reports.format.template import rendered
 from reports.page.linkage_drawing import draw_linkage
 from reports.page.linkage_panel import Instant, Mark
@@ -78,8 +78,8 @@ def _lug_words(shape: PinShape, unit: str) -> list[str]:
     """Return a line for the lugs that are alike."""
     alike: dict[str, list[str]] = {}
     for lug in shape.lugs:
-        size = f"⌀{short(lug.outer_diameter)} {unit}, {lug.material}"
-        clearance = f"clearance {short(lug.clearance)} {unit}"
+        size = f"⌀{drawn(lug.outer_diameter)} {unit}, {lug.material}"
+        clearance = f"clearance {drawn(lug.clearance)} {unit}"
         alike.setdefault(f"{size}, {clearance}", []).append(lug.connection)
     return [
         f"lug{'s' * (len(names) > 1)} {', '.join(names)}: {words}" for words, names in alike.items()

@@ -28,6 +28,7 @@ from reports.page.linkage_parts import (
     pitches,
     sides,
     sliders,
+    springs,
     support,
     support_foot,
     triad,
@@ -83,6 +84,7 @@ def _shapes(
     yield from bodies(at, panel, points)
     yield from sliders(at, panel)
     yield from pitches(at, panel)
+    yield from springs(at, panel)
     yield from levers(at, panel, points)
     yield from (
         support(points[name], panel.symbol) for name in at.skeleton.ground if name in points
@@ -192,6 +194,7 @@ def _labels(
     sizes = np.array([[wide * len(text), high] for text in texts])
     lines = [[points[a], points[b]] for joints in skeleton.links for a, b in sides(joints)]
     lines += [list(panel.pixels(ends[at.k])) for ends in skeleton.slides.values()]
+    lines += [list(panel.pixels(ends[at.k])) for ends in skeleton.springs.values()]
     lines += [[arrow.tail, arrow.tip] for arrow in arrows]
     lines += [support_foot(points[name], panel.symbol) for name in skeleton.ground]
     hidden = np.array(lines or [[where[0], where[0]]])[None]

@@ -89,6 +89,7 @@ def _extent(at: Instant, view: Projection) -> tuple[Floats, Floats]:
     """Return the lowest and the highest coordinates of what is drawn of a linkage, each (2,)."""
     skeleton, k = at.skeleton, at.k
     parts = [skeleton.position[k], *(ends[k] for ends in skeleton.slides.values())]
+    parts += [ends[k] for ends in skeleton.springs.values()]
     parts += [skeleton.centre[k, skeleton.bodies.index(body)] for body in skeleton.stems]
     parts += [load.position[min(k, len(load.position) - 1)] for load in skeleton.loads]
     box = np.array([[-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]])

@@ -12,6 +12,7 @@ import numpy as np
 from pinbase.dimensions import Floats
 from reports.data.mechanics import ReactionTable
 from reports.format.drawing.svg_labels import label_offsets
+from reports.format.drawing.zigzag import zigzag
 from reports.page.linkage_panel import Instant, LinkagePanel, Points
 
 ARROW_CLEARANCE = 12.0  # between the tip of an arrow and the place where its force acts
@@ -19,6 +20,7 @@ ARROW_LENGTHS = (22.0, 38.0)  # of the smallest and the largest force
 MIN_LINK_WIDTH, MAX_LINK_WIDTH = 1.5, 12.0
 PLAIN_LINK_WIDTH = 2.2  # where no force is shown
 SUPPORT_HEIGHT = 19.0
+SPRING_HALF_WIDTH = 5.0
 AXIS_REACH, PIN_REACH = 24.0, 13.0  # from a joint, of its axis and of the pin about it
 MIN_AXIS_LENGTH = 1.0  # of an axis on the picture; below it the ring of the joint stands for it
 END_ON_LENGTH = 0.25  # of a unit vector on the picture: below it an arrow points along the view
@@ -110,6 +112,14 @@ def sliders(at: Instant, panel: LinkagePanel) -> Iterable[str]:
     """Yield the lines of sliders."""
     for ends in at.skeleton.slides.values():
         yield line("slide", *panel.pixels(ends[at.k]))
+
+
+def springs(at: Instant, panel: LinkagePanel) -> Iterable[str]:
+    """Yield the zigzags of springs between two points."""
+    for name, ends in at.skeleton.springs.items():
+        corners = zigzag(panel.pixels(ends[at.k]), panel.symbol * SPRING_HALF_WIDTH)
+        path = "L".join(f"{x:.1f} {y:.1f}" for x, y in corners)
+        yield f'<path class="spring" d="M{path}"><title>{escape(name)}</title></path>'
 
 
 def pitches(at: Instant, panel: LinkagePanel) -> Iterable[str]:

@@ -10,7 +10,7 @@ from reports.data.results import CutShape, PinShape
 from reports.data.row import Units
 from reports.format.drawing.spread import rows
 from reports.format.drawing.svg import INK_COLOUR, line, text, wide
-from reports.format.numbers import engineering, short
+from reports.format.numbers import drawn, engineering, short
 from reports.page.drawing_places import PlaceMark
 from reports.page.drawing_zones import STRIPE_PATTERN, ZoneMarks
 from reports.page.lug_drawing import LUG_PATTERN, draw_line_loads, draw_lug
@@ -141,7 +141,7 @@ def draw_pin(
     feet = rows([p.middle for p in pieces], [wide(p.length) for p in pieces])
     overall = chain + TEXT_LINE_HEIGHT * (max(feet) + 1) + 12.0
     height = overall + 12.0 + TEXT_LINE_HEIGHT * len(shape.cuts)
-    total = f"{short(at.length)} {units.length}"
+    total = f"{drawn(at.length)} {units.length}"
     parts = [
         f'<svg class="pin" viewBox="0 0 {width:.0f} {height:.0f}" role="img" '
         f'xmlns="http://www.w3.org/2000/svg" font-size="11" font-family="sans-serif">'
@@ -253,7 +253,7 @@ def _pieces(
         # A gap as thick as the segment before needs no words
         shown = "" if not label and size == last_size else size
         last_size = size
-        words = (label, shown, short(long), kind, force)
+        words = (label, shown, drawn(long), kind, force)
         pieces.append(_Piece(x, scale * long, long, radii, holes, *words))
         x += scale * long
     return pieces
@@ -267,7 +267,7 @@ def _force(along: StressAlong | None, units: Units, start: float, end: float) ->
 
 def _from_to(ends: tuple[float, float]) -> str:
     """Return one size, or the sizes at both ends of a cone."""
-    return "–".join(dict.fromkeys(short(size) for size in ends))
+    return "–".join(dict.fromkeys(drawn(size) for size in ends))
 
 
 def _section(piece: _Piece, axis: float) -> str:
@@ -361,20 +361,20 @@ def draw_cut(cut: CutShape, left: float, axis: float, scale: float) -> str:
 
 def cut_words(cut: CutShape) -> str:
     """Return the sizes and the place of a cut as text, in the report's unit of length."""
-    kind, size, (low, high) = cut.name.split()[0], short(cut.size), cut.z
-    deep = "through" if cut.depth is None else f"{short(cut.depth)} deep"
-    between = f"z = {short(low)} to {short(high)}"
+    kind, size, (low, high) = cut.name.split()[0], drawn(cut.size), cut.z
+    deep = "through" if cut.depth is None else f"{drawn(cut.depth)} deep"
+    between = f"z = {drawn(low)} to {drawn(high)}"
     where = f" at {short(cut.angle % 360.0)}°"
     match kind:
         case "hole":
-            aside = f"{short(abs(cut.offset))} beside the axis, " if cut.offset else ""
-            dimensions = f"⌀{size}, {deep}, {aside}z = {short(low)},"
+            aside = f"{drawn(abs(cut.offset))} beside the axis, " if cut.offset else ""
+            dimensions = f"⌀{size}, {deep}, {aside}z = {drawn(low)},"
         case "flat":
             dimensions = f"{size} from the axis, {between},"
         case "slot":
             dimensions = f"{size} wide, {deep}, {between},"
         case _:
-            aside = f"{short(cut.offset)} from the axis" if cut.offset else "on the axis"
+            aside = f"{drawn(cut.offset)} from the axis" if cut.offset else "on the axis"
             dimensions = f"⌀{size}, {deep}, {between}, {aside}"
             where = where if cut.offset else ""
     lean = f", leaning {short(cut.tilt)}° towards z" if cut.tilt else ""

@@ -10,6 +10,7 @@
     positions: all("[data-position]"), forces: all("output[data-force]"),
     applied: all("[data-applied]"), levers: all("[data-lever]"), sizes: all("[data-size-of]"),
     names: all("[data-between]"), pitch: all("[data-pitch]"),
+    springs: all("[data-spring]"),
   };
   const space = data.space && inSpace(data), dim = space ? 3 : 2; // coordinates of a point
   const axesOf = space ? ["fx", "fy", "fz"] : ["fx", "fy"];
@@ -65,6 +66,14 @@
   const place = (x, y) => `translate(${x.toFixed(2)} ${y.toFixed(2)})`;
   const line = (points, closed) => "M" + points.map((p) => p[0].toFixed(2) + "," + p[1].toFixed(2)).join(" ") + (closed ? "Z" : "");
 
+  // As reports/format/drawing/zigzag.py.
+  const TURNS = 15, STRAIGHT = 0.15, HALF_WIDTH = 7;
+  const zigzag = ([ax, ay], [bx, by]) => {
+    const [x, y] = [bx - ax, by - ay], whole = Math.hypot(x, y), width = Math.min(HALF_WIDTH, whole / 4) / (whole || 1);
+    const turns = Array.from({ length: TURNS }, (_, k) => [STRAIGHT + ((1 - 2 * STRAIGHT) * (k + 0.5)) / TURNS, k % 2 ? -width : width]);
+    return [[0, 0], [STRAIGHT, 0], ...turns, [1 - STRAIGHT, 0], [1, 0]].map(([s, w]) => [ax + s * x - w * y, ay + s * y + w * x]);
+  };
+
   const stretch = (arrow, length) => {
     const head = Math.min(HEAD, 0.6 * length);
     arrow.setAttribute("visibility", length < 1 ? "hidden" : "visible");
@@ -102,6 +111,7 @@
       g.children[0].setAttribute("d", line([[ax, ay], [bx, by]]));
       if (g.children[1]) g.children[1].setAttribute("transform", place(ax, ay));
     });
+    parts.springs.forEach((path, n) => path.setAttribute("d", line(zigzag(...[0, 1].map((k) => spot(data.springs[n], f, 2, k))))));
     parts.slides.forEach((g, s) => {
       const slide = data.slides[s];
       const ends = [0, 1].map((k) => point3(slide.ends, f, 2, k)), [[ax, ay], [bx, by]] = ends.map(seen);

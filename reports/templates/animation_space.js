@@ -50,7 +50,7 @@ const inSpace = (data) => {
     return Array.from({ length: count }, (_, k) => {
       const i = count > 1 ? Math.round((last * k) / (count - 1)) : 0, joints = data.at.map((values) => spotted(values, i));
       const sides = data.links.flatMap((link) => link.map((j, n) => [joints[j], joints[link[(n + 1) % link.length]]]));
-      return { joints, ink: inked([...sides, ...data.slides.map(({ ends }) => [spotted(ends, 2 * i), spotted(ends, 2 * i + 1)])]), boxes: [] };
+      return { joints, ink: inked([...sides, ...[...data.slides.map(({ ends }) => ends), ...data.springs].map((ends) => [spotted(ends, 2 * i), spotted(ends, 2 * i + 1)])]), boxes: [] };
     });
   };
   const name = () => {

@@ -455,3 +455,30 @@ def test_speeds_play_in_seconds() -> None:
 def test_ticks_are_round() -> None:
     assert ticks(0.0, 4.0, 8) == [0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0]
     assert [nice(x) for x in (0.0, 0.7, 5.0, 9.9)] == [1.0, 0.5, 5.0, 5.0]
+
+
+def test_springs_between_two_points_are_drawn(moving: Results) -> None:
+    """A jib and its cylinder carried 460 kN without a visible cause, the rope of the jib."""
+    motion = moving.motion[0]
+    b = motion.joint_position[:, motion.joints.index("B")]
+    foot = np.array([-6.0, 9.0])
+    springs = {"rope <1>": np.stack([np.broadcast_to(foot, b.shape), b], axis=1)}
+    page = Reader(render(replace(moving, motion=(replace(motion, springs=springs),))))
+    (shape,) = page.having("data-spring")
+    (ends,) = page.data["springs"]
+    places = page.data["places"]
+    drawn = places["left"] + places["scale"] * foot[0], places["top"] - places["scale"] * foot[1]
+    assert ends[:2] == pytest.approx(drawn, abs=0.02)
+    corners = [float(x) for x in re.findall(r"-?[\d.]+", shape["d"])]
+    assert corners[:2] == pytest.approx(ends[:2], abs=0.02)
+    assert corners[-2:] == pytest.approx(ends[2:4], abs=0.02)
+    assert "rope <1>" in page.text
+
+
+def test_the_mean_of_a_drive_is_written_as_in_the_terminal(moving: Results) -> None:
+    """A mean of zero was "0.0000"."""
+    force = 0.02 * np.sin(np.linspace(0.0, 2.0 * np.pi, 181))
+    drive = replace(moving.drive[0], force=force)
+    assert drive.mean == 0.0
+    notes = re.findall("mean [^,]*", Reader(render(replace(moving, drive=(drive,)))).text)
+    assert notes == ["mean 0"]

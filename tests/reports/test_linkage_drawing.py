@@ -281,3 +281,18 @@ def test_a_couple_has_two_heads_along_its_axis_and_its_own_unit() -> None:
     )
     assert len([e for e in drawing if e.get("class") == "head"]) == 2
     assert "2,500 N·mm" in ["".join(t.itertext()) for t in drawing.iter(f"{SVG}text")]
+
+
+def test_springs_are_zigzags_between_their_points() -> None:
+    """In every view, and with their names for a pointer."""
+    at = Instant(landing_gear(3).space[0], 0)
+    ends = np.array([[0.0, 0.0, 900.0], [200.0, 90.0, -600.0]])[None].repeat(3, axis=0)
+    at = replace(at, skeleton=replace(at.skeleton, springs={"rope <1>": ends}))
+    drawing = ET.fromstring(draw_linkage(at, [], "", "N"))
+    springs = of_class(drawing, "spring")
+    assert len(springs) == 4
+    assert [title.text for spring in springs for title in spring] == ["rope <1>"] * 4
+    lug = at.skeleton.joints.index("stay lug")
+    joint = of_class(drawing, "joint")[lug]
+    there = [float(joint.get(key, "nan")) for key in ("cx", "cy")]
+    assert numbers(springs[0], "d")[-2:] == pytest.approx(there, abs=0.11)

@@ -9,6 +9,7 @@ from reports.format.file_names import plot_name
 from reports.format.numbers import (
     DASH,
     counted,
+    drawn,
     engineering,
     like,
     margin_text,
@@ -39,6 +40,16 @@ from tests.support.each import each
 )
 def test_engineering(value: float | None, text: str) -> None:
     assert engineering(value) == text
+
+
+def test_a_dimension_given_in_another_unit_is_drawn_with_five_digits() -> None:
+    """15 mm stood as 0.590551 on the drawing of a study in inches."""
+    assert [drawn(x) for x in (15.0 / 25.4, 40.0 / 25.4, 12.3456)] == [
+        "0.59055",
+        "1.5748",
+        "12.3456",
+    ]
+    assert [drawn(x) for x in (0.3 / 0.1, 25.0, 3.175, 0.0)] == ["3", "25", "3.175", "0"]
 
 
 def test_short_keeps_what_was_given() -> None:

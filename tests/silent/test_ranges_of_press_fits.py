@@ -146,3 +146,16 @@ def test_a_press_fit_is_lost_with_the_least_of_its_interferences(fit: str, opens
     said = lost_fit_warnings(plan.study, plan.tasks)
     assert len(said) == bool(opens)
     assert all(f"L above {opens}" in text for text in said)
+
+
+def test_the_interference_that_would_pass_is_that_of_the_worst_end() -> None:
+    """The nominal one was scaled by what the end of the range has used."""
+    ranged = {"thickness": 0.0625, "material": "bronze", "interference": 0.001}
+    single, over = (
+        pressed_bushing(ring(clearance=0.001, bushing=ranged, **more))[0]
+        for more in ({}, {"range": {"interference": [0.001, 0.002]}})
+    )
+    assert single.passing is not None
+    assert over.passing is not None
+    assert over.used == pytest.approx(2.0 * single.used, rel=1e-9)
+    assert over.passing.value == pytest.approx(single.passing.value, rel=1e-9)

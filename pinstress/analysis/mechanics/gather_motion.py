@@ -7,6 +7,8 @@ import math
 import numpy as np
 
 from loads import GROUND, Applied, Dynamics, Gear, Linkage, Motion, OverTime, Rack, Teeth, ledger
+from loads.forces.acting import Spring
+from loads.forces.measures import Distance
 from loads.linkage.parts import Point, Slider
 from loads.motion.complex_points import pairs
 from loads.motion.planar_equations import is_particle
@@ -84,6 +86,7 @@ def linkage_motion(study: Study, name: str, case: CaseLoads) -> LinkageMotion:
         slider_forces=_slider_forces(dynamics),
         paths=_paths(study, dynamics),
         pitch=_pitch_curves(motion),
+        springs=_springs(dynamics),
         applied=_applied(dynamics),
         aside=_aside(motion, case),
     )
@@ -93,6 +96,21 @@ def _slider_ends(motion: Motion, slider: Slider) -> Floats:
     """Return the positions (T, 2, 2) of both ends of a slider, m."""
     ends = (slider.base, slider.start), (slider.moving, slider.end)
     return np.stack([motion.point(*end)[0] for end in ends], axis=1)
+
+
+def _springs(dynamics: Dynamics) -> dict[str, Floats]:
+    """Return the ends (T, 2, 2) of the springs between two points, m."""
+    return {
+        load.name: np.stack(
+            [
+                dynamics.motion.point(body, end)[0]
+                for body, end in zip(load.between.items, load.between.points, strict=True)
+            ],
+            axis=1,
+        )
+        for load in dynamics.applied
+        if isinstance(load, Spring) and isinstance(load.between, Distance)
+    }
 
 
 def _applied(dynamics: Dynamics) -> tuple[AppliedForce, ...]:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from loads.linkage.parts import GROUND
+from loads.space.acting import SpaceSpring
 from loads.space.dynamics import SpaceDynamics
 from loads.space.kinds import KINDS
 from loads.space.linkage import PointDistance, SpaceJoint, SpaceLinkage
@@ -63,19 +64,26 @@ def space_skeleton(
             > MIN_STEM * motion.linkage.length_scale
         ),
         slides={
-            drive.name: np.stack(
-                [
-                    motion.point(body, end)[0]
-                    for body, end in zip(drive.bodies, drive.ends, strict=True)
-                ],
-                axis=1,
-            )
+            drive.name: _ends(motion, drive)
             for drive in motion.linkage.drives
             if isinstance(drive, PointDistance)
+        },
+        springs={
+            load.name: _ends(motion, measured)
+            for load in dynamics.loads
+            if isinstance(load, SpaceSpring)
+            for measured in motion.linkage.measured
+            if measured.name == load.measured and isinstance(measured, PointDistance)
         },
         **_applied(dynamics, bodies),
         up=_up(motion.linkage.gravity),
     )
+
+
+def _ends(motion: SpaceMotion, between: PointDistance) -> Floats:
+    """Return the places (T, 2, 3) of two points, m."""
+    both = zip(between.bodies, between.ends, strict=True)
+    return np.stack([motion.point(body, end)[0] for body, end in both], axis=1)
 
 
 def _axis(motion: SpaceMotion, body: str, axis: Floats | None) -> Floats:

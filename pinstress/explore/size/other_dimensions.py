@@ -126,6 +126,8 @@ def _write(
     here = value_of(here)
     last: Any = path[-1]
     old: Any = value_of(here[last])
+    if math.isclose(value, to_si(old, "length", system), rel_tol=1e-12):
+        return
     unit, one = unit_of(old, "length", system)
     metre = system.factor("length")
     steps, up = rounding_step(key, step, metre), ROUNDING_DIRECTIONS[kind_of(key)]

@@ -80,7 +80,7 @@ class SizeState:
                 code="unfinished-size",
             ) from None
         except OSError as error:
-            raise cannot_write(self._both, error) from None
+            raise self._cannot_write(error) from None
         try:
             self.write(())
         except InputError:
@@ -135,12 +135,17 @@ class SizeState:
 
         Raises: InputError where it cannot be written.
         """
-        replace_file(self._pins, pack(FinishedPins(self._identity, pins)), self._both)
+        content = pack(FinishedPins(self._identity, pins))
+        try:
+            _replace(self._pins, content)
+        except OSError as error:
+            raise self._cannot_write(error) from None
 
-    @property
-    def _both(self) -> str:
-        """The user's file and the folder, for messages: nobody has named the folder."""
-        return f"{self._target}, and {self.path.name} while its pins are sized"
+    def _cannot_write(self, error: OSError) -> InputError:
+        """Return the error that names the user's file: nobody has named the folder."""
+        refused = cannot_write(self._target, error)
+        text = f"{refused}; pins that are done are kept beside it, in {self.path.name}"
+        return InputError(text, code=refused.code)
 
     def end(self) -> None:
         """Remove the folder."""
@@ -155,18 +160,27 @@ class SizeState:
             self._release = None
 
 
-def replace_file(path: Path, content: bytes, name: str = "") -> None:
+def replace_file(path: Path, content: bytes) -> None:
     """Write a file in one step.
 
-    name: of it in messages, its path by default.
-
     Raises: InputError where it cannot be written.
+    """
+    try:
+        _replace(path, content)
+    except OSError as error:
+        raise cannot_write(path, error) from None
+
+
+def _replace(path: Path, content: bytes) -> None:
+    """Write a file in one step.
+
+    Raises: OSError.
     """
     partial = path.with_name(f".{path.name}.partial")
     try:
         partial.write_bytes(content)
         os.replace(partial, path)
-    except OSError as error:
+    except OSError:
         with suppress(OSError):  # as of a name that is too long
             partial.unlink(missing_ok=True)
-        raise cannot_write(name or path, error) from None
+        raise

@@ -12,12 +12,14 @@ from pinstress.explore.size.other_dimensions import ROUNDING_DIRECTIONS, roundin
 from pinstress.explore.size.pin_shape import MAX_DIMENSION_RATIO, VariedShape, kind_of
 from pinstress.explore.size.scaled_study import rounded
 
+PRESENT_TOLERANCE = 1e-6  # relative, within which a search ends at a limit
 MAX_ROUNDING_STEPS = 40  # of diameters rounded to steps
 LIMIT_ROUNDING_TOLERANCE = 2e-3  # of a geometric limit, by which four digits may break it
 
 
 def rounded_values(shape: VariedShape, values: Floats, step: float | None, metre: float) -> Floats:
-    """Round dimensions as they are written: to four digits, diameters up, bores and fillets down.
+    """Round dimensions as they are written: to four digits, diameters up, bores and fillets down,
+    but not beyond what they are: a fillet that may not become smaller would, by its last digits.
 
     step: step to which diameters are rounded up, m, and by further steps where a geometric limit is
     violated by that.
@@ -28,7 +30,10 @@ def rounded_values(shape: VariedShape, values: Floats, step: float | None, metre
         increment = rounding_step(dimension.key, step, metre)
         steps[k] = (increment or 0.0) * metre
         up = ROUNDING_DIRECTIONS[kind_of(dimension.key)]
-        out.append(rounded(float(value) / metre, increment, up) * metre)
+        new = rounded(float(value) / metre, increment, up) * metre
+        least = float(value) * (1.0 - up * PRESENT_TOLERANCE)
+        beyond = increment is None and up * least <= up * dimension.value < up * new
+        out.append(dimension.value if beyond else new)
     result = np.array(out)
     for _ in range(MAX_ROUNDING_STEPS if step is not None else 0):
         limits, slopes = shape.at_limits(result)

@@ -9,19 +9,19 @@ from pathlib import Path
 from typing import Any
 
 from pinbase.errors import ArgumentError
-from pinbase.keys import key_part
+from pinbase.keys import QUOTED, key_part, unquoted
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, parse_study, replaces_fit, unwrapped, with_value
 from pinstress.study.reading.materials import looked_up, with_materials
 from pinstress.study.schema.lugs import with_lug_defaults
 from pinstress.study.schema.shown import as_text
 
-KEY_PART_PATTERN = re.compile(r'(?:"([^"]*)"|([^.\["]+))((?:\[\d+\])*)(?:\.|$)')
+KEY_PART_PATTERN = re.compile(rf'({QUOTED}|[^.\["]+)((?:\[\d+\])*)(?:\.|$)')
 INDEX_PATTERN = re.compile(r"\[(\d+)\]")
 INDEX_RANGE_PATTERN = re.compile(r"\[(\d+)-(\d+)\]")  # neighbours that have a number in common
 # Between keys of one dimension (geometry.shape.dimensions.KEY_JOINT), not within a name
 JOINT_PATTERN = re.compile(r" & (?=profile\[|meridian\[|bore_meridian\[|band\.)")
-PIN_PATTERN = re.compile(r'pin\.(?:"[^"]*"|[^.\["]+)\.')
+PIN_PATTERN = re.compile(rf'pin\.(?:{QUOTED}|[^.\["]+)\.')
 PAIR_KEYS = "edge_radius", "bore_radius"  # of both ends, also where one number stands for both
 
 
@@ -236,8 +236,8 @@ def key_parts(study: Study, key: str) -> list[str | int]:
                 f"{as_text(key)} is not a key; a key looks like pin.E.profile[2].diameter",
                 code="not-a-key",
             )
-        parts.append(match[1] if match[1] is not None else match[2])
-        parts += [int(i) - 1 for i in INDEX_PATTERN.findall(match[3])]
+        parts.append(unquoted(match[1]))
+        parts += [int(i) - 1 for i in INDEX_PATTERN.findall(match[2])]
         at = match.end()
     match parts:
         case []:

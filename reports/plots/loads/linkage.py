@@ -11,6 +11,7 @@ from pinbase.dimensions import Floats
 from reports.data.motion import LinkageMotion, PitchCurve
 from reports.data.row import Units
 from reports.format.drawing.svg_labels import label_offsets
+from reports.format.drawing.zigzag import zigzag
 from reports.format.file_names import plot_name
 from reports.format.numbers import short
 from reports.plots.spec import MAX_CURVE_POINTS, Plot, Spec, clipped, headed, rows
@@ -20,6 +21,9 @@ INTERMEDIATE_POSITIONS = 5  # positions between the first and the last
 DIAGRAM_WIDTH, MIN_DIAGRAM_HEIGHT, MAX_DIAGRAM_HEIGHT = 560.0, 160.0, 560.0
 DIAGRAM_MARGIN = 0.06  # of the size, around the linkage
 LABEL_LETTER_WIDTH, LABEL_LINE_HEIGHT, LABEL_GAP = 7.0, 13.0, 7.0
+SPRING_HALF_WIDTH = 5.0
+SUPPORT_SIZE = 170.0  # of the triangle of a fixed joint, as Vega counts it
+SUPPORT_FOOT = np.sqrt(SUPPORT_SIZE) * np.array([[-0.5, 0.43], [0.5, 0.43]])  # its lower side
 PATH_TOLERANCE = 1e-4  # of the linkage's size: a twentieth of a pixel
 POSITION_TOLERANCE = 1e-6  # of the linkage's size: positions nearer than this are drawn once
 
@@ -34,6 +38,7 @@ def linkage_plot(motion: LinkageMotion, units: Units) -> Plot:
     )
     key = dict(zip(instants, _keys(motion, instants, units), strict=True))
     links = [row for k in instants for row in _links(motion, k, key[k])]
+    links += [row for k in instants for row in _springs(motion, k, key[k], frame)]
     between = [row for k in _intermediate(motion) for row in _links(motion, k, "intermediate")]
     spec = {
         "title": headed(title),
@@ -57,7 +62,8 @@ class _Frame:
     """The extent of the picture, with one scale in both directions."""
 
     def __init__(self, motion: LinkageMotion) -> None:
-        parts = [motion.joint_position, *motion.slides.values(), *_around(motion)]
+        parts = [motion.joint_position, *motion.slides.values(), *motion.springs.values()]
+        parts += _around(motion)
         every = np.concatenate([np.asarray(p).reshape(-1, 2) for p in parts])
         low, high = every.min(axis=0), every.max(axis=0)
         self.size = float((high - low).max()) or 1.0
@@ -124,6 +130,15 @@ def _links(motion: LinkageMotion, k: int, key: str) -> list[Spec]:
     ]  # fmt: skip
 
 
+def _springs(motion: LinkageMotion, k: int, key: str, frame: _Frame) -> list[Spec]:
+    """Return the zigzags of springs between two points at an instant, point by point."""
+    return [
+        {"x": float(x), "y": float(y), "of": f"{k}.spring {name}", "key": key}
+        for name, ends in motion.springs.items()
+        for x, y in zigzag(ends[k], SPRING_HALF_WIDTH / frame.scale)
+    ]
+
+
 def _pitch(curve: PitchCurve, k: int) -> list[Floats]:
     """Return the line of a rack, or a gear's circle with a radius that turns with it."""
     if not curve.round:
@@ -175,7 +190,7 @@ def _lines(data: list[Spec], style: str, key: list[str] | None) -> list[Spec]:
 def _joints(motion: LinkageMotion, instants: list[int]) -> list[Spec]:
     """Return rings at joints, with triangles at the fixed ones."""
     layers = []
-    for still, shape, size in ((True, "triangle-up", 170), (False, "circle", 34)):
+    for still, shape, size in ((True, "triangle-up", SUPPORT_SIZE), (False, "circle", 34)):
         shown = [
             {"x": float(x), "y": float(y), "name": name}
             for j, name in enumerate(motion.joints) if (name in motion.ground) or not still
@@ -205,8 +220,12 @@ def _names(motion: LinkageMotion, instants: list[int], frame: _Frame) -> list[Sp
         for k in instants for joints in motion.links
         for pair in zip(joints, (*joints[1:], *joints[:1]), strict=True) if len(joints) > 1
     ]  # fmt: skip
-    ends = frame.pixels(np.array(segments).reshape(1, -1, 2, 2))
     at_pixels = frame.pixels(points)
+    for lines in (motion.slides, motion.springs):
+        segments += [list(ends[k]) for k in instants for ends in lines.values()]
+    ends = frame.pixels(np.array(segments).reshape(1, -1, 2, 2))
+    feet = [at_pixels[motion.joints.index(name)] + SUPPORT_FOOT for name in motion.ground]
+    ends = np.concatenate([ends, np.reshape(feet, (1, -1, 2, 2))], axis=1)
     placed = at_pixels + label_offsets(
         at_pixels[None], sizes, ends, LABEL_GAP, (DIAGRAM_WIDTH, frame.height)
     )

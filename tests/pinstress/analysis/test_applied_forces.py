@@ -10,6 +10,7 @@ import pytest
 from pinstress.analysis.gather.gather import loads_only
 from pinstress.analysis.plan import prepare
 from pinstress.study.reading.file import load_study
+from pinstress.study.reading.in_python import study_from
 from tests.support.each import each
 
 STUDIES = Path(__file__).parents[3] / "studies"
@@ -76,3 +77,30 @@ def test_side_forces_are_apart_from_those_in_the_plane(tmp_path: Path) -> None:
     assert side.force == pytest.approx(np.array([[0.0, 0.0, -2e4]]))
     assert side.body == "leg"
     assert side.position == pytest.approx(plane.position)
+
+
+def test_a_spring_between_two_points_has_its_ends_where_they_move() -> None:
+    rope = {"bodies": ["ground", "arm"], "joints": [[0.0, 300.0], "B"], "stiffness": 100.0}
+    study = study_from(
+        {
+            "title": "Arm on a rope",
+            "units": "mm-N-s",
+            "mechanism": {
+                "joint": {
+                    "O": {"at": [0.0, 0.0], "fixed_in": "ground", "connections": {"O1": "arm"}},
+                    "B": {"at": [200.0, 0.0], "fixed_in": "arm", "connections": {"B1": "load"}},
+                },
+                "body": {
+                    "arm": {"mass": 1.0, "centre": [100.0, 0.0], "inertia": 10.0},
+                    "load": {"mass": 1.0},
+                },
+                "drive": [{"body": "arm", "start": "0 deg", "end": "90 deg", "duration": 1.0}],
+                "spring": {"rope": rope},
+            },
+            "case": {"lift": {"kind": "motion", "samples": 5}},
+        }
+    )
+    (motion,) = loads_only(study).motion
+    ends = motion.springs["rope"]
+    assert ends[:, 0] == pytest.approx(np.tile([0.0, 300.0], (len(ends), 1)))
+    assert ends[-1, 1] == pytest.approx([0.0, 200.0], abs=1e-9)

@@ -41,7 +41,7 @@ def row(out: Path) -> dict[str, Any]:
     [
         ("auto", "in contact with its lugs"),
         ("foundation", "on foundations in its lugs"),
-        ("prescribed", "clamped at nowhere"),
+        ("prescribed", "not clamped: its loads must balance"),
     ],
 )
 def test_check_says_what_holds_the_pin(

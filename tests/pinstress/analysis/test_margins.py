@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from assess.strength.lug_stress import CONTACT_NEED
 from assess.strength.model_stress import YIELD_METHOD
 from pinstress import run, study_from
 from pinstress.cli.commands import run_command_line
@@ -76,6 +77,22 @@ def test_couples_alone_bend_a_pin() -> None:
     assert found["bending"].demand == pytest.approx(50_000.0 / (math.pi / 32.0 * 16.0**3), rel=1e-3)
     assert "EN 1993 bending" in found
     assert "bearing" not in found
+
+
+def test_lugs_of_a_pin_under_couples_need_the_contact() -> None:
+    """Without a force across the pin nothing was said of their stress."""
+    moments = {"L": [0, 50_000, 0], "R": [0, -50_000, 0]}
+    case = {"kind": "given", "forces": {"L": [0, 0], "R": [0, 0]}, "moments": moments}
+    changed = study() | {"case": {"twist": case}}
+    shanked = {
+        "material": "steel",
+        "outer_diameter": 40.0,
+        "shank": {"width": 40.0, "length": 60.0},
+    }
+    pin = {**changed["pin"]["P"], "lug": {"L": shanked, "R": shanked}}
+    analysis = {**changed.get("analysis", {}), "joints": "prescribed"}
+    results = run(study_from({**changed, "analysis": analysis, "pin": {"P": pin}}))
+    assert CONTACT_NEED in {m.margin.needs for m in results.margins}
 
 
 def test_fitting_factor_divides_and_is_not_an_assumption_when_given() -> None:

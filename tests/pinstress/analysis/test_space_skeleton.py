@@ -19,7 +19,8 @@ from loads import (
     motion_reactions,
     move,
 )
-from loads.space.acting import SpaceForce
+from loads.forces.acting import ForceLaw
+from loads.space.acting import SpaceForce, SpaceSpring
 from loads.space.dynamics import space_reactions
 from loads.space.linkage import JointAngle, PointDistance, RigidBody, SpaceJoint, SpaceLinkage
 from loads.space.motion import space_move
@@ -137,10 +138,13 @@ def test_a_wheel_hangs_on_its_axle_and_pins_are_no_bodies() -> None:
     )
     ends = (0.5, 0.0, 0.0), (0.0, 0.0, -0.4)
     jack, spin = PointDistance("jack", ("ground", "leg"), ends), JointAngle("spin", "W2")
-    linkage = SpaceLinkage(bodies, joints, (jack, spin), ("jack", "spin"))
+    rope = PointDistance("spring rope", ("ground", "leg"), ((0.0, 0.3, 0.0), ends[1]))
+    linkage = SpaceLinkage(bodies, joints, (jack, spin, rope), ("jack", "spin"))
     start = float(np.hypot(0.5, 0.4))
     laws = [CosineDrive(start, start + 0.05, 1.0), CosineDrive(0.0, 1.0, 1.0)]
-    dynamics = space_reactions("fold", space_move(linkage, laws, np.linspace(0.0, 1.0, 4)))
+    motion = space_move(linkage, laws, np.linspace(0.0, 1.0, 4))
+    pull = SpaceSpring("rope", "spring rope", ForceLaw(stiffness=1e3))
+    dynamics = space_reactions("fold", motion, (pull,))
     pins = {"T1": "T", "W1": "W", "W2": "W"}
     axes = {"T": np.array([0.0, 1.0, 0.0]), "W": np.array(x)}
     skeleton = space_skeleton("fold", dynamics, pins, axes)
@@ -151,6 +155,9 @@ def test_a_wheel_hangs_on_its_axle_and_pins_are_no_bodies() -> None:
     assert skeleton.ground == ("T",)  # on the wing, which is fixed to the ground
     along = np.diff(skeleton.slides["jack"], axis=1)[:, 0]
     assert np.linalg.norm(along, axis=1) == pytest.approx(dynamics.motion.drives[:, 0])
+    assert set(skeleton.slides) == {"jack"}
+    long = np.linalg.norm(np.diff(skeleton.springs["rope"], axis=1)[:, 0], axis=1)
+    assert long == pytest.approx(motion.coordinate("spring rope")[0])
     # The axle turns with the leg, about y.
     assert np.linalg.norm(skeleton.axes[:, 1], axis=1) == pytest.approx(1.0)
     assert skeleton.axes[0, 1] == pytest.approx([1.0, 0.0, 0.0])

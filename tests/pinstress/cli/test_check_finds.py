@@ -8,11 +8,13 @@ import pytest
 
 import pinstress
 from pinstress.cli.closing import report_missed
+from pinstress.cli.commands import run_command_line
 from pinstress.study.model.balance import given_warnings
 from pinstress.study.reading.errors import InputError
 from tests.support.described import describe
 from tests.support.each import each
 
+STUDIES = Path(__file__).parents[3] / "studies"
 PIN = """title = "Link"
 units = "mm-N-s"
 [material.steel]
@@ -152,3 +154,14 @@ def test_a_clamp_on_a_cone_is_said_to_hold_more_than_a_taper(clamp: str, noted: 
     cone = pinstress.study_from(text.replace("MODEL", "").replace("]\n[case", taper))
     said = "The clamp on the cone taper of pin P holds it in every direction, as if bonded"
     assert (said in describe(cone)[0]) == noted
+
+
+def test_a_body_with_two_loads_is_named_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (STUDIES / "excavator.toml").read_text(encoding="utf-8")
+    load = text[text.index("[[case.dig.apply]]") :]
+    load = load[: load.index("\n[", 5) + 1]
+    (study := tmp_path / "study.toml").write_text(text.replace(load, load + load))
+    assert run_command_line(["check", str(study)]) == 0
+    assert "loads on bucket\n" in capsys.readouterr().out

@@ -52,7 +52,7 @@ def test_files_of_others_stay(folder: Path, capsys: pytest.CaptureFixture[str]) 
 
 def test_another_folder_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command_line(["plots", str(tmp_path)]) == 2
-    assert "no results of pinstress" in capsys.readouterr().err
+    assert "has no results of pinstress" in capsys.readouterr().err
     manifest.begin(tmp_path)
     assert run_command_line(["plots", str(tmp_path)]) == 2
     assert "no report.html" in capsys.readouterr().err

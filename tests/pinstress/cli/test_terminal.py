@@ -232,6 +232,18 @@ def test_view_says_what_is_wrong(
     assert message in capsys.readouterr().err
 
 
+@each("command", ["view", "plots", "pdf", "compare"])
+def test_a_folder_that_does_not_exist_is_said_not_to(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It was said to contain no results.json."""
+    (tmp_path / "file").touch()
+    for name, why in (("none", "no such folder"), ("file", "not a folder")):
+        folders = [str(tmp_path / name)] * (1 + (command == "compare"))
+        assert run_command_line([command, *folders]) == 2
+        assert f"{name}: {why}; give a folder" in capsys.readouterr().err
+
+
 def test_view_of_no_results(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command_line(["view", str(tmp_path)]) == 2
     assert "no results.json" in capsys.readouterr().err

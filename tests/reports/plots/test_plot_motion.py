@@ -191,3 +191,37 @@ def test_a_rotary_drive_has_angle_and_torque(results: Results) -> None:
     shown = made[2].spec["usermeta"]["columns"]
     assert {f"{n}, torque [lbf·in]" for n in ("torque", "mean 900.0", "RMS 943.4")} <= set(shown)
     assert headings(made[0])[:2] == ["position [in]", "force [lbf]"]
+
+
+def test_springs_are_drawn_from_end_to_end(results: Results) -> None:
+    motion = results.motion[0]
+    a = motion.joint_position[:, motion.joints.index("A")]
+    foot = np.broadcast_to([-30.0, 40.0], a.shape)
+    springs = {"rope": np.stack([foot, a], axis=1)}
+    spec = plots(replace(motion, springs=springs), results)["linkage.retract"].spec
+    rows = [row for part in spec["layer"] for row in part["data"]["values"]]
+    for k, of in ((0, "0.spring rope"), (-1, f"{len(a) - 1}.spring rope")):
+        x, y = zip(*((row["x"], row["y"]) for row in rows if row.get("of") == of), strict=True)
+        assert (x[0], y[0]) == (-30.0, 40.0)
+        assert (x[-1], y[-1]) == pytest.approx(a[k])
+    low, high = spec["encoding"]["x"]["scale"]["domain"]
+    assert low < -30.0 < high
+
+
+def test_no_name_lies_on_a_slider(results: Results) -> None:
+    """That of a cylinder's foot lay on the cylinder and its support."""
+    motion = results.motion[0]
+    foot = motion.joint_position[:, motion.joints.index("Q")]
+    bare = place_of_name(motion, "Q", results)
+    slides = {"jack": np.stack([foot, foot + 3.0 * (bare - foot[0])], axis=1)}
+    placed = place_of_name(replace(motion, slides=slides), "Q", results)
+    assert np.linalg.norm(placed - bare) > 0.5 * np.linalg.norm(bare - foot[0])
+
+
+def place_of_name(motion: LinkageMotion, name: str, results: Results) -> np.ndarray:
+    """The middle (2,) of a joint's name, in the study's unit."""
+    plot = plots(motion, results)[f"linkage.{motion.case}"]
+    (row,) = (row for row in named(plot) if row["name"] == name)
+    (x0, x1), (y0, y1) = (plot.spec["encoding"][axis]["scale"]["domain"] for axis in "xy")
+    x, y = row["px"] / plot.spec["width"], 1.0 - row["py"] / plot.spec["height"]
+    return np.array([x0 + x * (x1 - x0), y0 + y * (y1 - y0)])

@@ -9,8 +9,8 @@ from fea.core.material import Material
 from fea.core.pin_loads import LoadAmounts, PinLoads, UnitLoad
 from fea.section.section_stress import SectionField
 from fea.support.contact.pressure_loads import resultants
-from fea.support.lugs.rings import ringed, rings
 from geometry import ArgumentError, Pin, Segment
+from geometry.shape.rings import ringed, rings
 
 STEEL = Material("s", 210e9, 0.3)
 PIN = Pin("P", tuple(Segment(0.03, 0.02, connection=name) for name in ("A", None, "B")))

@@ -140,8 +140,10 @@ def test_a_file_that_cannot_be_written_is_named_as_it_was_given(tmp_path: Path) 
     name = "n" * 245 + ".toml"
     made = run_here("size", "study.toml", "--fos", "1.5", "--out", name, cwd=tmp_path)
     assert made.returncode == 2
-    assert made.stderr.startswith(f"Error: {name}, and {name}.unfinished while its pins are sized")
-    assert "cannot be written (File name too long)" in made.stderr
+    assert made.stderr == (
+        f"Error: {name}: cannot be written (File name too long); pins that are done are kept "
+        f"beside it, in {name}.unfinished\n"
+    )
     assert [p.name for p in tmp_path.iterdir()] == ["study.toml"]
 
 
