@@ -13,6 +13,7 @@ from loads.forces.sharing import undetermined
 from loads.motion.four_bar import four_bar
 from loads.motion.mobility import Mobility
 from loads.space.linkage import SpaceLinkage
+from pinbase.counted import counted
 from pinstress.explore.sweep.correlations import correlations_of
 from pinstress.explore.sweep.parameters import parameters_of, require_laws
 from pinstress.explore.sweep.sample import designs_of
@@ -49,7 +50,6 @@ from pinstress.study.schema.pins import PinTable
 from pinstress.study.schema.require import RequireTable, level_of
 from pinstress.study.schema.units import UnitSystem
 from pinstress.study.schema.vary import VaryTable
-from reports.format.numbers import counted
 
 MAX_SHOWN_JUMPS = 6
 
@@ -221,8 +221,8 @@ def _form(pin: PinTable) -> str:
         return f"from {pin.geometry}"
     shape = (pin.profile, "segment") if pin.meridian is None else (pin.meridian, "corner")
     cuts = ((len(getattr(pin, what)), what) for what in ("hole", "flat", "slot", "passage"))
-    counted = ((len(shape[0] or ()), shape[1]), *cuts)
-    return ", ".join(f"{n} {what}{'s' * (n > 1)}" for n, what in counted if n)
+    parts = ((len(shape[0] or ()), shape[1]), *cuts)
+    return ", ".join(f"{n} {what}{'s' * (n > 1)}" for n, what in parts if n)
 
 
 def _mechanism(study: Study, mechanism: AnyLinkage) -> list[str]:

@@ -33,11 +33,6 @@ def engineering(value: float | None, digits: int = 4) -> str:
     return f"{_plain(float(Decimal(rounded).scaleb(-power)), digits, size - power)}×{ten_to(power)}"
 
 
-def counted(number: int, noun: str, plural: str = "") -> str:
-    """Return a number with its noun: "1 pin", "1,200 rows"."""
-    return f"{number:,} {noun if number == 1 else plural or f'{noun}s'}"
-
-
 def beside_limit(value: float, limit: float, digits: int, at_most: bool = False) -> str:
     """Return a number with `digits` significant digits, or more where rounding would hide that it
     misses a limit.

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
+from pinbase.counted import counted
 from pinbase.records import plain
 from reports.data.reliability import ByErrors, Driver, Reliability, Risk, Spread
-from reports.format.numbers import DASH, counted, engineering, finite
+from reports.format.numbers import DASH, engineering, finite
 from reports.tables.column import Column, Table, fields, read_only, texts
 
 RELIABILITY_SCHEMA = "pinstress-reliability/1"

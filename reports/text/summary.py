@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
+from pinbase.counted import counted
 from pinbase.grouped import grouped
 from reports.data.decision import common_factor, largest_factor, worst_first
 from reports.data.governing import governing
@@ -12,7 +13,7 @@ from reports.data.headline import JudgedCheck, pins_with, worst_checks
 from reports.data.results import Results
 from reports.data.row import PinResult
 from reports.data.unknowns import without_range
-from reports.format.numbers import counted, short
+from reports.format.numbers import short
 from reports.format.words import BEYOND_YIELD, but_words, over_words, undecided_because
 
 ALL_CONVERGED = "All maxima have converged"

@@ -4,11 +4,11 @@ import math
 
 import pytest
 
+from pinbase.counted import counted
 from reports.format.drawing.spread import rows
 from reports.format.file_names import plot_name
 from reports.format.numbers import (
     DASH,
-    counted,
     drawn,
     engineering,
     like,

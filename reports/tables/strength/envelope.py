@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
 
+from pinbase.counted import counted
 from reports.data.envelope import EnvelopeCell, case_names, envelope, omitted_note, paragraphs
 from reports.data.mechanics import PeakReaction
 from reports.data.results import Results
 from reports.data.row import Units
-from reports.format.numbers import DASH, beside_limit, counted
+from reports.format.numbers import DASH, beside_limit
 from reports.tables.column import Column, Table, fields, unit_columns
 
 # Of more cases the terminal has the matrix of the worst, and on the page those that govern no pin
