@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 
 from assess.diameter_law import BENDING_EXPONENT, SHEAR_EXPONENT
-from reports.data.results import PinShape
+from reports.data.results import CutShape, PinShape
 from reports.data.row import PinResult
 
-NEAR_STEP = 0.1  # of the diameter: what is nearer to a change of diameter lies at it
+NEAR_STEP = 0.1  # of the diameter: what is nearer to a change of diameter, or a cut, lies at it
+OFF_SURFACE = 1e-3  # of the radius: what lies deeper is a wall of a cut
 
 
 def action(row: PinResult) -> str:
@@ -27,8 +29,8 @@ def action(row: PinResult) -> str:
 
 
 def place_words(row: PinResult, shape: PinShape | None) -> str:
-    """Return where a row's maximum lies: "shear between F1 and F2", "surface, step beside E2";
-    nothing of a row without stress.
+    """Return where a row's maximum lies: "shear between F1 and F2", "surface, step beside E2",
+    "surface, hole 1"; nothing of a row without stress.
     """
     if row.places is None or row.location is None or not row.max_von_mises:
         return ""
@@ -37,9 +39,53 @@ def place_words(row: PinResult, shape: PinShape | None) -> str:
     z = section.z if governs == "section" and section else row.location[2]
     kind = row.places.governing
     kind = action(row) if kind == "section" else kind
+    if kind == "surface" and shape is not None and (cut := cut_at(shape, row.location)):
+        return f"surface, {cut}"
     where = "" if shape is None else along_words(shape, z)
     comma = "," if where.startswith(("step", "a step")) else ""
     return f"{kind}{comma} {where}".strip()
+
+
+def cut_at(shape: PinShape, location: tuple[float, ...]) -> str:
+    """Return the name of the cut on whose wall, or beside whose mouth, a place of the surface lies;
+    empty if there is none.
+    """
+    x, y, z = location
+    outer, bore = _radii(shape, z)
+    reach = 2.0 * NEAR_STEP * outer
+    away = dict[str, float]()  # of the mouths, along the circumference
+    for cut in shape.cuts:
+        (low, high), half = cut.z, _half_width(cut, outer)
+        ends = half if low == high else 0.0
+        if low - ends - reach <= z <= high + ends + reach:
+            turn = math.degrees(math.atan2(y, x)) - cut.angle
+            period = 180.0 if cut.depth is None and cut.name.startswith(("hole", "slot")) else 360.0
+            away[cut.name] = math.radians(abs(math.remainder(turn, period))) * outer - half
+    if not away:
+        return ""
+    name = min(away, key=lambda each: away[each])
+    r = math.hypot(x, y)
+    on_wall = bore * (1.0 + OFF_SURFACE) < r < outer * (1.0 - OFF_SURFACE)
+    return name if on_wall or away[name] <= reach else ""
+
+
+def _radii(shape: PinShape, z: float) -> tuple[float, float]:
+    """Return the outer radius of a pin at z, and that of its bore."""
+    start, at = 0.0, (0.0, 0.0)
+    for k, (length, diameter, bore, *_) in enumerate(shape.segments):
+        if start <= z or not k:
+            far = shape.far_ends[k] if shape.far_ends else (diameter, bore)
+            part = min(max((z - start) / length, 0.0), 1.0)
+            at = diameter + part * (far[0] - diameter), bore + part * (far[1] - bore)
+        start += length
+    return at[0] / 2.0, at[1] / 2.0
+
+
+def _half_width(cut: CutShape, outer: float) -> float:
+    """Return half of the width of a cut's mouth along the circumference."""
+    if cut.name.startswith("flat"):
+        return outer * math.acos(min(cut.size / outer, 1.0))
+    return cut.size / 2.0
 
 
 def along_words(shape: PinShape, z: float) -> str:

@@ -18,9 +18,9 @@ from reports.data.changes import Remedy
 from reports.data.overview import diameter_law, pin_lines, quiet_cases
 from reports.data.requirement_matrix import MatrixRow, matrix_rows, worst_cell
 from reports.data.requirements import RequirementRow, keys_in
-from reports.data.results import Results
+from reports.data.results import CutShape, Results
 from reports.data.row import PinResult
-from reports.format.place_words import along_words
+from reports.format.place_words import along_words, cut_at
 from reports.format.words import headline, result_words
 from reports.page.factor_curve import draw_factor_curve
 from reports.page.overview import overview_part
@@ -306,6 +306,31 @@ def test_where_along_a_pin(results: Results) -> None:
         "step beside E2",
         "beside E2",
     ]
+
+
+def test_where_at_a_cut(results: Results) -> None:
+    """A maximum in a keyway was "beside" a band that is far away."""
+    hole = CutShape("hole 1", (1.0, 1.0), 0.4, 0.0, None, 90.0, (), ())
+    slot = CutShape("slot 1", (2.0, 3.0), 0.4, 0.0, 0.3, 0.0, (), ())
+    flat = CutShape("flat 1", (4.0, 5.0), 0.8, 0.0, None, 0.0, (), ())
+    shape = replace(
+        results.shapes[0],
+        segments=((6.0, 2.0, 0.5, "E1", "band"),),
+        cuts=(hole, slot, flat),
+        far_ends=(),
+    )
+    places = {
+        (0.0, 0.9, 1.2): "hole 1",  # its wall
+        (0.25, -0.97, 1.1): "hole 1",  # beside its other mouth
+        (1.0, 0.0, 1.0): "",  # between the mouths
+        (0.0, 0.25, 1.5): "",  # in the bore
+        (0.71, 0.1, 2.0): "slot 1",
+        (-1.0, 0.0, 2.5): "",  # on the other side of a blind slot
+        (0.8, 0.3, 4.5): "flat 1",
+        (-1.0, 0.0, 4.5): "",
+        (0.0, 1.0, 5.8): "",
+    }
+    assert {at: cut_at(shape, at) for at in places} == places
 
 
 def requirement(
