@@ -10,6 +10,7 @@ from assess.judgement import DEPENDS, NOT_DECIDED, SAFE
 from reports.format.numbers import DASH, engineering, short
 from reports.tables.column import Column, Table, read_only, texts
 from reports.text.fitted_table import fitted_table
+from reports.text.safety_factors import OUTCOME_COLOURS
 from reports.text.sizes import heavy, reached
 
 if TYPE_CHECKING:
@@ -81,7 +82,7 @@ def print_light(
 
     length, unit, heavy = units
     what = "weight" if heavy else "volume"
-    tints = {"Result": ["yellow" if row.why else "green" for row in rows]}
+    tints = {"Result": [OUTCOME_COLOURS.get(row.result, "yellow") for row in rows]}
     table = light_table(rows, f"{what} [{unit}]")
     console.print(fitted_table(table, None, console.width, tints))
     for line in (*_total(rows, required, what, unit), *_details(rows, length)):

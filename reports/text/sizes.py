@@ -11,6 +11,7 @@ from reports.data.row import Units
 from reports.format.numbers import DASH, engineering, short
 from reports.tables.column import Column, Table, read_only, texts
 from reports.text.fitted_table import fitted_table
+from reports.text.safety_factors import OUTCOME_COLOURS
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -67,7 +68,7 @@ def print_sizes(
     """
     from rich.text import Text
 
-    tints = {"Result": ["yellow" if row.why else "green" for row in rows]}
+    tints = {"Result": [OUTCOME_COLOURS.get(row.result, "yellow") for row in rows]}
     console.print(fitted_table(sizes_table(rows), units, console.width, tints))
     whys, depending = [row.why for row in rows], sum(row.result == DEPENDS for row in rows)
     outcome = reached(whys, depending, required, "in the new study" if written else "")
