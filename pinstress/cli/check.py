@@ -152,7 +152,7 @@ def _varied(study: Study, todo: list[Task]) -> list[str]:
     if vary is not None and sampled:
         steps = math.prod(p.steps or 1 for p in parameters)
         count = steps if vary.sample == "grid" else vary.count
-        lines.append(f"varies {many} in {count:,} design{'s' * (count > 1)} ({vary.sample})")
+        lines.append(f"varies {many} in {counted(count, 'design')} ({vary.sample})")
     if not sampled or "reliability" in study.table.model_fields_set:
         require_laws(study)
         require_strengths(study, (task.pin.name for task in todo))

@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.table import Table as Grid
 
 from assess.judgement import FAILS
+from pinbase.counted import counted
 from pinstress.explore.sweep.table import facts
 from reports.format.numbers import DASH, engineering
 from reports.format.words import not_judged
@@ -32,7 +33,7 @@ def summary(table: pa.Table, console: Console) -> None:
     designs = {row["design"] for row in rows}
     failed = {row["design"] for row in rows if row["verdict"] in UNSOLVED_VERDICTS}
     console.print(
-        f"{len(designs):,} design{'s' * (len(designs) != 1)}, {len(failed):,} failed"
+        f"{counted(len(designs), 'design')}, {len(failed):,} failed"
         + " in some row" * (len(rows) > len(designs)),
         highlight=False,
     )
