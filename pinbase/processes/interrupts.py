@@ -13,8 +13,11 @@ SIGNAL_NAMES = "SIGINT", "SIGTERM", "SIGHUP"  # the last is not on Windows
 INTERRUPT_SIGNALS = tuple(getattr(signal, name) for name in SIGNAL_NAMES if hasattr(signal, name))
 EXIT_INTERRUPTED = 130  # the exit status
 
+NOTHING_WRITTEN = "nothing was written"
+
 _came = False
 _deferred = False
+_left = NOTHING_WRITTEN
 
 
 class Unfinished(KeyboardInterrupt):
@@ -31,8 +34,19 @@ def listen() -> None:
 
 def forget() -> None:
     """Forget the interrupts that have been handled, so that later work does not end for them."""
-    global _came
-    _came = False
+    global _came, _left
+    _came, _left = False, NOTHING_WRITTEN
+
+
+def state_left(what: str) -> None:
+    """State what an interrupt from now on leaves behind."""
+    global _left
+    _left = what
+
+
+def left() -> str:
+    """Return what the work that was interrupted left behind."""
+    return _left
 
 
 def ignore() -> None:

@@ -71,7 +71,7 @@ def run_command_line(arguments: list[str]) -> int:
             raise
         if ended == EXIT_INTERRUPTED:
             why = error.__cause__ or error  # click raises its own
-            left = str(why) if isinstance(why, Unfinished) else "nothing was written"
+            left = str(why) if isinstance(why, Unfinished) else interrupts.left()
             click.echo(f"Interrupted; {left}.", err=True)
         return ended
     finally:

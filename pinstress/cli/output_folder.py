@@ -16,6 +16,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from pinbase.platform import portable
+from pinbase.processes import interrupts
 from pinbase.processes.folder_lock import Release, lock
 from pinstress.cli import manifest
 from pinstress.study.reading.errors import InputError, cannot_write_out
@@ -78,7 +79,8 @@ def replacing(directory: Path, mark: str = RESULTS_JSON) -> Iterator[Path]:
     try:
         try:
             directory.parent.mkdir(parents=True, exist_ok=True)
-            release = _claim(partial, directory)
+            with interrupts.deferred():  # between creating the folder and knowing that it is ours
+                release = _claim(partial, directory)
             _recover(earlier, directory)
         except OSError as error:
             raise cannot_write_out(directory.parent, error) from None
@@ -92,7 +94,9 @@ def replacing(directory: Path, mark: str = RESULTS_JSON) -> Iterator[Path]:
             raise cannot_write_out(directory, error) from error
         require_replaceable(directory, mark)  # a run takes minutes
         try:
-            _replace(partial, directory, earlier)
+            with interrupts.deferred():  # between the two steps of systems that have no exchange
+                _replace(partial, directory, earlier)
+                interrupts.state_left(f"{directory} is written")
         except OSError as error:
             raise InputError(
                 f"--out: cannot replace {directory} ({error.strerror}); close programs that have "

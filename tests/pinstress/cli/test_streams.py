@@ -21,6 +21,7 @@ from fea.solve.solve import solve
 from pinbase.processes import interrupts
 from pinstress import InputError
 from pinstress.cli.commands import run_command_line
+from pinstress.cli.output_folder import replacing
 from pinstress.cli.streams import _plain
 from tests.conftest import ROOT
 from tests.support.each import each, sampled
@@ -247,6 +248,40 @@ def test_whatever_an_interrupt_becomes_the_status_is_130(
         assert run_command_line(["check", "study.toml"]) == 130
     assert capsys.readouterr().err == "Interrupted; nothing was written.\n"
     interrupts.require_none()  # nor does anything that this process does later end for it
+
+
+@pytest.mark.parametrize(
+    "at",
+    [
+        "pinstress.cli.output_folder.lock",
+        "pinstress.cli.manifest.begin",
+        "pinstress.cli.output_folder._replace",
+    ],
+)
+def test_an_interrupt_while_folders_are_created_or_replaced_leaves_one_or_the_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, at: str
+) -> None:
+    """An interrupt between creating the folder and knowing that it is ours left it behind."""
+    module, name = at.rsplit(".", 1)
+    step = getattr(sys.modules[module], name)
+
+    def interrupted(*arguments: Any) -> Any:
+        out = step(*arguments)
+        signal.raise_signal(signal.SIGINT)
+        return out
+
+    monkeypatch.setattr(at, interrupted)
+    with signals_heard():
+        interrupts.listen()
+        try:
+            with pytest.raises(KeyboardInterrupt), replacing(tmp_path / "out") as staging:
+                (staging / "results.json").write_text("{}")
+            left = interrupts.left()
+        finally:
+            interrupts.forget()
+    done = at.endswith("_replace")
+    assert left == (f"{tmp_path / 'out'} is written" if done else "nothing was written")
+    assert [p.name for p in tmp_path.iterdir()] == (["out"] if done else [])
 
 
 def test_an_interrupt_that_is_dropped_comes_back(
