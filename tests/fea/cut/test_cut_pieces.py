@@ -83,6 +83,11 @@ def test_a_piece_that_a_clamp_reaches_has_no_mirror_across_the_axis() -> None:
 
     assert mirrors(free) == ("x", "y")
     assert mirrors(free + 0.2 * D) == ("x", "y", "z")
+    for length in (0.07, 0.3 + 0.1, 0.1 + 0.7):  # of both ends, whatever their round-off
+        pin = CutPin(Pin("p", (Segment(length, 1.0),)), (Hole(0.5 * length, 0.2 * length),))
+        for clamp in ("start", "end"):
+            (piece,) = region.pieces(pin, (clamp,))
+            assert piece.mirrors == ("x", "y")
 
 
 @pytest.mark.slow
