@@ -152,14 +152,8 @@ def pieces(
         (low, high), end = cut.extent, _ends(groups[-1].values())[1]
         # Cuts are merged if the gap to the group before is short, in proportion to the piece's
         # reach.
-        near = (
-            MERGE_DISTANCE
-            * apart
-            * beyond
-            / PIECE_REACH
-            * _diameter(pin.profile, min(end, low), high)
-        )
-        if low - end < near:
+        near = MERGE_DISTANCE * apart * beyond / PIECE_REACH
+        if low - end < near * _diameter(pin.profile, min(end, low), high):
             groups[-1][name] = cut
         else:
             groups.append({name: cut})
