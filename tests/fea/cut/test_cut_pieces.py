@@ -102,6 +102,22 @@ def test_a_piece_whose_stress_swings_does_not() -> None:
     assert [part.finer > 2.0 for part in parts(constant)] == [True, False]
 
 
+def test_the_surface_shows_no_piece_over_the_mouths_of_another() -> None:
+    """Holes a diameter apart, each within the piece of the other, which does not have it."""
+    pin = shaft(Hole(0.08, 0.004), Hole(0.1, 0.004))
+    found = solve_pin(pin, STEEL, (), (pulled([3e4], [0.0]),), Requirement(0.2, meshes=1))[0]
+    assert isinstance(found.answer, CutField)
+    assert len(parts(found)) == 2
+    shown = found.answer.solution.shown
+    middles = shown.points[shown.triangles].mean(axis=1)
+    for z in (0.08, 0.1):
+        for x in (-0.5 * D, 0.5 * D):
+            assert np.linalg.norm(middles - [x, 0.0, z], axis=1).min() > 0.0015
+    x, y, z = middles[np.abs(middles[:, 2] - 0.09) < 0.003].T
+    assert np.ptp(np.sort(np.arctan2(y, x))) > 6.0  # the surface between them is whole
+    assert np.diff(np.sort(z)).max() < 0.002
+
+
 @pytest.mark.slow
 def test_a_run_joins_holes_that_disturb_each_other() -> None:
     pin = shaft(Hole(0.08, 0.004), Hole(0.096, 0.003, 0.5 * np.pi))
