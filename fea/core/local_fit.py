@@ -15,19 +15,19 @@ TREE_SAMPLE_RATIO = 4  # samples per point above which a quickly built tree save
 _REGULARISATION = 1e-10  # of the number of samples, where these leave slope or curvature open
 
 
-def nodal_extrapolation(elements: Ints, samples: Floats, singularities: Floats) -> sp.csr_matrix:
+def nodal_extrapolation(elements: Ints, samples: Floats, nodes: Floats) -> sp.csr_matrix:
     """Matrix (N, M Q) that takes values at Q samples of each element to nodes.
 
     Each element's values are extrapolated linearly to its nodes and averaged there.
     elements: (M, k) node numbers.
-    samples: (d, Q), singularities: (d, k), where samples and nodes are in the reference element. Q
+    samples: (d, Q), nodes: (d, k), where samples and nodes are in the reference element. Q
     = d + 1, or 1 where values are constant in an element.
     """
     if samples.shape[1] == 1:
-        extend = np.ones((singularities.shape[1], 1))
+        extend = np.ones((nodes.shape[1], 1))
     else:
-        at, nodes = (np.vstack([np.ones(x.shape[1]), x]) for x in (samples, singularities))
-        extend = np.linalg.solve(at, nodes).T  # (k, Q)
+        at, ends = (np.vstack([np.ones(x.shape[1]), x]) for x in (samples, nodes))
+        extend = np.linalg.solve(at, ends).T  # (k, Q)
     m, (k, q) = len(elements), extend.shape
     row = np.repeat(elements.ravel(), q)
     column = (q * np.arange(m)[:, None, None] + np.arange(q)).repeat(k, axis=1).ravel()
