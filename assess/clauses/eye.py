@@ -18,6 +18,7 @@ from pinbase.arrays import Floats
 
 EyeUtilisation = Callable[["PlateEye"], float]
 MAX_UTILISATION = 1e9  # that of an eye that cannot be, so that roots can be sought
+ROOT_TOLERANCE = 0.01  # of a utilisation of 1; further off is the last eye that can be, no root
 ROUND_OFF = 1e-9  # of a force, up to which its component along a direction is none
 AXIAL_BASIS = "the force taken along the shank, whose direction is not given"
 
@@ -75,7 +76,7 @@ class PlateEye:
 
     def would_pass(self, dimension: str, utilisation: EyeUtilisation) -> float | None:
         """The value of a dimension, m, at which a utilisation of the eye is 1; None where none is
-        near, and for the width of an eccentric head.
+        near, where every eye that can be passes, and for the width of an eccentric head.
         """
         if self.eccentric and dimension == "width":
             return None
@@ -87,7 +88,8 @@ class PlateEye:
             except ArgumentError:
                 return MAX_UTILISATION
 
-        return would_pass(used, getattr(self, dimension))
+        value = would_pass(used, getattr(self, dimension))
+        return value if value and abs(used(value) - 1.0) < ROOT_TOLERANCE else None
 
 
 @dataclass(frozen=True)

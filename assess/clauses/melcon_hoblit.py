@@ -8,7 +8,8 @@
 
 R_a and R_tr are the axial and the transverse part of the force over what the lug carries of each.
 The efficiency factors are those of the method's figures, which no formula gives: the study states
-them.
+them. They hold for the width over the bore at which they were read, so that of the lug only another
+thickness is said to pass.
 
 The study has one ultimate and one yield strength of a material; those across the grain (F_tux,
 F_tyx) are to be stated there where they are lower.
@@ -111,7 +112,7 @@ def _along(
         if not ultimate:
             margins.append(text.lacks(s, *strengths_of(x.lug).missing))
             continue
-        margins.append(eye_margin(text, s, x, x.axial, partial(load, k, ultimate), "width"))
+        margins.append(eye_margin(text, s, x, x.axial, partial(load, k, ultimate), "thickness"))
     return margins
 
 
@@ -134,7 +135,7 @@ def lug_yield(text: CheckText, s: Situation) -> list[Margin]:
             loads = shear_bearing_load(k_br, fu, eye), tension_load(k_t, fu, eye)
             return yield_load(min(load.result.value for load in loads), C, fy, fu)
 
-        margins.append(eye_margin(text, s, x, x.axial, capacity, "width"))
+        margins.append(eye_margin(text, s, x, x.axial, capacity, "thickness"))
     return margins
 
 

@@ -131,6 +131,16 @@ def test_the_diameter_that_would_pass() -> None:
     assert passing.used == pytest.approx(1.0)
 
 
+def test_factors_of_figures_hold_for_one_width() -> None:
+    """K and K_n are read at e/D and W/D, so that only another thickness can be said to pass."""
+    margins = named(margins_of(joint_of_table()))
+    for method in ("bearing", "net section"):
+        m = margins[f"AFFDL lug {method}", "B"]
+        assert m.passing is not None, method
+        assert m.passing.symbol == "thickness", method
+        assert m.passing.value == pytest.approx(0.75 * IN * m.used, rel=1e-5), method
+
+
 def test_a_joint_that_is_not_checked_leaves_bending_to_even_loads() -> None:
     """Pulled across its shanks the joint has no clause: even bearing is then no comparison."""
     s = joint_of_table()

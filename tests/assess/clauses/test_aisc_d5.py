@@ -55,6 +55,17 @@ def test_a_study_of_the_plate() -> None:
     assert "EN 1993 bending" in margins
 
 
+def test_a_width_on_which_nothing_depends_is_not_said_to_pass() -> None:
+    """The shear planes of a square plate end at its end, however wide it is: a width just above
+    that of the hole was said to pass.
+    """
+    s = plate(Shank("square", 4.25 * IN, 10.0 * IN, (2.25 + 0.515) * IN, 0.0))
+    margins = {m.method: m for m in margins_of(s)}
+    assert margins["AISC shear rupture"].used < 1.0
+    assert margins["AISC shear rupture"].passing is None
+    assert margins["AISC tensile rupture"].passing is not None
+
+
 def test_a_narrow_shank_yields_before_its_head() -> None:
     """A round head of 4.25 in on a shank of 2 in: 0.9 x 36 x 2 x 0.5 = 32.4 kips."""
     s = plate(Shank("round", 2.0 * IN, 10.0 * IN, 4.25 / 2.0 * IN, 0.0))

@@ -155,6 +155,16 @@ def test_a_shank_that_turns() -> None:
     assert margins["Melcon-Hoblit oblique"].demand == pytest.approx(max(R), rel=1e-3)
 
 
+def test_factors_of_figures_hold_for_one_width() -> None:
+    """k_br, k_t and C are read at W/D, so that only another thickness can be said to pass."""
+    margins = named(lug_at(0.0))
+    for method in ("shear-bearing", "tension", "yield"):
+        m = margins[f"Melcon-Hoblit {method}"]
+        assert m.passing is not None, method
+        assert m.passing.symbol == "thickness", method
+        assert m.passing.value == pytest.approx(0.5 * IN * m.used, rel=1e-5), method
+
+
 def test_the_pin_of_the_example() -> None:
     """Niu allows 2.21 in-kip, 1.44 F_tu of the elastic section: 29.4 kips in shear with 75 ksi."""
     margins = named(lug_at(0.0))
