@@ -12,7 +12,16 @@ from itertools import groupby
 from types import MappingProxyType
 
 from assess.check import Check, Scope
-from assess.clauses import affdl_joint, affdl_lugs, affdl_pins, aisc_d5, bth1, ekvall, melcon_hoblit
+from assess.clauses import (
+    affdl_joint,
+    affdl_lugs,
+    affdl_pins,
+    aisc_d5,
+    bth1,
+    ekvall,
+    melcon_hoblit,
+    melcon_hoblit_pin,
+)
 from assess.clauses.lug_checks import lug_checks, required_lug_checks
 from assess.clauses.lug_collapse import lug_collapse, lug_rupture
 from assess.clauses.lug_out_of_plane import lug_out_of_plane
@@ -73,6 +82,7 @@ AIRCRAFT: tuple[Check, ...] = (
     melcon_hoblit.shear_bearing,
     melcon_hoblit.tension,
     melcon_hoblit.lug_yield,
+    melcon_hoblit.bushing_yield,
     melcon_hoblit.transverse,
     melcon_hoblit.transverse_yield,
     melcon_hoblit.oblique,
@@ -82,6 +92,7 @@ AIRCRAFT: tuple[Check, ...] = (
     affdl_joint.affdl_joint,
     affdl_pins.pin_shear,
     affdl_pins.pin_bending,
+    melcon_hoblit_pin.peaked_bending,
 )
 LIFTING: tuple[Check, ...] = (
     bth1.bth1_tension,

@@ -11,7 +11,7 @@ class LugFactors:
 
     K, K_n: of AFFDL-TR-69-42, figures 9-2 and 9-4. k_br, k_t: of Melcon and Hoblit for
     shear-bearing and tension, C: of the yield load; k_tru, k_try: for transverse loads, ultimate
-    and yield.
+    and yield. gamma: of the pressure of a pin in bending, which peaks at the faces of the lug.
     """
 
     K: float | None = None
@@ -21,3 +21,4 @@ class LugFactors:
     C: float | None = None
     k_tru: float | None = None
     k_try: float | None = None
+    gamma: float | None = None

@@ -19,8 +19,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from assess.check import CheckText, WorstPlace, check
 from assess.clauses.affdl_lugs import (
     LUG_OMITS,
@@ -34,12 +32,11 @@ from assess.clauses.eye import LoadedEye, loaded_eyes
 from assess.clauses.eye_margin import lacks_pull
 from assess.margin import Margin, strength_key
 from assess.situation import Situation
-from assess.strength.bending_arms import LAYOUT_TOLERANCE, layout
+from assess.strength.bending_arms import in_double_shear
 from assess.work import Work, work
 from fea.beam.round_section import thinnest_section
 from geometry import ArgumentError, Band
 
-LAYOUT = "double shear"
 LAYOUT_NEEDED = "symmetrical double shear, with the sizes of all three lugs"
 
 
@@ -147,7 +144,7 @@ def affdl_joint(text: CheckText, s: Situation) -> list[Margin]:
 def joint_of(s: Situation) -> DoubleShear | list[str]:
     """The joint of a situation, or what it lacks to be one, or to be checked."""
     bands, eyes = _in_order(s)
-    if len(bands) != len(eyes) or not _symmetrical(s):
+    if len(bands) != len(eyes) or not in_double_shear(s):
         return [LAYOUT_NEEDED]
     if needs := [need for eye in eyes if (need := lacks_pull(eye))]:
         return needs[:1]
@@ -155,13 +152,6 @@ def joint_of(s: Situation) -> DoubleShear | list[str]:
         return _joint(s, bands, eyes)
     except ArgumentError as error:
         return [str(error)]
-
-
-def _symmetrical(s: Situation) -> bool:
-    """Whether the joint is in symmetrical double shear at every instant with a notable force."""
-    size = s.across.max(axis=1)
-    loaded = np.flatnonzero(size > LAYOUT_TOLERANCE * size.max())
-    return all(layout(s, int(t)) == LAYOUT for t in loaded)
 
 
 def _in_order(s: Situation) -> tuple[list[Band], list[LoadedEye]]:

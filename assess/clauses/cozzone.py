@@ -24,6 +24,7 @@ from fea.core.material import Material
 from geometry import ArgumentError
 from pinbase.keys import key_part
 
+PIN_OMITS = "Not covered: shear together with bending, axial force, a bore that is crushed."
 YIELD_OFFSET = 0.002  # plastic strain at the yield strength
 
 

@@ -3,6 +3,7 @@
     shear-bearing    P_bru = k_br F_tux D t
     tension          P_tu = k_t F_tu (W - D) t
     yield            P_y = C (F_tyx / F_tux) min(P_bru, P_tu)
+    bushing, yield   P_y = 1.85 F_cy Dp t
     transverse       P_tru = k_tru F_tux D t       P_try = k_try F_tyx D t
     oblique          (R_a^1.6 + R_tr^1.6)^0.625 <= 1
 
@@ -35,6 +36,7 @@ from pinbase.arrays import Floats
 from pinbase.keys import lug_key
 
 NIU = "Niu, Airframe Stress Analysis, 9.8, after Melcon & Hoblit"
+BUSHING_BEARING = 1.85  # of the bushing's yield strength in compression, at yield
 OBLIQUE_EXPONENT = 1.6  # of the interaction; 0.625 is its inverse
 NIU_OMITS = (
     "Not covered: elongations under 5 %, strength across the grain other than the material's, "
@@ -64,6 +66,15 @@ def yield_load(ultimate_load: float, C: float, yields: float, ultimate: float) -
         "P_y", C * yields / ultimate * ultimate_load, "force", "{C} × ({F_ty} / {F_tu}) × {P_u}",
         C=(C, "1"), F_ty=(yields, "stress"), F_tu=(ultimate, "stress"),
         P_u=(ultimate_load, "force"),
+    )  # fmt: skip
+
+
+def bushing_yield_load(crushes: float, eye: PlateEye) -> Work:
+    """P_y of a bushing, N. crushes: its yield strength in compression, Pa."""
+    return work(
+        "P_y", BUSHING_BEARING * crushes * eye.pin * eye.thickness, "force",
+        "1.85 × {F_cy} × {D_p} × {t}",
+        F_cy=(crushes, "stress"), D_p=(eye.pin, "length"), t=(eye.thickness, "length"),
     )  # fmt: skip
 
 
@@ -136,6 +147,25 @@ def lug_yield(text: CheckText, s: Situation) -> list[Margin]:
             return yield_load(min(load.result.value for load in loads), C, fy, fu)
 
         margins.append(eye_margin(text, s, x, x.axial, capacity, "thickness"))
+    return margins
+
+
+@check("Melcon-Hoblit bushing", NIU, kind="clause", takes="loads", dimension="force",
+       omits=NIU_OMITS)  # fmt: skip
+def bushing_yield(text: CheckText, s: Situation) -> list[Margin]:
+    """The force on every bushed eye of which k_br or k_t is given against the yield load of its
+    bushing, which the manual's at ultimate load (assess.clauses.affdl_lugs) is below.
+    """
+    margins = []
+    for x in loaded_eyes(s):
+        if x.bushing is None or not _axial_given(s, x):
+            continue
+        crushes = x.bushing.yield_strength
+        if crushes is None:
+            margins.append(text.lacks(s, strength_key(x.bushing.name, "yield")))
+        else:
+            capacity = partial(bushing_yield_load, crushes)
+            margins.append(eye_margin(text, s, x, x.size, capacity, "thickness"))
     return margins
 
 

@@ -72,6 +72,7 @@ class ShankTable(StrictTable):
 
 Friction = Annotated[Number, Field(ge=0.0, le=1.0)]
 Times = Annotated[Number, Field(gt=0.0)]
+PositiveShare = Annotated[Number, Field(gt=0.0, le=1.0)]
 
 
 class LugFactorsTable(StrictTable):
@@ -91,6 +92,9 @@ class LugFactorsTable(StrictTable):
     """Transverse load, ultimate, by Melcon and Hoblit."""
     k_try: Times | None = None
     """Transverse load, yield, by Melcon and Hoblit."""
+    gamma: PositiveShare | None = None
+    """Of the middle lug in double shear: the part of a quarter of its thickness that is left of the
+    arm of the pin's bending moment, as pressure peaks at its faces, by Melcon and Hoblit."""
 
 
 class LugRangeTable(StrictTable):

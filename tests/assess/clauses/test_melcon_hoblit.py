@@ -182,3 +182,39 @@ def test_an_eye_needs_material_around_its_bore() -> None:
     with raises(ArgumentError, "out-of-range", "reach further"):
         PlateEye(0.05, 0.02, 0.02, 0.01, end=0.01)
     assert pytest.approx(1.5 / 1.15, rel=1e-3) == ULTIMATE_OVER_YIELD
+
+
+def test_the_pin_bends_by_pressure_that_peaks() -> None:
+    """gamma 0.43: an arm of 0.125 + 0.02 + 0.43 x 0.125 = 0.1988 in, 1.491 in-kip of 15 kips, MS
+    0.288 (0.28 in print, with 1.5); even bearing is for comparison then.
+    """
+    s = replace(lug_at(0.0), lug_factors={"B": replace(FACTORS, gamma=0.43)})
+    bent = named(s)["Melcon-Hoblit pin bending"]
+    assert bent.demand == pytest.approx(1.491 * KIP * IN / 1.5, rel=1e-3)
+    assert bent.margin == pytest.approx(2.209 / (FITTING * 1.491) - 1.0, rel=2e-3)
+    assert bent.passing is not None
+    assert bent.passing.value == pytest.approx(0.5 * IN * bent.used ** (1.0 / 3.0))
+    even = named(s)["pin bending, rupture, for comparison"]
+    assert not even.governs
+    assert named(lug_at(0.0))["pin bending, rupture"].governs
+
+
+@each("at", [("A",), ("A", "B"), ("C",)])
+def test_gamma_is_of_the_middle_lug(at: tuple[str, ...]) -> None:
+    s = replace(lug_at(0.0), lug_factors={name: LugFactors(gamma=0.43) for name in at})
+    (bent,) = (m for m in margins_of(s) if m.method == "Melcon-Hoblit pin bending")
+    assert "gamma of the middle lug" in bent.needs
+
+
+def test_the_bushing_of_the_example() -> None:
+    """34.7 kips with F_cy 75 ksi on 0.25 in2, at yield; the manual's is the lower one."""
+    s = lug_at(0.0)
+    soft = replace(s.lugs[0].bushing.material, yield_strength=75 * KSI)  # type: ignore[union-attr]
+    lug = replace(s.lugs[0], bushing=Bushing(0.075 * IN, soft))
+    margins = named(replace(s, lugs=(lug,), sized=(lug,)))
+    bushing = margins["Melcon-Hoblit bushing"]
+    assert (bushing.allowable or 0.0) / KIP == pytest.approx(34.69, abs=0.01)
+    assert bushing.level == "limit"
+    assert bushing.used < margins["AFFDL bushing"].used
+    plain = named(replace(s, lug_factors={}))
+    assert "Melcon-Hoblit bushing" not in plain
