@@ -29,10 +29,10 @@ LUG_MODES: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "across the shank": ("Melcon-Hoblit transverse", "Ekvall transverse"),
         "out of its plane": ("lug, bending out of its plane",),
         "oblique": ("Melcon-Hoblit oblique",),
-        "bushing": ("AFFDL bushing",),
+        "bushing": ("AFFDL bushing", "Melcon-Hoblit bushing"),
         "press fit": (PRESS_FIT_METHOD,),
         PIN_AND_LUGS: ("AFFDL joint in double shear",),
-        "collapse": ("lug, limit load",),
+        "collapse": ("lug, limit load", "lug, ultimate load"),
     }
 )  # fmt: skip
 
