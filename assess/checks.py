@@ -19,6 +19,7 @@ from assess.clauses import (
     aisc_d5,
     bth1,
     ekvall,
+    eurocode_sections,
     melcon_hoblit,
     melcon_hoblit_pin,
 )
@@ -102,6 +103,7 @@ LIFTING: tuple[Check, ...] = (
 )
 CIVIL: tuple[Check, ...] = (
     *(check for check in CHECKS if check.kind == "clause"),
+    eurocode_sections.eurocode_section,
     aisc_d5.aisc_member,
 )
 SETS: Mapping[Code, tuple[Check, ...]] = MappingProxyType(

@@ -14,7 +14,7 @@ bending, which gives this circle. Axial force and torque are not in it: assess.p
 them.
 
 This is a rule of pinstress and of no standard. EN 1993-1-1:2005 has shear alone in 6.2.6, bending
-with shear in 6.2.8, both with axial force in 6.2.9 and 6.2.10.
+with shear in 6.2.8, both with axial force in 6.2.9 and 6.2.10 (assess.clauses.eurocode_sections).
 
 Source: EN 1993-1-1:2005, 6.2.6(3) g, for the shear area of a circular hollow section alone.
 """
