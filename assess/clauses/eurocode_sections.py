@@ -38,6 +38,10 @@ from fea.beam.round_section import Circle
 from pinbase.arrays import Floats
 
 MAX_SLENDERNESS, SLENDERNESS_STRENGTH = 70.0, 235e6  # d/t of class 2, times epsilon^2; Pa
+MAX_LEFT = 0.01  # of the largest force along the pin, or torque: more is not in balance
+REACTION_NEEDED = (
+    "the forces along the pin and torques of a structure's lugs, which the solved joint gives"
+)
 USE_RULE = "1/R is the factor on all loads at which b = 1 − ρ"
 CLASS_NEEDED = "walls of class 1 or 2 (d/t at most 70 times 235 MPa over the yield strength)"
 
@@ -52,6 +56,8 @@ def eurocode_section(text: CheckText, s: Situation) -> list[Margin]:
         return []
     if fy is None:
         return [text.lacks(s, strength_key(s.material.name, "yield"))]
+    if forces.kind == "even" and not s.clamps and _left_along(s):
+        return [text.lacks(s, REACTION_NEEDED)]
     if any(_slenderness(x) > MAX_SLENDERNESS * SLENDERNESS_STRENGTH / fy for x in forces.sections):
         return [text.lacks(s, CLASS_NEEDED)]
     design = fy / GAMMA_M0
@@ -101,6 +107,15 @@ def plastic_shear(section: Circle, strength: float) -> float:
 def torsion_resistance(section: Circle, strength: float) -> float:
     """T_Rd, N m, at which the outer fibre yields; of a design yield strength, Pa."""
     return section.polar / section.outer * strength / math.sqrt(3.0)
+
+
+def _left_along(s: Situation) -> bool:
+    """Whether forces along the pin or torques are left that no band takes."""
+    loads = s.by_formula
+    return any(
+        bool(np.abs(x.sum(axis=1)).max() > MAX_LEFT * np.abs(x).max())
+        for x in (loads.forces[..., 2], loads.moments[..., 2])
+    )
 
 
 def _slenderness(section: Circle) -> float:

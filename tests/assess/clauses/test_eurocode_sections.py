@@ -106,6 +106,15 @@ def test_a_slender_tube_is_named() -> None:
     assert "class 1 or 2" in thin.needs
 
 
+def test_reactions_along_the_pin_that_no_formula_gives_are_named() -> None:
+    """What a structure's lugs take along the axis is in the solved joint alone."""
+    s = in_civil(15e3)
+    forces = s.loads.forces.copy()
+    forces[0, 2, 2] = 0.0
+    one_sided = replace(s, loads=replace(s.loads, forces=forces))
+    assert "solved joint" in section_margin(one_sided).needs
+
+
 def test_general_does_not_have_it() -> None:
     s = replace(in_civil(0.0), codes=("general",))
     assert not any(m.method == METHOD for m in margins_of(s))
