@@ -22,6 +22,7 @@ from assess.clauses import (
     eurocode_sections,
     melcon_hoblit,
     melcon_hoblit_pin,
+    special_bearing,
 )
 from assess.clauses.lug_checks import lug_checks, required_lug_checks
 from assess.clauses.lug_collapse import lug_collapse, lug_rupture
@@ -88,6 +89,7 @@ AIRCRAFT: tuple[Check, ...] = (
     melcon_hoblit.transverse_yield,
     melcon_hoblit.oblique,
     melcon_hoblit.oblique_yield,
+    special_bearing.special_bearing,
     ekvall.ekvall_transverse,
     ekvall.ekvall_bore_stress,
     affdl_joint.affdl_joint,

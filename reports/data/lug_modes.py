@@ -23,7 +23,7 @@ LUG_MODES: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "shear-out and bearing": ("AFFDL lug bearing", "Melcon-Hoblit shear-bearing"),
         BEARING: (
             "lug, bearing", "BTH-1 plate, bearing", "AISC bearing", "EN 1993 bearing",
-            "EN 1993 contact",
+            "EN 1993 contact", "special factor in bearing",
         ),
         "yield": ("Melcon-Hoblit yield",),
         "across the shank": ("Melcon-Hoblit transverse", "Ekvall transverse"),
