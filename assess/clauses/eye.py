@@ -114,12 +114,12 @@ class LoadedEye:
 def eye_of(s: Situation, lug: Lug) -> PlateEye:
     """The eye of a lug on its band of the pin, as thick as the band is long.
 
-    Without a shank the head is round, and its end half of its width from the centre. The clearance
-    of a bushing is not in the hole of the lug; any other is the largest that is stated.
+    Without a shank the head is round, and its end half of its width from the centre. The hole is
+    as much larger than the pin as the largest clearance that is stated, and the walls of a bushing.
     """
     band, bushed, shank = s.pin.band(lug.connection), lug.bushing is not None, lug.shank
     pin = 2.0 * band.radius
-    ring = 2.0 * lug.bushing.thickness if lug.bushing else max(lug.loosest, 0.0)
+    ring = max(lug.loosest, 0.0) + (2.0 * lug.bushing.thickness if lug.bushing else 0.0)
     if shank is None:
         return PlateEye(lug.outer_diameter, pin + ring, pin, band.length, bushed)
     square, width = shank.shape == "square", lug.outline(band.radius).width_at_bore
