@@ -84,7 +84,7 @@ def bending_strength(s: Situation, section: Circle) -> Work | list[str]:
         )  # fmt: skip
     if m.ultimate_strain is None:
         instead = material_key(m.name, "ultimate_strain")
-        return [f"pin.{key_part(s.pin.name)}.bending_factor (or {instead}, for Cozzone's)"]
+        return [f"pin.{key_part(s.pin.name)}.bending_factor or {instead}"]
     if m.yield_strength is None:
         return [strength_key(m.name, "yield")]
     return cozzone_strength(m, section, m.ultimate_strain)

@@ -30,6 +30,7 @@ from fea.core.pin_loads import PinLoads
 from fea.lug.in_joint import ShankAngle
 from fea.support.lugs.lug import Bushing, Lug, Shank
 from geometry import ArgumentError
+from reports.data.requirements import keys_in
 from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.pins.plain_pins import double_shear
@@ -197,6 +198,13 @@ def test_the_pin_bends_by_pressure_that_peaks() -> None:
     even = named(s)["pin bending, rupture, for comparison"]
     assert not even.governs
     assert named(lug_at(0.0))["pin bending, rupture"].governs
+
+
+def test_what_bending_needs_is_one_entry_of_a_list() -> None:
+    """Reports split what is missing at commas: the page had "and for Cozzone's)"."""
+    s = replace(lug_at(0.0), bending_factor=None)
+    (bent,) = (m for m in margins_of(s) if m.method == "pin bending, rupture")
+    assert keys_in(bent.needs) == ["pin.P.bending_factor or material.steel.ultimate_strain"]
 
 
 @each("at", [("A",), ("A", "B"), ("C",)])
