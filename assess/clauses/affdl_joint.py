@@ -17,7 +17,7 @@ Source: AFFDL-TR-69-42, Stress Analysis Manual, 9.4, equations 9-11 to 9-19.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from assess.check import CheckText, WorstPlace, check
 from assess.clauses.affdl_lugs import (
@@ -33,8 +33,8 @@ from assess.clauses.eye_margin import lacks_pull
 from assess.margin import Margin, strength_key
 from assess.situation import Situation
 from assess.strength.bending_arms import in_double_shear
-from assess.work import Work, work
-from fea.beam.round_section import thinnest_section
+from assess.work import Work, diameter_of_wall, work
+from fea.beam.round_section import Circle, thinnest_section
 from geometry import ArgumentError, Band
 
 LAYOUT_NEEDED = "symmetrical double shear, with the sizes of all three lugs"
@@ -46,7 +46,7 @@ class DoubleShear:
 
     outer, middle: what one outer and the middle lug carry with their bushings, P_1 and P_2, N.
     thickness: t_1 and t_2, gap: g, m. moment: M_u that breaks the pin, N m. shear: what breaks it
-    in both planes, N.
+    in both planes, N. section: that breaks first in bending.
     """
 
     outer: float
@@ -55,6 +55,14 @@ class DoubleShear:
     gap: float
     moment: float
     shear: float
+    section: Circle
+
+    def with_wall(self, wall: float) -> DoubleShear:
+        """The joint with another wall of the pin, m, in the same lugs."""
+        section = Circle(self.section.inner + wall, self.section.inner)
+        moment = self.moment * section.modulus / self.section.modulus
+        shear = self.shear * section.area / self.section.area
+        return replace(self, moment=moment, shear=shear, section=section)
 
     @property
     def arm(self) -> float:
@@ -137,8 +145,13 @@ def affdl_joint(text: CheckText, s: Situation) -> list[Margin]:
     bands, loaded = _in_order(s)
     t = int(loaded[1].size.argmax())
     force, place = float(loaded[1].size[t]), WorstPlace.at_band(bands[1], s.loads, t)
-    name, basis = s.material.name, loaded[1].basis
-    return [text.margin(s, force, joint.load, place, name, basis, joint.works())]
+    name, basis, section = s.material.name, loaded[1].basis, joint.section
+
+    def of_wall(wall: float) -> float:
+        return s.factors.at(text.level) * force / joint.with_wall(wall).load
+
+    passing = diameter_of_wall(section, of_wall) if joint.lugs > joint.load else None
+    return [text.margin(s, force, joint.load, place, name, basis, joint.works(), passing)]
 
 
 def joint_of(s: Situation) -> DoubleShear | list[str]:
@@ -181,14 +194,17 @@ def _joint(s: Situation, bands: list[Band], eyes: list[LoadedEye]) -> DoubleShea
     first, middle, last = (load for load in loads if isinstance(load, float))
     gap = max(bands[1].z0 - bands[0].z1, bands[2].z0 - bands[1].z1)
     outer = max(bands[0].length, bands[2].length)
-    moment = min(
-        strength.result.value * section.modulus
-        for section, strength in strengths.items()
-        if isinstance(strength, Work)
+    moment, section = min(
+        (
+            (strength.result.value * section.modulus, section)
+            for section, strength in strengths.items()
+            if isinstance(strength, Work)
+        ),
+        key=lambda x: x[0],
     )
     return DoubleShear(
         min(first, last), middle, (outer, bands[1].length), gap, moment,
-        2.0 * fsu * min(section.area for section in sections),
+        2.0 * fsu * min(section.area for section in sections), section,
     )  # fmt: skip
 
 

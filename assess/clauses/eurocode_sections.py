@@ -32,7 +32,7 @@ from assess.check import CheckText, WorstPlace, check
 from assess.margin import RATIO_DIMENSION, Margin, strength_key
 from assess.situation import SectionForces, Situation
 from assess.strength.eurocode_pins import GAMMA_M0
-from assess.work import Work, WorkQuantity, work, would_pass
+from assess.work import Work, diameter_of_wall, work
 from fea.beam.plastic_interaction import bending_and_axial_use
 from fea.beam.round_section import Circle
 from pinbase.arrays import Floats
@@ -72,15 +72,15 @@ def eurocode_section(text: CheckText, s: Situation) -> list[Margin]:
     )  # fmt: skip
     factor = s.factors.at(text.level)
 
+    # Where the section is the same: with its diameter the worst place may change.
+    alike = np.array([other == section for other in forces.sections])
+
     def of_wall(wall: float) -> float:
         wider = Circle(section.inner + wall, section.inner)
-        return float(section_use(wider, design, *(np.array([factor * x]) for x in (V, M, N, T)))[0])
+        everywhere = (x[:, alike] for x in _four(forces))
+        return factor * float(section_use(wider, design, *everywhere).max())
 
-    wall = would_pass(of_wall, section.outer - section.inner)
-    if wall is None:
-        return [margin]
-    diameter = WorkQuantity("diameter", 2.0 * (section.inner + wall), "length")
-    return [replace(margin, passing=diameter)]
+    return [replace(margin, passing=diameter_of_wall(section, of_wall))]
 
 
 def section_use(

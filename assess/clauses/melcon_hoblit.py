@@ -31,7 +31,7 @@ from assess.clauses.eye import LoadedEye, PlateEye, loaded_eyes, place_of
 from assess.clauses.eye_margin import eye_margin, strengths_of
 from assess.margin import RATIO_DIMENSION, Margin, strength_key
 from assess.situation import Situation
-from assess.work import Work, work
+from assess.work import Work, scaled, work
 from pinbase.arrays import Floats
 from pinbase.keys import lug_key
 
@@ -255,7 +255,8 @@ def _combined(
         "R", used[t], RATIO_DIMENSION, "({R_a}^1.6 + {R_tr}^1.6)^0.625", R_a=(R_a, "1"),
         R_tr=(R_tr, "1"),
     )  # fmt: skip
-    return text.margin(s, float(used[t]), 1.0, place, x.lug.name, x.basis, (*works, both))
+    passing = scaled("thickness", x.eye.thickness, s.factors.at(text.level) * float(used[t]), 1.0)
+    return text.margin(s, float(used[t]), 1.0, place, x.lug.name, x.basis, (*works, both), passing)
 
 
 def _pulled(s: Situation) -> list[LoadedEye]:
