@@ -31,7 +31,6 @@ import numpy as np
 from assess.check import CheckText, WorstPlace, check
 from assess.margin import RATIO_DIMENSION, Margin, strength_key
 from assess.situation import SectionForces, Situation
-from assess.strength.eurocode_pins import GAMMA_M0
 from assess.work import Work, diameter_of_wall, work
 from fea.beam.plastic_interaction import bending_and_axial_use
 from fea.beam.round_section import Circle
@@ -60,7 +59,7 @@ def eurocode_section(text: CheckText, s: Situation) -> list[Margin]:
         return [text.lacks(s, REACTION_NEEDED)]
     if any(_slenderness(x) > MAX_SLENDERNESS * SLENDERNESS_STRENGTH / fy for x in forces.sections):
         return [text.lacks(s, CLASS_NEEDED)]
-    design = fy / GAMMA_M0
+    design = fy / s.partial.M0
     used = np.stack([_along(forces, k, design) for k in range(len(forces.z))], axis=1)
     t, k = (int(i) for i in np.unravel_index(int(used.argmax()), used.shape))
     section = forces.sections[k]
@@ -68,7 +67,8 @@ def eurocode_section(text: CheckText, s: Situation) -> list[Margin]:
     time = None if forces.times is None else float(forces.times[t])
     margin = text.margin(
         s, float(used[t, k]), 1.0, WorstPlace(forces.labels[k], float(forces.z[k]), time),
-        s.material.name, f"{forces.basis}; {USE_RULE}", _works(section, fy, V, M, N, T),
+        s.material.name, f"{forces.basis}; {USE_RULE}",
+        _works(section, fy, s.partial.M0, V, M, N, T),
     )  # fmt: skip
     factor = s.factors.at(text.level)
 
@@ -132,11 +132,13 @@ def _along(forces: SectionForces, k: int, design: float) -> Floats:
     return section_use(forces.sections[k], design, *(x[:, k] for x in _four(forces)))
 
 
-def _works(section: Circle, fy: float, V: float, M: float, N: float, T: float) -> tuple[Work, ...]:
-    design = fy / GAMMA_M0
+def _works(
+    section: Circle, fy: float, gamma_M0: float, V: float, M: float, N: float, T: float
+) -> tuple[Work, ...]:
+    design = fy / gamma_M0
     M_pl, N_pl = section.plastic_modulus * design, section.area * design
     V_pl, T_Rd = plastic_shear(section, design), torsion_resistance(section, design)
-    strength, gamma = (fy, "stress"), (GAMMA_M0, "1")
+    strength, gamma = (fy, "stress"), (gamma_M0, "1")
     v = V / V_pl + T / T_Rd
     b = float(section_use(section, design, *(np.array([x]) for x in (0.0, M, N, 0.0)))[0])
     R = float(section_use(section, design, *(np.array([x]) for x in (V, M, N, T)))[0])

@@ -13,7 +13,7 @@ from pydantic import (
     model_validator,
 )
 
-from assess.codes import Code
+from assess.codes import RECOMMENDED, Code
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.cases import GivenCase, InstantCase, MotionCase, StaticCase
 from pinstress.study.schema.fatigue import FatigueTable
@@ -58,6 +58,17 @@ AnyMechanism = Annotated[
     Discriminator(_plane_or_space),
 ]
 AnyCase = GivenCase | MotionCase | StaticCase | InstantCase | DropCase | GroundCase
+
+
+class PartialFactorsTable(StrictTable):
+    """Partial factors of EN 1993-1-8, as a national annex has them."""
+
+    M0: Annotated[Number, Field(ge=0.5)] = RECOMMENDED.M0
+    """Of the resistance of cross-sections: bearing and bending of pins."""
+    M2: Annotated[Number, Field(ge=0.5)] = RECOMMENDED.M2
+    """Of shear of pins."""
+    M6_ser: Annotated[Number, Field(ge=0.5)] = RECOMMENDED.M6_ser
+    """Of replaceable pins at the loads of service."""
 
 
 class AnalysisTable(StrictTable):
@@ -107,6 +118,8 @@ class AnalysisTable(StrictTable):
     """Design factor N_d of ASME BTH-1 for the code "lifting"; the standard gives it by the design
     category of the device."""
 
+    partial_factors: PartialFactorsTable = PartialFactorsTable()
+    """Partial factors of EN 1993-1-8, for checks of "general" and "civil"."""
     reference_temperature: Annotated[
         Temperature, Field(json_schema_extra={"default": "20 degC"})
     ] = 293.15
