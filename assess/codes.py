@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import Literal
 
 Code = Literal["general", "aircraft", "lifting", "civil"]
+AiscDesign = Literal["LRFD", "ASD"]
 
 
 @dataclass(frozen=True)

@@ -205,6 +205,7 @@ def _situation(
         table.replaceable, even_governs=even, sized=sized, codes=codes,
         design_factor=study.table.analysis.design_factor, bending_factor=table.bending_factor,
         partial=PartialFactors(**dict(study.table.analysis.partial_factors)),
+        aisc=study.table.analysis.aisc,
         lug_factors={name: LugFactors(**dict(lug.factors)) for name, lug in table.lug.items()},
         lug_stresses=joint.lugs if joint else (), shank_angles=task.shanks.get(loads.case, {}),
     )  # fmt: skip

@@ -157,7 +157,7 @@ class LugTable(StrictTable):
     shank: ShankTable | None = None
     """The outline of the lug in its plane, which its own stress requires."""
     factors: LugFactorsTable = LugFactorsTable()
-    """Efficiency factors of the lug, which only figures give."""
+    """Efficiency factors of the lug, which only figures give, and its special factor in bearing."""
     range: LugRangeTable = LugRangeTable()
     """What is not known of the lug, for the range of the maximum over the joint (`joint.range`)."""
 

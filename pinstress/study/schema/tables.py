@@ -13,7 +13,7 @@ from pydantic import (
     model_validator,
 )
 
-from assess.codes import RECOMMENDED, Code
+from assess.codes import RECOMMENDED, AiscDesign, Code
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.cases import GivenCase, InstantCase, MotionCase, StaticCase
 from pinstress.study.schema.fatigue import FatigueTable
@@ -120,6 +120,9 @@ class AnalysisTable(StrictTable):
 
     partial_factors: PartialFactorsTable = PartialFactorsTable()
     """Partial factors of EN 1993-1-8, for checks of "general" and "civil"."""
+    aisc: AiscDesign = "LRFD"
+    """How plates are designed by ANSI/AISC 360, for the code "civil": by load and resistance
+    factors at ultimate load ("LRFD"), or by allowable strengths at limit load ("ASD")."""
     reference_temperature: Annotated[
         Temperature, Field(json_schema_extra={"default": "20 degC"})
     ] = 293.15

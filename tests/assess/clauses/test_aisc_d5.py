@@ -58,6 +58,21 @@ def test_a_study_of_the_plate() -> None:
     assert "EN 1993 bending" in margins
 
 
+def test_allowable_strengths() -> None:
+    """16.2 kips in bearing by ASD, at 16 kips of limit load; 2.00 and 1.67 of the nominal ones."""
+    s = plate(Shank("square", 4.25 * IN, 10.0 * IN, (2.25 + 0.515) * IN, 0.0))
+    lrfd, asd = (
+        {m.method: m for m in margins_of(x) if m.method.startswith("AISC")}
+        for x in (s, replace(s, aisc="ASD"))
+    )
+    assert (asd["AISC bearing"].allowable or 0.0) / KIP == pytest.approx(16.2)
+    assert asd["AISC bearing"].used == pytest.approx(16.0 / 16.2)
+    assert {m.level for m in asd.values()} == {"limit"}
+    for method, m in asd.items():
+        phi, omega = (0.90, 1.67) if method == "AISC yielding" else (0.75, 2.00)
+        assert m.allowable == pytest.approx((lrfd[method].allowable or 0.0) / phi / omega)
+
+
 def test_a_width_on_which_nothing_depends_is_not_said_to_pass() -> None:
     """The shear planes of a square plate end at its end, however wide it is: a width just above
     that of the hole was said to pass.
