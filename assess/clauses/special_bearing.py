@@ -23,10 +23,15 @@ from assess.situation import Situation
 from assess.work import scaled, work
 from fea.support.lugs.lug import Lug
 
+SPECIAL_OMITS = (
+    "Not covered: wear, ball and roller bearings. The factor multiplies the ultimate factor, as "
+    "25.619 says; whoever reads 25.693 as a factor on limit load divides it by that."
+)
+
 
 @check("special factor in bearing", "14 CFR 25.619, 25.623, 25.693", kind="clause", takes="loads",
        level="ultimate", dimension="force",
-       omits="Not covered: wear, ball and roller bearings.")  # fmt: skip
+       omits=SPECIAL_OMITS)  # fmt: skip
 def special_bearing(text: CheckText, s: Situation) -> list[Margin]:
     """The force on every lug whose special factor is given against what its softest metal bears."""
     of_lugs = ((lug, s.factors_of(lug.connection).bearing) for lug in s.lugs)
