@@ -82,7 +82,8 @@ class SectionForces:
     """Shear force and bending moment along a pin, by one way of finding them.
 
     z: of S stations, (S,) m. sections, labels: the round section and the name of the segment at
-    each. shear, moment: at T instants, (T, S) N and N m. times: (T,) s, None without a motion.
+    each. shear, moment: at T instants, (T, S) N and N m; axial, torque: the size of the axial force
+    and of the torque, likewise. times: (T,) s, None without a motion.
     basis: where the forces come from. kind: the same for programs. exact: finds the largest nominal
     stress between the stations, too, where the diagrams are polynomials.
     """
@@ -92,6 +93,8 @@ class SectionForces:
     labels: tuple[str, ...]
     shear: Floats
     moment: Floats
+    axial: Floats
+    torque: Floats
     times: Floats | None
     basis: str
     kind: ForcesKind = "even"

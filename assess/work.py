@@ -66,15 +66,24 @@ def wider(
     resists: what a check carries in proportion to, which grows with a power of the diameter of a
     solid pin.
     """
-    now, bore = 2.0 * section.outer, 2.0 * section.inner
-    if not bore or not 0.0 < utilisation < float("inf"):
-        return scaled("diameter", now, utilisation, power)
+    if not section.inner or not 0.0 < utilisation < float("inf"):
+        return scaled("diameter", 2.0 * section.outer, utilisation, power)
 
     def used(wall: float) -> float:
         return utilisation * resists(section) / resists(Circle(section.inner + wall, section.inner))
 
+    return diameter_of_wall(section, used)
+
+
+def diameter_of_wall(section: Circle, used: Callable[[float], float]) -> WorkQuantity | None:
+    """Return the diameter of a pin that would just pass with its bore as it is, as `would_pass`.
+
+    used: the utilisation by the wall of the section, m; of a solid one its radius.
+    """
     wall = would_pass(used, section.outer - section.inner)
-    return None if wall is None else WorkQuantity("diameter", bore + 2.0 * wall, "length")
+    if wall is None:
+        return None
+    return WorkQuantity("diameter", 2.0 * (section.inner + wall), "length")
 
 
 def would_pass(utilisation: Callable[[float], float], now: float) -> float | None:

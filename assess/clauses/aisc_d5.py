@@ -8,8 +8,13 @@
 b_e = 2 t + 0.63 in, at most the width beside the hole; a is the distance from the hole to the end
 of the plate. All are at ultimate load, whose factor stands for those of the load combinations.
 
-Source: AISC Design Examples 15, D.7 (docs/evidence.md), which has the strengths P_n and phi = 0.75.
-The specification, ANSI/AISC 360-16, was not read: phi = 0.90 of yielding and the numbers of its
+D5.2 demands a >= 1.33 b_e, and of a joint that turns under load a hole of at most d + 1/32 in; that
+w >= 2 b_e + d follows from b_e. A plate without these proportions is named: the strengths are for
+plates that have them.
+
+Source: AISC Design Examples 15, D.7 (docs/evidence.md), which has the strengths P_n and phi = 0.75;
+figure C-D5.1 of the commentary on ANSI/AISC 360-10, and D3 of the LRFD Specification of 1999, for
+the proportions. ANSI/AISC 360-16 was not read: phi = 0.90 of yielding and the numbers of its
 clauses are not verified.
 """
 
@@ -19,7 +24,7 @@ from dataclasses import replace
 from functools import partial
 
 from assess.check import CheckText, check
-from assess.clauses.eye import PlateEye, loaded_eyes
+from assess.clauses.eye import ROUND_OFF, PlateEye, loaded_eyes
 from assess.clauses.eye_margin import eye_margin, not_axial, strengths_of
 from assess.margin import Margin
 from assess.situation import Situation
@@ -27,9 +32,12 @@ from assess.work import Work, work
 
 RUPTURE_PHI, YIELD_PHI = 0.75, 0.90  # resistance factors; the second is not verified
 WIDTH_BEYOND_THICKNESS = 0.63 * 0.0254  # m, of b_e
+MIN_END = 1.33  # of b_e
+MAX_PLAY = 0.0254 / 32.0  # of the hole over the pin, m
+PLAY_NEEDED = "a hole at most 1/32 in wider than the pin (D5.2: if it turns under load) at lug"
 AISC_D5_OMITS = (
-    "Not covered: forces across the plate, the proportions that D5.2 demands of plate and hole, "
-    "load combinations. phi = 0.90 of yielding is not verified against the specification."
+    "Not covered: forces across the plate, corners cut off by more than 45 degrees, load "
+    "combinations. phi = 0.90 of yielding is not verified against the specification."
 )
 
 
@@ -79,6 +87,20 @@ def gross_yielding(eye: PlateEye, yields: float, ultimate: float) -> Work:
     )  # fmt: skip
 
 
+def proportions(eye: PlateEye, connection: str) -> list[str]:
+    """What the proportions of a plate lack by D5.2; connection: its lug."""
+    short = eye.a / effective_width(eye)
+    lacking = []
+    if short < MIN_END * (1.0 - ROUND_OFF):
+        lacking.append(
+            f"an end of {MIN_END:g} b_e beyond the hole (D5.2; now {short:.3g} b_e) at lug "
+            f"{connection}"
+        )
+    if eye.bearer + MAX_PLAY < eye.hole * (1.0 - ROUND_OFF):
+        lacking.append(f"{PLAY_NEEDED} {connection}")
+    return lacking
+
+
 _FORMS = (
     ("tensile rupture", "D5.1(a)", tensile_rupture, "width"),
     ("shear rupture", "D5.1(b)", shear_rupture, "width"),
@@ -99,6 +121,8 @@ def aisc_member(text: CheckText, s: Situation) -> list[Margin]:
             continue
         other = not_axial(text, s, x)
         margins += [other] if other else []
+        named = replace(text, method="AISC proportions", clause="ANSI/AISC 360-16, D5.2")
+        margins += [named.lacks(s, need) for need in proportions(x.eye, x.connection)]
         for state, clause, strength, dimension in _FORMS:
             bears = strength is bearing
             if other and not bears:

@@ -31,7 +31,7 @@ import numpy as np
 from assess.check import CheckText, Passing, check
 from assess.margin import RATIO_DIMENSION, Margin, strength_key
 from assess.situation import SectionForces, Situation
-from assess.work import Work, scaled, wider, work
+from assess.work import Work, diameter_of_wall, scaled, wider, work
 from fea.beam.round_section import Circle
 from pinbase.arrays import Floats
 from pinbase.keys import key_part
@@ -40,8 +40,10 @@ GAMMA_M0, GAMMA_M2, GAMMA_M6_SER = 1.0, 1.25, 1.0  # recommended partial factors
 
 _CLAUSE = "EN 1993-1-8, 3.13"
 _TABLE = f"{_CLAUSE}.2, table 3.10"
-_by_forces = partial(check, clause=_TABLE, kind="clause", takes="section forces")
-_by_bands = partial(check, clause=_TABLE, kind="clause", takes="statics")
+_OMITS = 'Not covered: axial force and torque (EN 1993-1-1, 6.2.8 to 6.2.10: code "civil").'
+_BAND_OMITS = "Not covered: the plate about the hole (table 3.9), the pressure at edges."
+_by_forces = partial(check, clause=_TABLE, kind="clause", takes="section forces", omits=_OMITS)
+_by_bands = partial(check, clause=_TABLE, kind="clause", takes="statics", omits=_BAND_OMITS)
 
 
 def shear_resistance(area: Floats | float, ultimate: float) -> Floats | float:
@@ -139,7 +141,25 @@ def eurocode_shear_and_bending(text: CheckText, s: Situation) -> list[Margin]:
     sheared, bent = _sheared(forces, fu), _bent(forces, fy)
     used = np.hypot((forces.moment / bent).max(axis=1), (forces.shear / sheared).max(axis=1))
     note = "root of the sum of squares; the clause's sum is its square"
-    return [text.along(s, used[:, None], np.ones(1), note)]
+    (margin,) = [text.along(s, used[:, None], np.ones(1), note)]
+    t = int(used.argmax())
+    i, k = int((forces.moment / bent)[t].argmax()), int((forces.shear / sheared)[t].argmax())
+    M, V, sections = float(forces.moment[t, i]), float(forces.shear[t, k]), forces.sections
+    both = work(
+        "u", float(used[t]), RATIO_DIMENSION, "√(({M_Ed} / {M_Rd})² + ({F_v,Ed} / {F_v,Rd})²)",
+        **{"M_Ed": (M, "moment"), "M_Rd": (float(bent[i]), "moment"), "F_v,Ed": (V, "force"),
+           "F_v,Rd": (float(sheared[k]), "force")},
+    )  # fmt: skip
+
+    def of_wall(wall: float) -> float:
+        in_bending, in_shear = (Circle(sections[x].inner + wall, sections[x].inner) for x in (i, k))
+        W_el, W_pl = in_bending.modulus, in_bending.plastic_modulus
+        m = M / float(bending_resistance(W_el, fy, plastic=W_pl))
+        return margin.factor * math.hypot(m, V / float(shear_resistance(in_shear.area, fu)))
+
+    alike = sections[i] == sections[k]  # else there is more than one diameter
+    passing = diameter_of_wall(sections[i], of_wall) if alike else None
+    return [replace(margin, work=(both,), passing=passing)]
 
 
 @_by_forces("EN 1993 bending, replaceable", dimension="moment")
@@ -160,7 +180,8 @@ def eurocode_bearing_replaceable(text: CheckText, s: Situation) -> list[Margin]:
     return _bearing(text, s, replaceable=True) if s.replaceable else []
 
 
-@check("EN 1993 contact, replaceable", f"{_CLAUSE}.2(3)", kind="clause", takes="statics")
+@check("EN 1993 contact, replaceable", f"{_CLAUSE}.2(3)", kind="clause", takes="statics",
+       omits="Not covered: the edges of the hole, wear.")  # fmt: skip
 def eurocode_contact_replaceable(text: CheckText, s: Situation) -> list[Margin]:
     """The contact stress of a replaceable pin in lugs with a clearance, against 2.5 f_y."""
     if not s.replaceable:
@@ -179,7 +200,15 @@ def eurocode_contact_replaceable(text: CheckText, s: Situation) -> list[Margin]:
     allowed = 2.5 / GAMMA_M6_SER * np.array(strengths)[loose]
     names = tuple(s.loads.surfaces[k] for k in loose)
     margin = text.worst(s, stress, allowed, names, "the factor is the root of that on loads")
-    margins = [replace(margin, factor=math.sqrt(margin.factor))]
+    margin = replace(margin, factor=math.sqrt(margin.factor))
+    d, hole, t, E = holes[names.index(margin.at)]
+    force = float(s.across[:, s.loads.surfaces.index(margin.at)].max())
+    shown = work(
+        "σ_h", margin.demand or 0.0, "stress",
+        "0.591 × √({E} × {F} × ({d_0} − {d}) / ({d} × {d} × {t}))",
+        E=(E, "stress"), F=(force, "force"), d_0=(hole, "length"), d=(d, "length"), t=(t, "length"),
+    )  # fmt: skip
+    margins = [replace(margin, work=(shown,), passing=scaled("thickness", t, margin.used, 0.5))]
     bands = zip(s.loads.surfaces, lugs, s.across.T, strict=True)
     unknown = [
         f"{of_pin}.{key_part(name)}.clearance"

@@ -102,7 +102,7 @@ class AnalysisTable(StrictTable):
     ] = "general"
     """Which checks of strength are made of pins and lugs: textbooks and EN 1993-1-8 ("general");
     AFFDL-TR-69-42, Melcon and Hoblit, Ekvall, Cozzone ("aircraft"); ASME BTH-1 ("lifting");
-    EN 1993-1-8 and ANSI/AISC 360, D5 ("civil"). A list shows them side by side."""
+    EN 1993-1-8, EN 1993-1-1 and ANSI/AISC 360, D5 ("civil"). A list shows them side by side."""
     design_factor: Annotated[Number, Field(ge=1.0)] | None = None
     """Design factor N_d of ASME BTH-1 for the code "lifting"; the standard gives it by the design
     category of the device."""
