@@ -127,7 +127,7 @@ def piece_mesh(piece: Piece, finer: float, spots: Spots = (), at_spots: float = 
 
 def _mesh(piece: Piece, size: MeshSize, spots: Spots, at_spots: float) -> SolidMesh:
     """A mesh of a piece. size: `across` is the number of elements on a quarter of a hole's edge."""
-    unit = unit_of_solid(piece.profile)
+    unit = unit_of_solid(piece.profile, piece.cuts.values())
     scaled = piece.scaled(1.0 / unit)
     finer = size.across / QUARTER_CIRCLE_ELEMENTS
     with gmsh_model(scaled.profile.name) as gmsh:

@@ -110,7 +110,7 @@ def _mesh(
     """A mesh of a pin of this size, after repair; arguments as of `solid_mesh`."""
     profile = pin.profile
     _require_reasonable(profile, size)
-    unit = unit_of_solid(profile)
+    unit = unit_of_solid(profile, pin.cuts.values())
     pin, profile = pin.scaled(1.0 / unit), profile.scaled(1.0 / unit)
     edges = tuple(z / unit for z in edges)
     with gmsh_model(pin.name) as gmsh:
