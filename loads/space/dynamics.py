@@ -20,12 +20,10 @@ from loads.space.conditions import axes_of
 from loads.space.linkage import SpaceLinkage
 from loads.space.motion import SpaceMotion
 from loads.space.sharing import (
-    STIFFNESS_RATIO,
     RedundantSets,
+    others,
     redundant_sets,
-    scaled,
     shared,
-    unstated,
 )
 from loads.space.teeth import pitch_points, tooth_forces
 from pinbase.arrays import Complex, Floats
@@ -43,8 +41,8 @@ class SpaceDynamics:
     friction: (T, J) N m, couple of the base on the moving body about the axis.
     loads: what acts besides gravity.
     shared: joints whose wrenches follow from sharing rules or stiffness.
-    range: the reactions with each of the links whose stiffness is not stated a tenth and ten times
-    as stiff, by link and factor; empty where that does not matter.
+    range: the reactions with other stiffness of links of which none is stated, by what is
+    different; empty where that does not matter.
     """
 
     reactions: Reactions
@@ -53,7 +51,7 @@ class SpaceDynamics:
     motion: SpaceMotion
     loads: tuple[SpaceLoad, ...]
     shared: tuple[str, ...]
-    range: dict[tuple[str, float], Reactions]
+    range: dict[str, Reactions]
 
     @property
     def power(self) -> Floats:
@@ -134,11 +132,11 @@ class _Balance:
         required = self._required()
         f = self.motion.force_factors.solve_transposed(required)
         reactions, drive, friction = self._solved(self.linkage, f, case, timed)
-        variants = {}
-        for body in unstated(self.linkage, self.shared) if self.motion.force_factors.spare else ():
-            for factor in (1.0 / STIFFNESS_RATIO, STIFFNESS_RATIO):
-                other = scaled(self.linkage, body, factor)
-                variants[body, factor] = self._solved(other, f, case, timed)[0]
+        spare = self.motion.force_factors.spare
+        variants = {
+            text: self._solved(other, f, case, timed)[0]
+            for text, other in (others(self.linkage, self.shared) if spare else {}).items()
+        }
         return SpaceDynamics(
             reactions, drive, friction, self.motion, self.loads, self.shared, variants
         )

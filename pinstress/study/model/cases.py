@@ -302,6 +302,7 @@ def _in_space(
             solved.reactions,
             note=solved.note,
             space=solved,
+            shared=_each_in_space(solved),
             range=over_range(study, name, case, lambda which, size: solve(which, size).reactions),
             impulse=with_impulse(case, lambda which, size: solve(which, size).reactions),
         )
@@ -318,7 +319,12 @@ def _in_space(
         solve_space=moved.solve,
         peaks=solved.peaks,
         moving=moving,
+        shared=_each_in_space(solved),
     )
+
+
+def _each_in_space(solved: InSpace) -> tuple[tuple[str, CaseLoads], ...]:
+    return tuple((what, CaseLoads(r, space=solved)) for what, r in solved.others.items())
 
 
 def _require_drives(mechanism: AnyLinkage) -> None:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import chain
 
 import numpy as np
@@ -40,6 +40,7 @@ class InSpace:
     ground: inertia by the motion of the ground, if that moves.
     note: how the loads came about.
     peaks, efforts: over the whole motion, with every drive's work at the instants.
+    others: the reactions with other stiffness of links, by what is different.
     """
 
     dynamics: SpaceDynamics
@@ -49,6 +50,7 @@ class InSpace:
     note: str = ""
     peaks: PeakForces | None = None
     efforts: tuple[Effort, ...] | None = None
+    others: Mapping[str, Reactions] = field(default_factory=dict)
 
     @property
     def gravity(self) -> Floats:
@@ -84,19 +86,17 @@ def _at_pins(
     dynamics: SpaceDynamics, pins: dict[str, SpacePin], ground: GroundInertia | None, note: str
 ) -> InSpace:
     """Return the reactions of the connections, with the axes of their pins."""
-    r, motion = dynamics.reactions, dynamics.motion
-    which = [pin.joint for pin in pins.values()]
+    motion, which = dynamics.motion, [pin.joint for pin in pins.values()]
     turns = [motion.rotation(pin.carrier) @ pin.axes for pin in pins.values()]
-    reactions = Reactions(
-        r.case,
-        r.times,
-        tuple(pins),
-        tuple(r.bodies[k] for k in which),
-        r.forces[:, which],
-        r.moments[:, which],
-        np.stack(turns, axis=1),
-    )
-    return InSpace(dynamics, pins, reactions, ground, note)
+    turn = np.stack(turns, axis=1)
+
+    def of_pins(r: Reactions) -> Reactions:
+        bodies = tuple(r.bodies[k] for k in which)
+        forces, moments = r.forces[:, which], r.moments[:, which]
+        return Reactions(r.case, r.times, tuple(pins), bodies, forces, moments, turn)
+
+    others = {text: of_pins(r) for text, r in dynamics.range.items()}
+    return InSpace(dynamics, pins, of_pins(dynamics.reactions), ground, note, others=others)
 
 
 @dataclass(frozen=True)

@@ -37,6 +37,9 @@ def of_space(mechanism: SpaceMechanismTable) -> Iterator[Wrong]:
                 text = f"{key}: joint {names[connection]} has this connection too; rename one"
                 yield Wrong(text, code="duplicate-name")
             names[connection] = name
+    for name in mechanism.link_stiffness:
+        where = f"mechanism.link_stiffness.{key_part(name)}"
+        yield from known_name(where, "body", name, mechanism.body)
     known = partial(known_names, mechanism, "mechanism")
     yield from known("joint.fixed_in joint.connections body.welded_to", "body", bodies)
     yield from known("body.bar.joints drive.between spring.joints", "joint", mechanism.joint)

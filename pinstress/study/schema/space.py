@@ -12,7 +12,12 @@ from loads.space.linkage import RIGHT_ANGLE_TOLERANCE
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.drives import LawTable, require_few_turns
 from pinstress.study.schema.forces import LineLawTable, TorsionLawTable
-from pinstress.study.schema.mechanism import BarTable, Ratios, require_single_mass
+from pinstress.study.schema.mechanism import (
+    BarTable,
+    LinkStiffnessTable,
+    Ratios,
+    require_single_mass,
+)
 from pinstress.study.schema.types import (
     BY_NAME_OR_PLACE,
     Acceleration,
@@ -162,14 +167,36 @@ class SpaceBarTable(BarTable):
 
     @model_validator(mode="after")
     def _known_depth(self) -> "SpaceBarTable":
-        if (self.section is None) != (self.depth_along is None) or not any(
-            self.depth_along or (1.0,)
-        ):
-            raise ArgumentError(
-                "a rectangular bar needs depth_along = [x, y, z], the direction of its depth; a "
-                "round one has none",
-                "give-both",
-            )
+        _require_depth("bar", self.section, self.depth_along)
+        return self
+
+
+def _require_depth(
+    what: str, section: tuple[float, float] | None, depth_along: Direction | None
+) -> None:
+    """Raise ArgumentError where a rectangular section does not say where its depth is."""
+    if (section is None) != (depth_along is None) or not any(depth_along or (1.0,)):
+        raise ArgumentError(
+            f"a rectangular {what} needs depth_along = [x, y, z], the direction of its depth; a "
+            "round one has none",
+            "give-both",
+        )
+
+
+class SpaceLinkStiffnessTable(LinkStiffnessTable):
+    """The section of a link, for its stiffness where joints are redundant; of a `bar` it is that of
+    the bar.
+    """
+
+    section: tuple[PositiveLength, PositiveLength] | None = None
+    """Section of a rectangular link: [depth, width]."""
+    depth_along: Direction | None = None
+    """Direction of the depth of a rectangular link as drawn; its part across the line from the
+    centre of mass to a joint counts."""
+
+    @model_validator(mode="after")
+    def _known_depth(self) -> "SpaceLinkStiffnessTable":
+        _require_depth("link", self.section, self.depth_along)
         return self
 
 
@@ -366,8 +393,11 @@ class SpaceMechanismTable(StrictTable):
     torsion_spring: dict[str, SpaceTorsionSpringTable] = {}
     """Torsion springs and dampers by name; they act in all cases."""
     sharing: list[SpaceSharingTable] = []
-    """Redundant connections, and how they share their load. Default: as all links of one section
-    would, with the range over links a tenth and ten times as stiff."""
+    """Redundant connections, and how they share their load. Default: by the stiffness of links."""
+    link_stiffness: dict[str, SpaceLinkStiffnessTable] = {}
+    """Sections of links, by body, by which they share what statics and `sharing` leave open. Those
+    of which none is stated are as stiff as the mean of the others, and rows have a range over each
+    of them a tenth and ten times as stiff."""
 
     _listed = field_validator("drive", mode="before")(one_or_several)
 

@@ -26,6 +26,7 @@ from loads.space.linkage import (
     SpaceLinkage,
     Vector,
 )
+from loads.space.stiffness import LinkStiffness
 from pinbase.arrays import Floats
 from pinbase.keys import key_part
 from pinstress.study.model.clevis import middle_of
@@ -36,6 +37,7 @@ from pinstress.study.model.mechanism.masses import (
     friction_circle,
     pin_mass,
 )
+from pinstress.study.model.mechanism.stiffness import RIGID, stated_stiffness
 from pinstress.study.model.pins import pin
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.file import Study
@@ -112,9 +114,16 @@ def space_contradictions(study: Study) -> tuple[SpaceLinkage | None, list[Wrong]
                 Sharing(tuple(rule.connections), tuple(rule.stiffness))
                 for rule in mechanism.sharing
             ),
+            stiffness=_stiffness(mechanism),
         ), []
     except LinkageError as error:
         return None, _located(mechanism, error.each)
+
+
+def _stiffness(mechanism: SpaceMechanismTable) -> dict[str, LinkStiffness]:
+    """Return the stiffness of the links that state one; floating pins do not yield."""
+    pins = {pin_body(n): RIGID for n, joint in mechanism.joint.items() if joint.fixed_in is None}
+    return stated_stiffness(mechanism.link_stiffness, mechanism.body) | pins
 
 
 def determined_in_space(study: Study, linkage: SpaceLinkage) -> Mobility:
