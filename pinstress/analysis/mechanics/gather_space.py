@@ -90,14 +90,16 @@ def _without_round_off(values: Floats) -> Floats:
     return np.where(np.abs(values) > least, values, 0.0)
 
 
-def _names(study: Study) -> list[tuple[str, bool]]:
-    """Return the name of every drive in space, and whether it slides."""
+def _names(study: Study, solved: InSpace) -> list[tuple[str, bool]]:
+    """Return the name of all that drives or holds the linkage, and whether it slides."""
+    if solved.held is not None:
+        return [*solved.held]
     return [(drive_name(drive), drive.slides) for drive in drive_tables(study)]
 
 
 def positions_in_space(study: Study, solved: InSpace) -> Floats:
     """Return the displayed positions (T, D)."""
-    return shown_positions(study, solved.dynamics.motion.drives, _names(study))
+    return shown_positions(study, solved.dynamics.motion.drives, _names(study, solved))
 
 
 def drives_in_space(study: Study, case: str, solved: InSpace) -> list[DriveTable]:
@@ -105,7 +107,7 @@ def drives_in_space(study: Study, case: str, solved: InSpace) -> list[DriveTable
     dynamics = solved.dynamics
     motion, exerted = dynamics.motion, (dynamics.drive, dynamics.power)
     course = (positions_in_space(study, solved), motion.speeds, motion.rates)
-    times, moved = dynamics.reactions.times, _names(study)
+    times, moved = dynamics.reactions.times, _names(study, solved)
     return drives(case, moved, times, course, exerted, solved.energies, solved.efforts)
 
 

@@ -9,15 +9,17 @@ from itertools import chain
 import numpy as np
 
 from loads import Effort, Law, PeakForces, Reactions, StateDrive
+from loads.forces.holding import OPENING_FORCE_TOLERANCE, require_pressed
 from loads.space.acting import MeasuredFactor, SpaceForce, SpaceLoad
 from loads.space.dynamics import SpaceDynamics, space_reactions
 from loads.space.ground import BodyMomenta, GroundInertia, body_momenta
+from loads.space.holding import held, held_as_drawn
 from loads.space.linkage import SpaceLinkage
 from loads.space.motion import SpaceCourse, space_move
 from loads.space.over_time import space_over_time
 from pinbase.arrays import Floats
 from pinstress.study.model.impulses import impulse_notes
-from pinstress.study.model.mechanism.space import SpacePin, pins_in_space
+from pinstress.study.model.mechanism.space import SpacePin, pins_in_space, space_mechanism
 from pinstress.study.model.moving_loads import Acting, MovingLoads
 from pinstress.study.model.space_forces import (
     applied_in_space,
@@ -41,6 +43,7 @@ class InSpace:
     note: how the loads came about.
     peaks, efforts: over the whole motion, with every drive's work at the instants.
     others: the reactions with other stiffness of links, by what is different.
+    held: by what it is held, and whether that slides; None: by its drives.
     """
 
     dynamics: SpaceDynamics
@@ -51,6 +54,7 @@ class InSpace:
     peaks: PeakForces | None = None
     efforts: tuple[Effort, ...] | None = None
     others: Mapping[str, Reactions] = field(default_factory=dict)
+    held: tuple[tuple[str, bool], ...] | None = None
 
     @property
     def gravity(self) -> Floats:
@@ -182,7 +186,14 @@ def at_rest_in_space(
 
     states: position, velocity and acceleration of every drive, SI.
     """
-    motion = space_move(linkage, [StateDrive(*values) for values in states], np.zeros(1))
+    hold = tuple(dict.fromkeys((case.hold or ()) if isinstance(case, StaticCase) else ()))
+    if hold and not linkage.driven:
+        motion = held_as_drawn(linkage, hold)
+    else:
+        motion = space_move(linkage, [StateDrive(*values) for values in states], np.zeros(1))
+        motion = held(motion, hold) if hold else motion
+    lengths = motion.equations.along_lengths
+    held_by = tuple(zip(hold, lengths, strict=True)) if hold else None
     springs, pins = springs_in_space(study, linkage), pins_in_space(study, linkage)
     applied = applied_in_space(study, name, case, linkage)
     note, ground = impulse_notes(study, case), ground_inertia(case)
@@ -193,6 +204,22 @@ def at_rest_in_space(
             loads[which] = load_in_space(study, name, which, case.apply[which], linkage, size)
         every: list[SpaceLoad] = [*springs, *chain.from_iterable(loads)]
         every += [ground] if ground else []
-        return _at_pins(space_reactions(name, motion, every, timed=False), pins, ground, note)
+        dynamics = space_reactions(name, motion, every, timed=False)
+        if held_by is not None:
+            _require_closed(study, dynamics, held_by)
+        return replace(_at_pins(dynamics, pins, ground, note), held=held_by)
 
     return solve
+
+
+def _require_closed(
+    study: Study, dynamics: SpaceDynamics, held_by: Sequence[tuple[str, bool]]
+) -> None:
+    """Raise LinkageError where a stop would have to pull."""
+    stops, forces = space_mechanism(study).stop, dynamics.drive
+    scale = dynamics.motion.equations.drive_scale  # forces that are comparable
+    least = OPENING_FORCE_TOLERANCE * float(np.abs(forces / scale).max())
+    for k, (name, slides) in enumerate(held_by):
+        if name in stops:
+            stop = stops[name].carries
+            require_pressed(name, stop, forces[:, k], least * float(scale[k]), slides)

@@ -6,6 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
+from loads.linkage.parts import Sign
 from loads.space.conditions import directions
 from loads.space.kinds import KINDS, Kind
 from loads.space.linkage import RIGHT_ANGLE_TOLERANCE
@@ -44,7 +45,6 @@ JointOrPoint3 = Annotated[Joint | Annotated[Point3, Tag("<point>")], BY_NAME_OR_
 MAX_COSINE_OF_SKEW = math.cos(math.radians(1.0))
 PLANAR_PARTS = {  # of a mechanism, and what stands for them in space
     "slider": 'use a joint of kind = "prismatic" between its two bodies',
-    "stop": "drives hold the linkage: drive the joint at which the stop acts",
     "gear": "give each of the two bodies a drive, their laws in the ratio of the teeth",
     "rack": "give each of the two bodies a drive, their laws in the ratio of the gear's radius",
     "point": "remove it: bodies.csv has the motion of every body",
@@ -356,6 +356,23 @@ class SpaceTorsionSpringTable(TorsionLawTable):
     """Which of its connections. Default: the only one that moves on the pin."""
 
 
+class SpaceStopTable(StrictTable):
+    """A lock or stop of a joint, which can keep it as it is in cases whose `hold` names it."""
+
+    joint: str | None = None
+    """The revolute or cylindrical joint whose angle it keeps. Give either `joint` or `slide`."""
+    slide: str | None = None
+    """The prismatic or cylindrical joint whose travel it keeps."""
+    connection: str | None = None
+    """Which of its connections. Default: the only one that moves on the pin."""
+    carries: Sign = "both"
+    """Couples about the joint's axis, right-handed, or forces along it, on the body of the
+    connection, that it can carry: "both" for a lock, one sign for a stop, which opens under the
+    other."""
+
+    _one = exactly_one("either joint or slide", "joint", "slide")
+
+
 class SpaceSharingTable(StrictTable):
     """Springs in parallel, by which redundant connections share their load."""
 
@@ -387,7 +404,9 @@ class SpaceMechanismTable(StrictTable):
     """Bodies by name, except the ground."""
     drive: list[AnySpaceDrive] = []
     """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom; none
-    for a structure."""
+    for a structure, and where `hold` names the locks of every case."""
+    stop: dict[str, SpaceStopTable] = {}
+    """Stops and locks by name."""
     spring: dict[str, SpaceSpringTable] = {}
     """Springs and dampers by name; they act in all cases."""
     torsion_spring: dict[str, SpaceTorsionSpringTable] = {}
