@@ -75,7 +75,7 @@ class SpaceDynamics:
         rubbing = np.zeros(len(motion))
         for k, joint in enumerate(linkage.joints):
             if joint.friction:
-                rubbing += self.friction[:, k] * _turning_speed(motion, k)
+                rubbing += self.friction[:, k] * turning_speed(motion, k)
         given = self.power.sum(axis=1) + power(motion, self.loads) + weight + rubbing
         return np.asarray(given - kinetic)
 
@@ -85,16 +85,18 @@ def space_reactions(
     motion: SpaceMotion,
     loads: Sequence[SpaceLoad] = (),
     timed: bool = True,
+    friction: bool = True,
 ) -> SpaceDynamics:
     """Wrenches in a driven motion under gravity, loads and friction.
 
     case: name, for messages.
     timed: whether the instants follow each other in time.
+    friction: whether joints have theirs.
 
     Raises: JammingError.
     """
     parts = [  # without their own motions, whose matrices would otherwise stay in memory
-        replace(_Balance(part, tuple(loads)).dynamics(case, timed), motion=motion)
+        replace(_Balance(part, tuple(loads), friction).dynamics(case, timed), motion=motion)
         for part in motion.parts
     ]
     whole: SpaceDynamics = joined(parts)
@@ -121,10 +123,10 @@ class _Source:
 class _Balance:
     """The balance of forces of one batch of instants."""
 
-    def __init__(self, motion: SpaceMotion, loads: tuple[SpaceLoad, ...]) -> None:
+    def __init__(self, motion: SpaceMotion, loads: tuple[SpaceLoad, ...], friction: bool) -> None:
         self.motion, self.loads = motion, loads
         self.equations, self.linkage = motion.equations, motion.linkage
-        self.sources = [*self._teeth(), *self._rubbing()]
+        self.sources = [*self._teeth(), *(self._rubbing() if friction else ())]
         self.shared = motion.mobility.shared
 
     def dynamics(self, case: str, timed: bool) -> SpaceDynamics:
@@ -206,7 +208,7 @@ class _Balance:
             for body, sign in ((joint.moving, -1.0), (joint.base, 1.0)):
                 if (b := linkage.index[body]) < len(linkage.bodies):
                     couples[:, b] += sign * axis
-            speed = _turning_speed(motion, k) * linkage.length_scale
+            speed = turning_speed(motion, k) * linkage.length_scale
             against = np.where(np.abs(speed) > MIN_TURNING_SPEED * motion.pace, -np.sign(speed), 0)
             required = self.equations.generalised(motion.pose, forces, couples)
             yield _Source(f"joint {joint.name}", True, k, joint.friction * against, required)
@@ -298,7 +300,7 @@ class _Balance:
         )
 
 
-def _turning_speed(motion: SpaceMotion, k: int) -> Floats:
+def turning_speed(motion: SpaceMotion, k: int) -> Floats:
     """Angular velocity of the moving body of joint k against its base about the axis, (T,)."""
     joint = motion.linkage.joints[k]
     axis = motion.rotation(joint.base) @ axes_of(joint)["w"]

@@ -107,8 +107,9 @@ def drives_in_space(study: Study, case: str, solved: InSpace) -> list[DriveTable
     dynamics = solved.dynamics
     motion, exerted = dynamics.motion, (dynamics.drive, dynamics.power)
     course = (positions_in_space(study, solved), motion.speeds, motion.rates)
-    times, moved = dynamics.reactions.times, _names(study, solved)
-    return drives(case, moved, times, course, exerted, solved.energies, solved.efforts)
+    times, moved, smooth = dynamics.reactions.times, _names(study, solved), solved.frictionless
+    free = smooth.drives if smooth else None
+    return drives(case, moved, times, course, exerted, solved.energies, solved.efforts, free)
 
 
 def bodies_in_space(study: Study, case: str, solved: InSpace) -> list[BodyMotion]:

@@ -31,6 +31,7 @@ from loads import (
 from loads.landing import Landing, pushes
 from loads.landing import laws as landing_laws
 from loads.space.linkage import SpaceLinkage
+from loads.space.over_time import SpaceOverTime
 from pinbase.arrays import Floats
 from pinbase.keys import key_part
 from pinstress.study.model.given import given_forces
@@ -91,7 +92,7 @@ class CaseLoads:
     solve_space: Callable[[Floats], InSpace] | None = None
     peaks: PeakForces | None = None
     over: OverTime | None = None
-    frictionless: OverTime | None = None
+    frictionless: OverTime | SpaceOverTime | None = None
     moving: MovingLoads | None = None
     landing: Landing | None = None
     ground: Grounded | None = None
@@ -318,6 +319,7 @@ def _in_space(
         space=solved,
         solve_space=moved.solve,
         peaks=solved.peaks,
+        frictionless=solved.frictionless,
         moving=moving,
         shared=_each_in_space(solved),
     )

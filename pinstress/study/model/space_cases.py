@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import chain
 
 import numpy as np
 
 from loads import Effort, Law, PeakForces, Reactions, StateDrive
 from loads.forces.holding import OPENING_FORCE_TOLERANCE, require_pressed
-from loads.space.acting import MeasuredFactor, SpaceForce, SpaceLoad
+from loads.space.acting import SpaceLoad
+from loads.space.corners import corners_of
 from loads.space.dynamics import SpaceDynamics, space_reactions
 from loads.space.ground import BodyMomenta, GroundInertia, body_momenta
 from loads.space.holding import held, held_as_drawn
 from loads.space.linkage import SpaceLinkage
 from loads.space.motion import SpaceCourse, space_move
-from loads.space.over_time import space_over_time
+from loads.space.over_time import SpaceOverTime, space_over_time
 from pinbase.arrays import Floats
 from pinstress.study.model.impulses import impulse_notes
 from pinstress.study.model.mechanism.space import SpacePin, pins_in_space, space_mechanism
@@ -42,6 +44,7 @@ class InSpace:
     ground: inertia by the motion of the ground, if that moves.
     note: how the loads came about.
     peaks, efforts: over the whole motion, with every drive's work at the instants.
+    frictionless: the same without friction, where there is any.
     others: the reactions with other stiffness of links, by what is different.
     held: by what it is held, and whether that slides; None: by its drives.
     """
@@ -53,6 +56,7 @@ class InSpace:
     note: str = ""
     peaks: PeakForces | None = None
     efforts: tuple[Effort, ...] | None = None
+    frictionless: SpaceOverTime | None = None
     others: Mapping[str, Reactions] = field(default_factory=dict)
     held: tuple[tuple[str, bool], ...] | None = None
 
@@ -116,11 +120,13 @@ class MovedInSpace:
     pins: dict[str, SpacePin]
     ground: GroundInertia | None
     note: str
+    friction: bool = True
 
     def solve(self, times: Floats) -> InSpace:
         """Return the case at times (T,) s."""
         loads = (*self.loads, *((self.ground,) if self.ground else ()))
-        dynamics = space_reactions(self.name, self.course.at(times), loads)
+        at = self.course.at(times)
+        dynamics = space_reactions(self.name, at, loads, friction=self.friction)
         return _at_pins(dynamics, self.pins, self.ground, self.note)
 
     def acting(self, times: Floats) -> Acting:
@@ -128,16 +134,10 @@ class MovedInSpace:
         solved = self.solve(times)
         return solved.reactions, solved.accelerations
 
-    @property
+    @cached_property
     def corners(self) -> Floats:
         """Times at which a force may jump or has a kink, s."""
-        course, out = self.course, [*self.course.corners]
-        for load in self.loads:
-            if isinstance(load, SpaceForce):
-                out += [load.begin, load.end]
-                if isinstance(load.times, MeasuredFactor) and load.times.measured is None:
-                    out += load.times.table.x
-        return np.unique([t for t in out if course.first < t < course.last])
+        return corners_of(self.course, self.loads)
 
     def solved(self, samples: int, extremes: bool) -> InSpace:
         """Return the case at equally spaced instants; where asked, with its extremes."""
@@ -145,11 +145,20 @@ class MovedInSpace:
         if not extremes:
             self.solve(self.course.path.nodes)
             return solved
-        over = space_over_time(self.course, self.solve, solved, self.corners)
+        over = self._over(solved)
+        free = None
+        if any(joint.friction for joint in self.course.space.linkage.joints):
+            smooth = replace(self, friction=False)
+            free = smooth._over(smooth.solve(solved.dynamics.motion.times))
         note = self.note
         if over.violation > POWER_BALANCE:
             note += f" The balance of power is violated by {over.violation:.1e} of the largest."
-        return replace(solved, peaks=over.peaks, efforts=over.drives, note=note.strip())
+        return replace(
+            solved, peaks=over.peaks, efforts=over.drives, frictionless=free, note=note.strip()
+        )
+
+    def _over(self, samples: InSpace) -> SpaceOverTime:
+        return space_over_time(self.course, self.solve, samples, self.corners)
 
 
 def motion_in_space(
