@@ -45,8 +45,10 @@ JointOrPoint3 = Annotated[Joint | Annotated[Point3, Tag("<point>")], BY_NAME_OR_
 MAX_COSINE_OF_SKEW = math.cos(math.radians(1.0))
 PLANAR_PARTS = {  # of a mechanism, and what stands for them in space
     "slider": 'use a joint of kind = "prismatic" between its two bodies',
-    "gear": "give each of the two bodies a drive, their laws in the ratio of the teeth",
-    "rack": "give each of the two bodies a drive, their laws in the ratio of the gear's radius",
+    "gear": "give each of the two bodies a drive, their laws in the ratio of the teeth, and load "
+    "both with the force between the teeth, which drives do not exert on bearings",
+    "rack": "give each of the two bodies a drive, their laws in the ratio of the gear's radius, "
+    "and load both with the force between the teeth, which drives do not exert on bearings",
     "point": "remove it: bodies.csv has the motion of every body",
 }
 
