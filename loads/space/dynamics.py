@@ -43,6 +43,7 @@ class SpaceDynamics:
     shared: joints whose wrenches follow from sharing rules or stiffness.
     range: the reactions with other stiffness of links of which none is stated, by what is
     different; empty where that does not matter.
+    weakest: (T,) smallest over largest pivot of the equations, which is tiny near a dead point.
     """
 
     reactions: Reactions
@@ -52,11 +53,20 @@ class SpaceDynamics:
     loads: tuple[SpaceLoad, ...]
     shared: tuple[str, ...]
     range: dict[str, Reactions]
+    weakest: Floats
 
     @property
     def power(self) -> Floats:
         """Power of every drive, (T, D) W."""
         return self.drive * self.motion.speeds
+
+    @property
+    def condition(self) -> tuple[float, float]:
+        """Condition number of the equations where they are weakest, and the time of that, s."""
+        k = int(self.weakest.argmin())
+        at = self.motion[k : k + 1]
+        J = at.equations.jacobian(at.pose)[0]
+        return float(np.linalg.cond(J)), float(at.times[0])
 
     @cached_property
     def imbalance(self) -> Floats:
@@ -140,7 +150,14 @@ class _Balance:
             for text, other in (others(self.linkage, self.shared) if spare else {}).items()
         }
         return SpaceDynamics(
-            reactions, drive, friction, self.motion, self.loads, self.shared, variants
+            reactions,
+            drive,
+            friction,
+            self.motion,
+            self.loads,
+            self.shared,
+            variants,
+            self.motion.force_factors.weakest,
         )
 
     def _solved(

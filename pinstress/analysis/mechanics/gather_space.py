@@ -18,6 +18,7 @@ from pinstress.study.schema.drives import drive_name
 from reports.data.mechanics import DriveEffort, DriveTable
 from reports.data.motion import BodyMotion
 from reports.data.skeleton import Skeleton
+from reports.format.numbers import engineering
 
 NEGLIGIBLE_RANGE = 1e-3  # of the largest force of the case: a smaller range is not reported
 ROUND_OFF = 1e-12  # of the largest of all drives
@@ -160,8 +161,20 @@ def skeleton_in_space(study: Study, case: str, solved: InSpace) -> Skeleton:
 
 def note_in_space(study: Study, solved: InSpace) -> str:
     """Return the note of a case: its impulses, what its forces depend on, and what is left out."""
-    parts = solved.note, _range(study, solved), NO_TABLES, _no_bodies(study, solved)
-    return " ".join(filter(None, parts))
+    told = solved.note, _range(study, solved), _posture(solved)
+    return " ".join(filter(None, (*told, NO_TABLES, _no_bodies(study, solved))))
+
+
+def _posture(solved: InSpace) -> str:
+    """Return sentences on how near the linkage comes to a dead point, and on the power balance."""
+    condition, at = solved.dynamics.condition
+    number = engineering(condition, 3)
+    if solved.violation is None:
+        return f"Condition number {number}."
+    return (
+        f"Maximum condition number {number} at {engineering(at)} s; power balance error "
+        f"{solved.violation:.1e}."
+    )
 
 
 def _range(study: Study, solved: InSpace) -> str:

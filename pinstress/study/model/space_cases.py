@@ -47,6 +47,7 @@ class InSpace:
     frictionless: the same without friction, where there is any.
     others: the reactions with other stiffness of links, by what is different.
     held: by what it is held, and whether that slides; None: by its drives.
+    violation: of the power balance over the whole motion, of the largest power of a drive.
     """
 
     dynamics: SpaceDynamics
@@ -59,6 +60,7 @@ class InSpace:
     frictionless: SpaceOverTime | None = None
     others: Mapping[str, Reactions] = field(default_factory=dict)
     held: tuple[tuple[str, bool], ...] | None = None
+    violation: float | None = None
 
     @property
     def gravity(self) -> Floats:
@@ -154,7 +156,12 @@ class MovedInSpace:
         if over.violation > POWER_BALANCE:
             note += f" The balance of power is violated by {over.violation:.1e} of the largest."
         return replace(
-            solved, peaks=over.peaks, efforts=over.drives, frictionless=free, note=note.strip()
+            solved,
+            peaks=over.peaks,
+            efforts=over.drives,
+            frictionless=free,
+            violation=over.violation,
+            note=note.strip(),
         )
 
     def _over(self, samples: InSpace) -> SpaceOverTime:

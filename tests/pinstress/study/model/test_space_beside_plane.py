@@ -8,7 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.pinstress.study.model.test_space import solved
+from pinstress import load_study
+from pinstress.analysis.mechanics.gather_space import note_in_space
+from pinstress.analysis.plan import all_loads
+from tests.pinstress.study.model.test_space import solved, written
 
 FOUR_BAR = """
 title = "A four-bar"
@@ -141,3 +144,16 @@ def test_a_linkage_of_parallel_axes_is_that_in_the_plane(tmp_path: Path) -> None
     assert plane.over is not None
     assert space.space.efforts is not None
     assert space.space.efforts[0].rms == pytest.approx(plane.over.drives[0].rms, rel=1e-6)
+
+
+def test_the_note_says_how_near_the_linkage_comes_to_a_dead_point(tmp_path: Path) -> None:
+    """The crank turns towards the line of coupler and rocker, where it cannot drive them."""
+    study = load_study(written(tmp_path, _in_space(FOUR_BAR)))
+    found = all_loads(study, ["move"])["move"].space
+    assert found is not None
+    condition, at = found.dynamics.condition
+    assert condition > 5.0
+    assert at in found.dynamics.motion.times
+    note = note_in_space(study, found)
+    assert f"Maximum condition number {condition:.3g} at " in note
+    assert re.search(r"power balance error \d\.\de-\d\d", note)
