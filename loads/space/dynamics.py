@@ -73,7 +73,12 @@ class SpaceDynamics:
         """Power of drives, loads and gravity less the rate of the kinetic energy and less what
         friction takes, (T,) W; zero but for round-off.
         """
-        motion = self.motion
+        slices = self.motion.equations.parts(len(self.motion))
+        parts = zip(self.motion.parts, slices, strict=True)
+        return np.concatenate([self._imbalance(motion, part) for motion, part in parts])
+
+    def _imbalance(self, motion: SpaceMotion, part: slice) -> Floats:
+        """The same of the instants of a part, which are those of `motion`."""
         linkage, velocities = motion.linkage, motion.velocities
         v, a = velocities.velocity[:, :-1], motion.accelerations.velocity[:, :-1]
         w, rate = velocities.spin[:, :-1], motion.accelerations.spin[:, :-1]
@@ -85,8 +90,8 @@ class SpaceDynamics:
         rubbing = np.zeros(len(motion))
         for k, joint in enumerate(linkage.joints):
             if joint.friction:
-                rubbing += self.friction[:, k] * turning_speed(motion, k)
-        given = self.power.sum(axis=1) + power(motion, self.loads) + weight + rubbing
+                rubbing += self.friction[part, k] * turning_speed(motion, k)
+        given = self.power[part].sum(axis=1) + power(motion, self.loads) + weight + rubbing
         return np.asarray(given - kinetic)
 
 
