@@ -42,7 +42,7 @@ from reports.text.overview import actions, decisions, why
 from reports.text.summary import ALL_CONVERGED, caveats
 
 MAX_PEAKS = 5  # pins whose largest stress the page tells
-MAX_UNKNOWNS = 6  # rows of the table of what is open
+MAX_NAMED_CASES = 6  # in the line on the study; of more cases it says the number
 LABEL_AT_END = 12.0  # per cent of the axis: nearer to its left end, the label begins at its line
 LABEL_WIDTH = 20.0  # of "1.5 required", per cent of the axis: no tick is written so near to it
 MAX_CHECKS = 1  # with one need, of a row of the matrix, by name
@@ -98,7 +98,7 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "command": steps.command,
         "curve": draw_factor_curve(lines[0], results.units.length) if lines else None,
         "accuracy": [*_accurate(lines, results), *certainty(lines), *measure_first(unknown, lines)],
-        "unknowns": [_unknown(x, results, lines) for x in unknown[:MAX_UNKNOWNS]],
+        "unknowns": [_unknown(x, results, lines) for x in unknown],
         "caveats": _caveats(results, lines, formulas=not matrix),
     }
 
@@ -153,7 +153,7 @@ def _about(results: Results, pins: Sequence[str]) -> str:
         if strength:
             text += f", yield strength {engineering(strength)} {results.units.stress}"
         parts.append(text)
-    few = len(cases) <= MAX_UNKNOWNS
+    few = len(cases) <= MAX_NAMED_CASES
     named = f"case{'s' * (len(cases) != 1)} {', '.join(cases)}" if few else f"{len(cases)} cases"
     parts.append(named)
     if (required := common_factor(results.pins)) is not None:
