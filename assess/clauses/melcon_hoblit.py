@@ -9,8 +9,8 @@
 
 R_a and R_tr are the axial and the transverse part of the force over what the lug carries of each.
 The efficiency factors are those of the method's figures, which no formula gives: the study states
-them. They hold for the width over the bore at which they were read, so that of the lug only another
-thickness is said to pass.
+them. They hold for the width over the bore at which they were read: what would just pass is named
+as a thickness.
 
 The study has one ultimate and one yield strength of a material; those across the grain (F_tux,
 F_tyx) are to be stated there where they are lower.
