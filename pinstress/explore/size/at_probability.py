@@ -19,7 +19,7 @@ from scipy.special import ndtri
 from pinbase.keys import key_part
 from pinbase.processes.pool import Progress
 from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE
-from pinstress.explore.reliability.designs import SolvedDesigns, random_numbers
+from pinstress.explore.reliability.designs import SolvedDesigns, for_values, random_numbers
 from pinstress.explore.reliability.form import (
     NOISY_CLOSENESS,
     SMOOTH_CLOSENESS,
@@ -77,7 +77,7 @@ def factors_at(
     """
     parameters, space = random_numbers(study)
     laws = {path for p in parameters for path in p.number.paths}
-    described = without_strength_ranges(study, laws)
+    described = without_strength_ranges(for_values(study), laws)
     out: dict[Row, float] = {}
     for pin in pins:
         progress(f"pin {pin}, factor at {probability:g}", 0.95)

@@ -103,8 +103,12 @@ def lighten(
 
 
 def _run(study: Study, pins: list[str], jobs: int) -> tuple[Results, dict[str, CaseLoads]]:
-    """Run pins without what only explains their rows; the results and the loads."""
-    plan = replace(prepare(study, pins=pins), explained=False)
+    """Run pins for their factors, without what only explains their rows; the results and the
+    loads.
+    """
+    plan = prepare(study, pins=pins)
+    requirement = replace(plan.requirement, goal="value")
+    plan = replace(plan, requirement=requirement, explained=False)
     return solve(plan, jobs=jobs), plan.loads
 
 
