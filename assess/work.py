@@ -93,17 +93,15 @@ def would_pass(utilisation: Callable[[float], float], now: float) -> float | Non
     utilisation: as a function of the dimension; it falls as this grows.
     now: the present value.
     """
-    from scipy.optimize import brentq  # where it is needed: its import takes long
-
     step = STEP_RATIO if utilisation(now) > 1.0 else 1.0 / STEP_RATIO
     last = now
     while now / MAX_CHANGE <= last <= now * MAX_CHANGE:
         following = last * step
         if (utilisation(following) > 1.0) != (step > 1.0):
             low, high = sorted((last, following))
-            root: float = brentq(
-                lambda x: utilisation(x) - 1.0, low, high, rtol=PASSING_TOLERANCE, xtol=1e-12
-            )
-            return root * (1.0 + PASSING_TOLERANCE)
+            while high - low > PASSING_TOLERANCE * high:  # SciPy takes long to import
+                middle = 0.5 * (low + high)
+                low, high = (middle, high) if utilisation(middle) > 1.0 else (low, middle)
+            return high
         last = following
     return None

@@ -124,7 +124,7 @@ class CutPin:
         """
         if self.revolved:
             return self.profile.volume
-        unit = unit_of_solid(self.profile)
+        unit = unit_of_solid(self.profile, self.cuts.values())
         cut = self.scaled(1.0 / unit)
         with gmsh_model(self.name) as gmsh:
             solid = cut_solid(gmsh, cut.profile, cut.cuts)

@@ -205,8 +205,7 @@ def named_parts(
         if deviations[best] > MAX_CURVE_DEVIATION * size:
             raise MeshError(
                 f"pin {pin.name}: face {face} of gmsh's solid matches no surface of the pin; look "
-                "for surfaces that just touch, or for a mouth_radius above a quarter of its hole's "
-                "diameter",
+                "for surfaces that just touch",
                 "surface-unmatched",
             )
         named.setdefault(known[best][0], []).append(int(face))

@@ -299,14 +299,11 @@ def size(
     wished = Wishes(**{field.name: options.pop(field.name) for field in fields(Wishes)})
     if wished.given and not least_weight:
         raise InputError(f"{wished.given[0]} needs --least-weight", code="needs-least-weight")
-    if least_weight and options["resume"]:
-        raise InputError("--resume is not for --least-weight", code="contradiction")
     if least_weight and connection is not None:
         raise InputError("--scheduler is not for --least-weight", code="contradiction")
     goal = require_wish(loaded, fos, metres)
     if least_weight:
         aim = require_aim(goal, wished, metres)
-        del options["resume"]
         return lighten_and_write(loaded, aim, probability=wished.probability, **options)
     return size_and_write(loaded, goal, SizeOptions(connection=connection, **options))
 

@@ -31,6 +31,7 @@ from loads import (
 from loads.landing import Landing, pushes
 from loads.landing import laws as landing_laws
 from loads.space.linkage import SpaceLinkage
+from loads.space.over_time import SpaceOverTime
 from pinbase.arrays import Floats
 from pinbase.keys import key_part
 from pinstress.study.model.given import given_forces
@@ -91,7 +92,7 @@ class CaseLoads:
     solve_space: Callable[[Floats], InSpace] | None = None
     peaks: PeakForces | None = None
     over: OverTime | None = None
-    frictionless: OverTime | None = None
+    frictionless: OverTime | SpaceOverTime | None = None
     moving: MovingLoads | None = None
     landing: Landing | None = None
     ground: Grounded | None = None
@@ -302,6 +303,7 @@ def _in_space(
             solved.reactions,
             note=solved.note,
             space=solved,
+            shared=_each_in_space(solved),
             range=over_range(study, name, case, lambda which, size: solve(which, size).reactions),
             impulse=with_impulse(case, lambda which, size: solve(which, size).reactions),
         )
@@ -317,8 +319,14 @@ def _in_space(
         space=solved,
         solve_space=moved.solve,
         peaks=solved.peaks,
+        frictionless=solved.frictionless,
         moving=moving,
+        shared=_each_in_space(solved),
     )
+
+
+def _each_in_space(solved: InSpace) -> tuple[tuple[str, CaseLoads], ...]:
+    return tuple((what, CaseLoads(r, space=solved)) for what, r in solved.others.items())
 
 
 def _require_drives(mechanism: AnyLinkage) -> None:

@@ -72,15 +72,16 @@ def of_its_cases(table: StudyTable, mechanism: AnyMechanism) -> Iterator[Wrong]:
     """Yield the references of cases to what the mechanism does not have."""
     moves = all(d.moves for d in mechanism.drive)
     drives = [drive_name(drive) for drive in mechanism.drive]
-    holders = dict.fromkeys(drives)
+    holders, what_holds = dict.fromkeys([*drives, *mechanism.stop]), "drive or stop"
     positions = dict.fromkeys(drives)
     if isinstance(mechanism, MechanismTable):
         holders = dict.fromkeys([*drives, *mechanism.slider, *mechanism.stop])
+        what_holds = "drive, slider or stop"
         positions = dict.fromkeys([*mechanism.slider, *drives])
     else:
         yield from cases_in_space(table)
     known = partial(known_names, table, "")
-    yield from known("case.hold", "drive, slider or stop", holders)
+    yield from known("case.hold", what_holds, holders)
     yield from known("case.apply.body", "body", mechanism.body)
     yield from known(LOADED_JOINT_PATHS, "joint", mechanism.joint)
     what = "drive or slider" if mechanism.dimension == 2 else "drive"

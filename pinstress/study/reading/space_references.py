@@ -8,7 +8,6 @@ from functools import partial
 from pinbase.keys import key_part
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.names import known_name, known_names, two_bodies
-from pinstress.study.schema.cases import StaticCase
 from pinstress.study.schema.landing import AtWheel
 from pinstress.study.schema.shown import as_text, listed
 from pinstress.study.schema.space import (
@@ -37,6 +36,9 @@ def of_space(mechanism: SpaceMechanismTable) -> Iterator[Wrong]:
                 text = f"{key}: joint {names[connection]} has this connection too; rename one"
                 yield Wrong(text, code="duplicate-name")
             names[connection] = name
+    for name in mechanism.link_stiffness:
+        where = f"mechanism.link_stiffness.{key_part(name)}"
+        yield from known_name(where, "body", name, mechanism.body)
     known = partial(known_names, mechanism, "mechanism")
     yield from known("joint.fixed_in joint.connections body.welded_to", "body", bodies)
     yield from known("body.bar.joints drive.between spring.joints", "joint", mechanism.joint)
@@ -58,6 +60,12 @@ def of_space(mechanism: SpaceMechanismTable) -> Iterator[Wrong]:
     for name, torsion in mechanism.torsion_spring.items():
         where = f"mechanism.torsion_spring.{key_part(name)}.joint"
         yield from _moved(where, mechanism, torsion.joint, torsion.connection, False)
+    for name, stop in mechanism.stop.items():
+        where = f"mechanism.stop.{key_part(name)}"
+        if stop.joint is not None:
+            yield from _moved(f"{where}.joint", mechanism, stop.joint, stop.connection, False)
+        elif stop.slide is not None:
+            yield from _moved(f"{where}.slide", mechanism, stop.slide, stop.connection, True)
 
 
 def _moved(
@@ -91,12 +99,6 @@ def cases_in_space(table: StudyTable) -> Iterator[Wrong]:
                 f"case.{key_part(name)}: kind {case.kind!r} needs a linkage in a plane; "
                 "in space apply the "
                 'forces in a case of kind "static"'
-            )
-            yield Wrong(text, code="wrong-dimension")
-        if isinstance(case, StaticCase) and case.hold is not None:
-            text = (
-                f"case.{key_part(name)}.hold: in space all drives hold; remove it, or "
-                "drive what holds"
             )
             yield Wrong(text, code="wrong-dimension")
     if table.motion_check is not None:

@@ -4,6 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
+from loads.linkage.parts import Sign
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.drives import RotaryDrive, SliderDrive
 from pinstress.study.schema.forces import (
@@ -254,7 +255,7 @@ class StopTable(StrictTable):
 
     bodies: tuple[str, str]
     """[base, body]; the base may be "ground"."""
-    carries: Literal["both", "positive", "negative"] = "both"
+    carries: Sign = "both"
     """Couples on the body, counter-clockwise positive, that it can carry: "both" for a lock, one
     sign for a stop, which opens under the other."""
 
