@@ -10,7 +10,7 @@ from typing import Any
 from skfem import MeshTet1
 
 from geometry.mesh.cut_pin import CutPin
-from geometry.mesh.cut_solid import cut_solid, grade, name_faces
+from geometry.mesh.cut_solid import cut_solid, grade, name_faces, named_parts
 from geometry.mesh.elements import Element
 from geometry.mesh.expected import require_few
 from geometry.mesh.gmsh_session import MeshError, formula_size, gmsh_model, set_size
@@ -124,9 +124,9 @@ def _mesh(
         more: list[int] = []
         if pin.cuts:
             cut_solid(gmsh, profile, pin.cuts)
-            surfaces = name_faces(gmsh, profile, pin.cuts)
-            far = _far(profile, size)
-            more = grade(gmsh, pin.cuts, surfaces, far, size.across, size.growth)
+            parts = named_parts(gmsh, profile, pin.cuts)
+            surfaces, far = name_faces(parts, pin.cuts), _far(profile, size)
+            more = grade(gmsh, profile, pin.cuts, parts, far, size.across, size.growth)
         else:
             outline = meridian(profile)
             revolve(gmsh, outline)

@@ -143,7 +143,7 @@ def test_the_volume_of_a_cut(name: str) -> None:
 
 @each(
     ("size", "radius"),
-    [(0.1, 0.03), (0.1, 0.05), (0.2, 0.03), (0.2, 0.38), (0.35, 0.15), (0.35, 0.25), (0.35, 0.31)],
+    [(0.1, 0.05), (0.2, 0.38), (0.35, 0.15), (0.35, 0.31)],
 )
 def test_mouths_of_any_radius_that_fits_are_rounded(size: float, radius: float) -> None:
     """In metres OpenCASCADE failed at every third, and faces of wide holes "match no surface"."""
