@@ -20,6 +20,7 @@ from loads.space.linkage import SpaceLinkage
 from loads.space.motion import SpaceCourse, space_move
 from loads.space.over_time import SpaceOverTime, space_over_time
 from pinbase.arrays import Floats
+from pinstress.study.model.ground import Grounded
 from pinstress.study.model.impulses import impulse_notes
 from pinstress.study.model.mechanism.space import SpacePin, pins_in_space, space_mechanism
 from pinstress.study.model.moving_loads import Acting, MovingLoads
@@ -31,6 +32,7 @@ from pinstress.study.model.space_forces import (
 )
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import InstantCase, MotionCase, StaticCase
+from pinstress.study.schema.landing import GroundCase
 
 POWER_BALANCE = 1e-6  # of the largest power of a drive: a larger violation is noted
 
@@ -193,16 +195,19 @@ def moving_in_space(moved: MovedInSpace, solved: InSpace) -> MovingLoads:
 def at_rest_in_space(
     study: Study,
     name: str,
-    case: StaticCase | InstantCase,
+    case: StaticCase | InstantCase | GroundCase,
     linkage: SpaceLinkage,
     states: Sequence[tuple[float, float, float]],
+    grounded: Grounded | None = None,
 ) -> Callable[..., InSpace]:
     """Return what gives a case at one instant: `solve()` as stated, `solve(which, size)` with an
     impulse of another size (N) in the load of that number.
 
     states: position, velocity and acceleration of every drive, SI.
+    grounded: the forces of the ground, of a case that has nothing but these.
     """
-    hold = tuple(dict.fromkeys((case.hold or ()) if isinstance(case, StaticCase) else ()))
+    stated = case.hold if isinstance(case, StaticCase | GroundCase) else None
+    hold = tuple(dict.fromkeys(stated or ()))
     if hold and not linkage.driven:
         motion = held_as_drawn(linkage, hold)
     else:
@@ -211,12 +216,18 @@ def at_rest_in_space(
     lengths = motion.equations.along_lengths
     held_by = tuple(zip(hold, lengths, strict=True)) if hold else None
     springs, pins = springs_in_space(study, linkage), pins_in_space(study, linkage)
-    applied = applied_in_space(study, name, case, linkage)
-    note, ground = impulse_notes(study, case), ground_inertia(case)
+    ground: GroundInertia | None = None
+    if isinstance(case, GroundCase):
+        assert grounded is not None
+        applied, note = [grounded.loads_in_space(study, case)], grounded.note(study)
+    else:
+        applied = applied_in_space(study, name, case, linkage)
+        note, ground = impulse_notes(study, case), ground_inertia(case)
 
     def solve(which: int | None = None, size: float | None = None) -> InSpace:
         loads = list(applied)
         if which is not None:
+            assert not isinstance(case, GroundCase)
             loads[which] = load_in_space(study, name, which, case.apply[which], linkage, size)
         every: list[SpaceLoad] = [*springs, *chain.from_iterable(loads)]
         every += [ground] if ground else []
