@@ -98,13 +98,17 @@ def _at_pins(
     dynamics: SpaceDynamics, pins: dict[str, SpacePin], ground: GroundInertia | None, note: str
 ) -> InSpace:
     """Return the reactions of the connections, with the axes of their pins."""
-    motion, which = dynamics.motion, [pin.joint for pin in pins.values()]
-    turns = [motion.rotation(pin.carrier) @ pin.axes for pin in pins.values()]
-    turn = np.stack(turns, axis=1)
+    which = [pin.joint for pin in pins.values()]
+    # In batches, so that the pose of all instants does not stay in memory.
+    turns = [
+        np.stack([part.rotation(pin.carrier) @ pin.axes for pin in pins.values()], axis=1)
+        for part in dynamics.motion.parts
+    ]
+    turn = np.concatenate(turns)
 
     def of_pins(r: Reactions) -> Reactions:
-        bodies = tuple(r.bodies[k] for k in which)
-        forces, moments = r.forces[:, which], r.moments[:, which]
+        bodies, every = tuple(r.bodies[k] for k in which), which == [*range(len(r.bodies))]
+        forces, moments = (x if every else x[:, which] for x in (r.forces, r.moments))
         return Reactions(r.case, r.times, tuple(pins), bodies, forces, moments, turn)
 
     others = {text: of_pins(r) for text, r in dynamics.range.items()}
