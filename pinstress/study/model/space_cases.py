@@ -130,11 +130,14 @@ class MovedInSpace:
     note: str
     friction: bool = True
 
-    def solve(self, times: Floats) -> InSpace:
-        """Return the case at times (T,) s."""
+    def solve(self, times: Floats, variants: bool = False) -> InSpace:
+        """Return the case at times (T,) s.
+
+        variants: whether with the reactions for other stiffness of links.
+        """
         loads = (*self.loads, *((self.ground,) if self.ground else ()))
         at = self.course.at(times)
-        dynamics = space_reactions(self.name, at, loads, friction=self.friction)
+        dynamics = space_reactions(self.name, at, loads, friction=self.friction, variants=variants)
         return _at_pins(dynamics, self.pins, self.ground, self.note)
 
     def acting(self, times: Floats) -> Acting:
@@ -149,7 +152,8 @@ class MovedInSpace:
 
     def solved(self, samples: int, extremes: bool) -> InSpace:
         """Return the case at equally spaced instants; where asked, with its extremes."""
-        solved = self.solve(np.linspace(self.course.first, self.course.last, samples))
+        instants = np.linspace(self.course.first, self.course.last, samples)
+        solved = self.solve(instants, variants=True)
         if not extremes:
             self.solve(self.course.path.nodes)
             return solved
