@@ -101,17 +101,21 @@ def space_reactions(
     loads: Sequence[SpaceLoad] = (),
     timed: bool = True,
     friction: bool = True,
+    variants: bool = True,
 ) -> SpaceDynamics:
     """Wrenches in a driven motion under gravity, loads and friction.
 
     case: name, for messages.
     timed: whether the instants follow each other in time.
     friction: whether joints have theirs.
+    variants: whether with the reactions for other stiffness of links.
 
     Raises: JammingError.
     """
     parts = [  # without their own motions, whose matrices would otherwise stay in memory
-        replace(_Balance(part, tuple(loads), friction).dynamics(case, timed), motion=motion)
+        replace(
+            _Balance(part, tuple(loads), friction).dynamics(case, timed, variants), motion=motion
+        )
         for part in motion.parts
     ]
     whole: SpaceDynamics = joined(parts)
@@ -144,13 +148,13 @@ class _Balance:
         self.sources = [*self._teeth(), *(self._rubbing() if friction else ())]
         self.shared = motion.mobility.shared
 
-    def dynamics(self, case: str, timed: bool) -> SpaceDynamics:
-        """Wrenches and drive forces; `case` and `timed` as of `space_reactions`."""
+    def dynamics(self, case: str, timed: bool, variants: bool) -> SpaceDynamics:
+        """Wrenches and drive forces; arguments as of `space_reactions`."""
         required = self._required()
         f = self.motion.force_factors.solve_transposed(required)
         reactions, drive, friction = self._solved(self.linkage, f, case, timed)
-        spare = self.motion.force_factors.spare
-        variants = {
+        spare = variants and self.motion.force_factors.spare
+        range_ = {
             text: self._solved(other, f, case, timed)[0]
             for text, other in (others(self.linkage, self.shared) if spare else {}).items()
         }
@@ -161,7 +165,7 @@ class _Balance:
             self.motion,
             self.loads,
             self.shared,
-            variants,
+            range_,
             self.motion.force_factors.weakest,
         )
 

@@ -35,7 +35,7 @@ from loads.space.over_time import SpaceOverTime
 from pinbase.arrays import Floats
 from pinbase.keys import key_part
 from pinstress.study.model.given import given_forces
-from pinstress.study.model.ground import Grounded, grounded
+from pinstress.study.model.ground import Grounded, grounded, grounded_in_space
 from pinstress.study.model.impulses import (
     ImpulseLoads,
     ImpulseShare,
@@ -147,7 +147,7 @@ def case_loads(
             return CaseLoads(given_forces(study, name, case))
         assert mechanism is not None
         if isinstance(mechanism, SpaceLinkage):
-            assert isinstance(case, MotionCase | StaticCase | InstantCase)
+            assert not isinstance(case, DropCase)
             return _in_space(study, name, case, mechanism, extremes)
         if isinstance(case, MotionCase):
             return _motion(study, name, case, mechanism, extremes)
@@ -291,10 +291,18 @@ def _locked(mechanism: Linkage, hold: Sequence[str]) -> tuple[Linkage, tuple[Law
 def _in_space(
     study: Study,
     name: str,
-    case: MotionCase | StaticCase | InstantCase,
+    case: MotionCase | StaticCase | InstantCase | GroundCase,
     mechanism: SpaceLinkage,
     extremes: bool,
 ) -> CaseLoads:
+    if isinstance(case, GroundCase):
+        states = state(study, name, case, mechanism)
+        ground = grounded_in_space(study, name, case, mechanism)
+        solved = at_rest_in_space(study, name, case, mechanism, states, ground)()
+        shared = _each_in_space(solved)
+        return CaseLoads(
+            solved.reactions, note=solved.note, space=solved, shared=shared, ground=ground
+        )
     if not isinstance(case, MotionCase):
         states = state(study, name, case, mechanism)
         solve = at_rest_in_space(study, name, case, mechanism, states)

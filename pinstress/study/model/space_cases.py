@@ -20,6 +20,7 @@ from loads.space.linkage import SpaceLinkage
 from loads.space.motion import SpaceCourse, space_move
 from loads.space.over_time import SpaceOverTime, space_over_time
 from pinbase.arrays import Floats
+from pinstress.study.model.ground import Grounded
 from pinstress.study.model.impulses import impulse_notes
 from pinstress.study.model.mechanism.space import SpacePin, pins_in_space, space_mechanism
 from pinstress.study.model.moving_loads import Acting, MovingLoads
@@ -31,6 +32,7 @@ from pinstress.study.model.space_forces import (
 )
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import InstantCase, MotionCase, StaticCase
+from pinstress.study.schema.landing import GroundCase
 
 POWER_BALANCE = 1e-6  # of the largest power of a drive: a larger violation is noted
 
@@ -96,13 +98,17 @@ def _at_pins(
     dynamics: SpaceDynamics, pins: dict[str, SpacePin], ground: GroundInertia | None, note: str
 ) -> InSpace:
     """Return the reactions of the connections, with the axes of their pins."""
-    motion, which = dynamics.motion, [pin.joint for pin in pins.values()]
-    turns = [motion.rotation(pin.carrier) @ pin.axes for pin in pins.values()]
-    turn = np.stack(turns, axis=1)
+    which = [pin.joint for pin in pins.values()]
+    # In batches, so that the pose of all instants does not stay in memory.
+    turns = [
+        np.stack([part.rotation(pin.carrier) @ pin.axes for pin in pins.values()], axis=1)
+        for part in dynamics.motion.parts
+    ]
+    turn = np.concatenate(turns)
 
     def of_pins(r: Reactions) -> Reactions:
-        bodies = tuple(r.bodies[k] for k in which)
-        forces, moments = r.forces[:, which], r.moments[:, which]
+        bodies, every = tuple(r.bodies[k] for k in which), which == [*range(len(r.bodies))]
+        forces, moments = (x if every else x[:, which] for x in (r.forces, r.moments))
         return Reactions(r.case, r.times, tuple(pins), bodies, forces, moments, turn)
 
     others = {text: of_pins(r) for text, r in dynamics.range.items()}
@@ -124,11 +130,14 @@ class MovedInSpace:
     note: str
     friction: bool = True
 
-    def solve(self, times: Floats) -> InSpace:
-        """Return the case at times (T,) s."""
+    def solve(self, times: Floats, variants: bool = False) -> InSpace:
+        """Return the case at times (T,) s.
+
+        variants: whether with the reactions for other stiffness of links.
+        """
         loads = (*self.loads, *((self.ground,) if self.ground else ()))
         at = self.course.at(times)
-        dynamics = space_reactions(self.name, at, loads, friction=self.friction)
+        dynamics = space_reactions(self.name, at, loads, friction=self.friction, variants=variants)
         return _at_pins(dynamics, self.pins, self.ground, self.note)
 
     def acting(self, times: Floats) -> Acting:
@@ -143,7 +152,8 @@ class MovedInSpace:
 
     def solved(self, samples: int, extremes: bool) -> InSpace:
         """Return the case at equally spaced instants; where asked, with its extremes."""
-        solved = self.solve(np.linspace(self.course.first, self.course.last, samples))
+        instants = np.linspace(self.course.first, self.course.last, samples)
+        solved = self.solve(instants, variants=True)
         if not extremes:
             self.solve(self.course.path.nodes)
             return solved
@@ -193,16 +203,19 @@ def moving_in_space(moved: MovedInSpace, solved: InSpace) -> MovingLoads:
 def at_rest_in_space(
     study: Study,
     name: str,
-    case: StaticCase | InstantCase,
+    case: StaticCase | InstantCase | GroundCase,
     linkage: SpaceLinkage,
     states: Sequence[tuple[float, float, float]],
+    grounded: Grounded | None = None,
 ) -> Callable[..., InSpace]:
     """Return what gives a case at one instant: `solve()` as stated, `solve(which, size)` with an
     impulse of another size (N) in the load of that number.
 
     states: position, velocity and acceleration of every drive, SI.
+    grounded: the forces of the ground, of a case that has nothing but these.
     """
-    hold = tuple(dict.fromkeys((case.hold or ()) if isinstance(case, StaticCase) else ()))
+    stated = case.hold if isinstance(case, StaticCase | GroundCase) else None
+    hold = tuple(dict.fromkeys(stated or ()))
     if hold and not linkage.driven:
         motion = held_as_drawn(linkage, hold)
     else:
@@ -211,12 +224,18 @@ def at_rest_in_space(
     lengths = motion.equations.along_lengths
     held_by = tuple(zip(hold, lengths, strict=True)) if hold else None
     springs, pins = springs_in_space(study, linkage), pins_in_space(study, linkage)
-    applied = applied_in_space(study, name, case, linkage)
-    note, ground = impulse_notes(study, case), ground_inertia(case)
+    ground: GroundInertia | None = None
+    if isinstance(case, GroundCase):
+        assert grounded is not None
+        applied, note = [grounded.loads_in_space(study, case)], grounded.note(study)
+    else:
+        applied = applied_in_space(study, name, case, linkage)
+        note, ground = impulse_notes(study, case), ground_inertia(case)
 
     def solve(which: int | None = None, size: float | None = None) -> InSpace:
         loads = list(applied)
         if which is not None:
+            assert not isinstance(case, GroundCase)
             loads[which] = load_in_space(study, name, which, case.apply[which], linkage, size)
         every: list[SpaceLoad] = [*springs, *chain.from_iterable(loads)]
         every += [ground] if ground else []

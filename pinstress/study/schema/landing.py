@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from loads.landing.requirements import RULES_OF_PART
 from pinbase.errors import ArgumentError
@@ -11,9 +11,11 @@ from pinstress.study.schema.types import (
     NOT_NEGATIVE,
     POSITIVE,
     Density,
+    Direction,
     Duration,
     Force,
     Inertia,
+    JointOrPoint3,
     Length,
     Mass,
     Number,
@@ -141,17 +143,30 @@ class WheelTable(StrictTable):
     """Damping of that bending, ratio to critical."""
 
 
+Forward = Annotated[
+    Annotated[Literal["left", "right"], Tag("<side>")] | Annotated[Direction, Tag("<direction>")],
+    Discriminator(lambda value: "<direction>" if isinstance(value, list | tuple) else "<side>"),
+]
+
+
 class AtWheel(CaseTable):
     """Keys of cases in which the ground pushes on a wheel."""
 
     body: str
     """Body on which the ground pushes."""
-    at: str
-    """Joint at the axle, where the forces act."""
-    forward: Literal["left", "right"] = "left"
-    """Direction of travel, with gravity downwards."""
+    at: JointOrPoint3
+    """Joint at the axle, where the forces act; in space a joint or [x, y, z] as drawn."""
+    forward: Forward = "left"
+    """Direction of travel: in a plane "left" or "right", with gravity downwards; in space
+    [x, y, z], of which the level part counts."""
     position: Coordinates | None = None
     """Position of the drives, of a strut extended; as in a static case."""
+
+    @property
+    def joint(self) -> str:
+        """The joint at the axle, of a mechanism in a plane."""
+        assert isinstance(self.at, str)
+        return self.at
 
 
 class DropCase(AtWheel):

@@ -20,13 +20,14 @@ from pinstress.study.schema.mechanism import (
     require_single_mass,
 )
 from pinstress.study.schema.types import (
-    BY_NAME_OR_PLACE,
     Acceleration,
     Angle,
-    Joint,
+    Direction,
+    JointOrPoint3,
     Length,
     Mass,
     Number,
+    Point3,
     PositiveLength,
     SignedInertia,
     StrictTable,
@@ -36,10 +37,6 @@ from pinstress.study.schema.types import (
     one_or_several,
     require_both,
 )
-
-Point3 = tuple[Length, Length, Length]
-Direction = tuple[Number, Number, Number]
-JointOrPoint3 = Annotated[Joint | Annotated[Point3, Tag("<point>")], BY_NAME_OR_PLACE]
 
 # Nearer to each other, the axes of a universal joint do not say which second axis was meant.
 MAX_COSINE_OF_SKEW = math.cos(math.radians(1.0))

@@ -253,6 +253,10 @@ Joint = Annotated[str, Tag("<joint>")]
 BY_NAME_OR_PLACE = Discriminator(lambda x: "<joint>" if isinstance(x, str) else "<point>")
 JointOrPoint = Annotated[Joint | Annotated[Point, Tag("<point>")], BY_NAME_OR_PLACE]
 
+Point3 = tuple[Length, Length, Length]
+Direction = tuple[Number, Number, Number]
+JointOrPoint3 = Annotated[Joint | Annotated[Point3, Tag("<point>")], BY_NAME_OR_PLACE]
+
 Place3 = Annotated[list[Length], Field(min_length=2, max_length=3)]
 JointOrPlace = Annotated[Joint | Annotated[Place3, Tag("<point>")], BY_NAME_OR_PLACE]
 
