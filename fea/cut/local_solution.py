@@ -82,7 +82,7 @@ class LocalMesh:
         if self._here:
             spots = [point_of(x) for x in unmirrored(piece, np.array(self._here))]
         mesh = piece_mesh(piece, finer.edges, spots, finer.spots, self.most)
-        held, loaded = _largest_among(piece, self.clamps), bearings(piece, self.bands)
+        held, loaded = _clamped(piece, self.clamps), bearings(piece, self.bands)
         return LocalModel(piece, mesh, self.material, held, loaded, finer.spots)
 
     @property
@@ -90,7 +90,7 @@ class LocalMesh:
         return tuple(p for p in self.high if self.piece.z0 <= p[2] <= self.piece.z1)
 
 
-def _largest_among(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
+def _clamped(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
     """Clamped surfaces that a piece has: its own ends are the pin's where they are at them."""
     return tuple(
         name

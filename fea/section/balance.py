@@ -15,7 +15,9 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
+from fea.core.hardened import depth_below
 from fea.core.solution import Picture
+from geometry import Pin, meridian
 from geometry.mesh.clip import EIGHT_TETRAHEDRA
 from pinbase.arrays import Floats, Ints
 
@@ -38,16 +40,20 @@ SMALLNESS, SMOOTHNESS = 0.01, 0.1  # weights of the added force, and of its chan
 MIN_DEPTH = 0.05  # of the largest: nodes that are less deep belong to the surface
 
 
-def balanced(body: Picture, surface: Floats, forces: Callable[[Floats], Floats]) -> Picture:
+def balanced(
+    body: Picture, pin: Pin, surface: Floats, forces: Callable[[Floats], Floats]
+) -> Picture:
     """The body with stress that gives its sections their forces.
 
-    surface: (P, 3) m, points of its surface.
+    pin: without cuts. surface: (P, 3) m, points of its surface, near each other at cuts.
     forces: (S, 3) N along x, y and z on the part before z (S,), m; NaN where unknown.
     """
     points, tetrahedra = body.points, _tetrahedra(body)
     levels, steps = (_between_nodes(points[:, 2], count) for count in (LEVELS, STEPS))
     wanted = forces(levels)
-    depth = np.asarray(cKDTree(surface).query(points)[0])
+    outline = tuple(edge for edge in meridian(pin) if edge.name)
+    beneath = depth_below(outline, np.stack([np.hypot(*points[:, :2].T), points[:, 2]], axis=1))
+    depth = np.minimum(beneath, cKDTree(surface).query(points)[0])
     depth = np.maximum(depth - MIN_DEPTH * depth.max(), 0.0)
     stress = body.stress[:, ON_SECTIONS]
     on_steps = _hats(points[:, 2], steps)

@@ -219,7 +219,9 @@ class SectionField:
         in clamps and, where statics does not decide, between them.
         """
         amounts = shares(self.forces.loads, self._felt(loads))[instant]
-        known = [s for s in self.forces.spans if not (s.left and s.right)]
+        known = np.zeros(len(self.forces.sections), dtype=bool)
+        for span in self.forces.spans:
+            known[span.first : span.last] = not (span.left and span.right)
 
         def at(z: Floats) -> Floats:
             stations = self.forces.stations
@@ -227,8 +229,7 @@ class SectionField:
             per_load = self.forces.inside(cells, z)
             across, axial = per_load[:, SHEAR] @ amounts.T, per_load[:, AXIAL] @ amounts[0]
             out = np.concatenate([across, axial[:, None]], axis=1)
-            inside = np.any([(cells >= s.first) & (cells < s.last) for s in known], axis=0)
-            return np.where(inside[:, None], out, np.nan)
+            return np.where(known[cells, None], out, np.nan)
 
         return at
 

@@ -95,7 +95,7 @@ def _volume(
         clamps = () if task.lugs else tuple(task.pin.surface(name) for name in task.clamps)
         loads = solution.loads.on_rings
         sections = SectionField(profile, task.material, clamps, (loads,))
-        shown = balanced(shown, surface, sections.forces_on(loads, solution.instant))
+        shown = balanced(shown, profile, surface, sections.forces_on(loads, solution.instant))
     pressed = shown.pressed
     if pressed is None and pressure is not None:  # a pin with cuts
         pressed = pressure.at(shown.points) > 0.0
