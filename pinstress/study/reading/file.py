@@ -197,10 +197,10 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
     """
     lines = text if located else ""
     provenance: list[Sourced] = []
-    long: list[Wrong] = []
-    raw = unwrapped(with_materials(path, read_toml(path, text)), "", provenance, long)
-    if long:
-        raise study_error(path, lines, long)
+    unreadable: list[Wrong] = []
+    raw = unwrapped(with_materials(path, read_toml(path, text)), "", provenance, unreadable)
+    if unreadable:
+        raise study_error(path, lines, unreadable)
     wrong = [
         Wrong(
             f"{s.key}: provenance must be given, derived, fitted or assumed, not {as_text(s.kind)}",
@@ -297,32 +297,37 @@ def _written(value: Any) -> str:
     return cut(value) if isinstance(value, str) else in_toml(value)
 
 
-def unwrapped(node: Any, key: str, sourced: list[Sourced], long: list[Wrong]) -> Any:
+def unwrapped(node: Any, key: str, sourced: list[Sourced], wrong: list[Wrong]) -> Any:
     """Return the tree without provenance and notes, which are added to `sourced`.
 
     The value remains of { value, provenance, note }.
 
-    long: receives the errors for keys that are too long.
+    wrong: receives the errors for keys and lists that are too long, and for notes.
     """
     if isinstance(node, list):
         if len(node) > MAX_LIST_ITEMS:
-            long.append(
+            wrong.append(
                 Wrong(
                     f"{key}: {len(node):,} elements; the limit is {MAX_LIST_ITEMS:,}",
                     code="too-many",
                 )
             )
             return []
-        return [unwrapped(v, f"{key}[{i}]", sourced, long) for i, v in enumerate(node, 1)]
+        return [unwrapped(v, f"{key}[{i}]", sourced, wrong) for i, v in enumerate(node, 1)]
     if not isinstance(node, dict):
         return node
     if isinstance(node.get("provenance"), str):
-        kind, note = node["provenance"], str(node.get("note", ""))
+        kind, note = node["provenance"], node.get("note", "")
+        if not isinstance(note, str):
+            where = f"{key}.note".removeprefix(".")
+            text = f"{where}: must be a text in quotes, not {in_toml(note)}"
+            wrong.append(Wrong(text, code="not-a-text"))
+            note = ""
         node = {k: v for k, v in node.items() if k not in ("provenance", "note")}
         sourced.append(Sourced(key, kind, note, _written(node.get("value", node))))
         if set(node) == {"value"}:
-            return node["value"]
-    long += [
+            return unwrapped(node["value"], key, sourced, wrong)
+    wrong += [
         Wrong(f"{key}{': ' * bool(key)}the name {as_text(k)} has {len(k):,} characters; the limit "
               f"is {MAX_KEY_LENGTH}", code="too-long")
         for k in node if len(k) > MAX_KEY_LENGTH
@@ -330,4 +335,4 @@ def unwrapped(node: Any, key: str, sourced: list[Sourced], long: list[Wrong]) ->
     inner = {
         k: f"{key}.{key_part(k)}" if key else key_part(k) for k in node if len(k) <= MAX_KEY_LENGTH
     }
-    return {k: unwrapped(node[k], place, sourced, long) for k, place in inner.items()}
+    return {k: unwrapped(node[k], place, sourced, wrong) for k, place in inner.items()}

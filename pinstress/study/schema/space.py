@@ -4,7 +4,7 @@ import math
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, field_validator, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from loads.space.conditions import directions
 from loads.space.kinds import KINDS, Kind
@@ -15,6 +15,7 @@ from pinstress.study.schema.forces import LineLawTable, TorsionLawTable
 from pinstress.study.schema.mechanism import BarTable, Ratios, require_single_mass
 from pinstress.study.schema.types import (
     BY_NAME_OR_PLACE,
+    ONE_OR_SEVERAL,
     Acceleration,
     Angle,
     Joint,
@@ -27,7 +28,6 @@ from pinstress.study.schema.types import (
     Weight,
     both_or_none,
     exactly_one,
-    one_or_several,
     require_both,
 )
 
@@ -358,7 +358,7 @@ class SpaceMechanismTable(StrictTable):
     """Joints by name."""
     body: Annotated[dict[str, SpaceBodyTable], Field(min_length=1)]
     """Bodies by name, except the ground."""
-    drive: list[AnySpaceDrive] = []
+    drive: Annotated[list[AnySpaceDrive], ONE_OR_SEVERAL] = []
     """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom; none
     for a structure."""
     spring: dict[str, SpaceSpringTable] = {}
@@ -368,8 +368,6 @@ class SpaceMechanismTable(StrictTable):
     sharing: list[SpaceSharingTable] = []
     """Redundant connections, and how they share their load. Default: as all links of one section
     would, with the range over links a tenth and ten times as stiff."""
-
-    _listed = field_validator("drive", mode="before")(one_or_several)
 
     @model_validator(mode="before")
     @classmethod
