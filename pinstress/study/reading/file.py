@@ -35,6 +35,8 @@ MAX_PATH_LENGTH = 4096  # as Linux has it
 # Errors of a file (loads.read_regular) that say nothing of a line in it
 UNREADABLE_FILE_CODES = "no-such-file", "folder", "not-regular", "too-large"
 MAX_LIST_ITEMS = 200_000  # of a list
+MAY_BE_EMPTY = "title", "report."  # of the keys of texts
+CHECKED_NAMES = "pin", "case", "sequence"  # tables whose names the schema checks
 MAX_KEY_LENGTH = 200  # characters; no name is longer, and messages have it in full
 
 
@@ -302,7 +304,8 @@ def unwrapped(node: Any, key: str, sourced: list[Sourced], wrong: list[Wrong]) -
 
     The value remains of { value, provenance, note }.
 
-    wrong: receives the errors for keys and lists that are too long, and for notes.
+    wrong: receives the errors for keys and lists that are too long, for notes, and for texts and
+    names without a letter.
     """
     if isinstance(node, list):
         if len(node) > MAX_LIST_ITEMS:
@@ -314,8 +317,13 @@ def unwrapped(node: Any, key: str, sourced: list[Sourced], wrong: list[Wrong]) -
             )
             return []
         return [unwrapped(v, f"{key}[{i}]", sourced, wrong) for i, v in enumerate(node, 1)]
+    if isinstance(node, str) and not node.strip() and not key.startswith(MAY_BE_EMPTY):
+        text = f"{key}: is empty; write something between the quotes, or leave the key out"
+        wrong.append(Wrong(text, code="empty"))
     if not isinstance(node, dict):
         return node
+    if key not in CHECKED_NAMES and any(not name.strip() for name in node):
+        wrong.append(Wrong(f"{key}: a name is empty; write something in quotes", code="empty"))
     if isinstance(node.get("provenance"), str):
         kind, note = node["provenance"], node.get("note", "")
         if not isinstance(note, str):
