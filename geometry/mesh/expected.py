@@ -36,7 +36,8 @@ def require_few(gmsh: Any, name: str, most: float) -> None:
         return
     if (expected := unknowns(cells.elements * cells.inside(gmsh))) <= EXPECTED_WITHIN * limit:
         return
-    why = "fit into the memory allowed (--memory-limit)" if most < MAX_UNKNOWNS else "are allowed"
+    fit = "fit into the memory allowed (--memory-limit): allow more, or close other programs"
+    why = fit if most < MAX_UNKNOWNS else "are allowed"
     raise MeshError(
         f"pin {name}: its first mesh of tetrahedra would have about {_plain(expected)} unknowns, "
         f"of which {_plain(limit)} {why}. Its smallest elements, for a radius, hole or face, are "

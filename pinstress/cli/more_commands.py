@@ -119,11 +119,9 @@ def import_(file: Path, pin: str | None, material: str, unit: str, out: Path | N
 def schema() -> None:
     import json
 
-    from pinstress.study.schema.tables import StudyTable
+    from pinstress.study.schema.json_schema import editor_schema
 
-    json_schema = StudyTable.model_json_schema()
-    json_schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
-    click.echo(json.dumps(json_schema, indent=2))
+    click.echo(json.dumps(editor_schema(), indent=1))
 
 
 @click.command(
