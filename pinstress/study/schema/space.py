@@ -20,11 +20,7 @@ from pinstress.study.schema.mechanism import (
     require_single_mass,
 )
 from pinstress.study.schema.types import (
-<<<<<<< HEAD
-=======
-    BY_NAME_OR_PLACE,
     ONE_OR_SEVERAL,
->>>>>>> decbf5c13823eae1ce5bb7e91c90cdf82e762b6f
     Acceleration,
     Angle,
     Direction,
