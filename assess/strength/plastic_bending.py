@@ -81,15 +81,19 @@ def plastic_bending(text: CheckText, s: Situation) -> list[Margin]:
             V_pl=(float(V[k]), "force"),
         )  # fmt: skip
 
-        # Where the section is the same: with its diameter the worst place may change.
+        # Where the section is the same: with its diameter the worst place may change, among those
+        # that no other exceeds in both moment and shear.
         alike = np.array([other == section for other in forces.sections])
+        bent, sheared = (forces.moment / M)[:, alike].ravel(), (forces.shear / V)[:, alike].ravel()
+        falling = np.lexsort((-sheared, -bent))
+        before = np.maximum.accumulate(np.append(-1.0, sheared[falling][:-1]))
+        front = falling[sheared[falling] > before]
 
         def of_wall(wall: float) -> float:
             other = Circle(section.inner + wall, section.inner)
-            bent = forces.moment[:, alike] / M[alike]
-            bent *= section.plastic_modulus / other.plastic_modulus
-            sheared = forces.shear[:, alike] / plastic_shear(other, fy)
-            return factor * float(np.hypot(bent, sheared).max())
+            m = bent[front] * section.plastic_modulus / other.plastic_modulus
+            v = sheared[front] * plastic_shear(section, fy) / plastic_shear(other, fy)
+            return factor * float(np.hypot(m, v).max())
 
         return both, lambda _: diameter_of_wall(section, of_wall)
 
