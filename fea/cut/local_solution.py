@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -54,6 +55,7 @@ class LocalMesh:
     finer: its fineness, finest about points where stress was high on the meshes before.
     high: these, m, in the pin's frame.
     bands: loaded ones of the pin, with cuts in them.
+    most: unknowns that are allowed.
     """
 
     piece: Piece
@@ -62,6 +64,7 @@ class LocalMesh:
     finer: LocalFineness
     high: Sequence[Point] = ()
     bands: Sequence[tuple[float, float]] = ()
+    most: float = math.inf
 
     @property
     def content(self) -> object:
@@ -78,8 +81,8 @@ class LocalMesh:
         spots: Spots = ()
         if self._here:
             spots = [point_of(x) for x in unmirrored(piece, np.array(self._here))]
-        mesh = piece_mesh(piece, finer.edges, spots, finer.spots)
-        held, loaded = _largest_among(piece, self.clamps), bearings(piece, self.bands)
+        mesh = piece_mesh(piece, finer.edges, spots, finer.spots, self.most)
+        held, loaded = _clamped(piece, self.clamps), bearings(piece, self.bands)
         return LocalModel(piece, mesh, self.material, held, loaded, finer.spots)
 
     @property
@@ -87,7 +90,7 @@ class LocalMesh:
         return tuple(p for p in self.high if self.piece.z0 <= p[2] <= self.piece.z1)
 
 
-def _largest_among(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
+def _clamped(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
     """Clamped surfaces that a piece has: its own ends are the pin's where they are at them."""
     return tuple(
         name

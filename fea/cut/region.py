@@ -189,11 +189,12 @@ def _piece(
     # it; then the piece is centred on it and half of it is meshed.
     angle, mirrors = _about(pin, list(cuts.values()))
     middle = 0.5 * (low + high)
-    clamped = any(z0 <= b and a <= z1 for a, b in (surface_ends(CutPin(pin), c) for c in clamps))
+    half = max(middle - z0, z1 - middle)
+    held = [surface_ends(CutPin(pin), name) for name in clamps]
+    clamped = any(middle - half <= b and a <= middle + half for a, b in held)
     parted = any(a < high and low < b and not (a < low and high < b) for a, b in bands)
     amid = [cut.moved(middle, angle) for cut in cuts.values()]
-    if not clamped and not parted and _even(pin, z0, z1, middle) and _symmetric(pin, amid, "z"):
-        half = max(middle - z0, z1 - middle)
+    if not clamped and not parted and _even(pin, middle, half) and _symmetric(pin, amid, "z"):
         z0, z1, mirrors = middle - half, middle + half, (*mirrors, "z")
     start = middle if "z" in mirrors else z0
     moved = {name: cut.moved(start, angle) for name, cut in cuts.items()}
@@ -245,9 +246,8 @@ def _end(pin: Pin, z: float, way: float) -> float:
     return 0.0 if z < least else pin.length if z > pin.length - least else z
 
 
-def _even(pin: Pin, z0: float, z1: float, middle: float) -> bool:
-    """Whether the profile is a plain cylinder on both sides of z = middle in the piece."""
-    half = max(middle - z0, z1 - middle)
+def _even(pin: Pin, middle: float, half: float) -> bool:
+    """Whether the profile is a plain cylinder up to `half` on both sides of z = middle, m."""
     inside = middle - half >= -pin.tolerance and middle + half <= pin.length + pin.tolerance
     ends = zip(pin.segments, pin.stations, pin.stations[1:], strict=False)
     here = [s for s, a, b in ends if b > middle - half and a < middle + half]

@@ -35,7 +35,7 @@ def free_picture(
     most = np.full(len(surface.points), -1.0)
     square_of = squares(surface.stress)
     for k in range(0, len(c), INSTANT_BATCH):
-        here = np.sqrt(square_of(c[k : k + INSTANT_BATCH]))
+        here = np.sqrt(np.maximum(square_of(c[k : k + INSTANT_BATCH]), 0.0))
         for t in range(here.shape[1]):
             here[~free.read(pressed, k + t), t] = -1.0
         np.maximum(most, here.max(axis=1), out=most)

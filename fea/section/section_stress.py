@@ -10,7 +10,7 @@ Source: fea.beam.round_section, for the shear.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -213,6 +213,25 @@ class SectionField:
         jumps = np.diff(self._z, prepend=-np.inf, append=np.inf) <= 0.0
         keep = needed(self._z, largest[:, None], allowed, jumps[1:] | jumps[:-1])
         return tuple(zip(self._z[keep].tolist(), largest[keep].tolist(), strict=True))
+
+    def forces_on(self, loads: Loads, instant: int) -> Callable[[Floats], Floats]:
+        """The forces (S, 3), N, along x, y and z on the part before z (S,), m, at an instant; NaN
+        in clamps and, where statics does not decide, between them.
+        """
+        amounts = shares(self.forces.loads, self._felt(loads))[instant]
+        known = np.zeros(len(self.forces.sections), dtype=bool)
+        for span in self.forces.spans:
+            known[span.first : span.last] = not (span.left and span.right)
+
+        def at(z: Floats) -> Floats:
+            stations = self.forces.stations
+            cells = np.searchsorted(stations[1:-1], z, side="right")
+            per_load = self.forces.inside(cells, z)
+            across, axial = per_load[:, SHEAR] @ amounts.T, per_load[:, AXIAL] @ amounts[0]
+            out = np.concatenate([across, axial[:, None]], axis=1)
+            return np.where(known[cells, None], out, np.nan)
+
+        return at
 
     def held_twice(self, at: AtSection) -> float:
         """The relative error of the section forces there if the point is between two clamps; else

@@ -13,6 +13,7 @@ from fea.core.solution import Picture, StressField
 from fea.core.voigt import von_mises
 from fea.support.cell_pressure import CellPressure
 from fea.support.support import Solution
+from pinbase.arrays import Floats
 from pinstress.analysis.plan import ExtraFields
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.tasks import Task
@@ -66,19 +67,35 @@ def field(
             _still(task, solution.answer, loads, i, float(times[i]))
             for i in instants(len(loads), governing)
         ),
-        volume=_volume(solution.answer.volume(loads, governing), pressure)
-        if also == "solid"
-        else None,
+        volume=_volume(task, solution, shown.points, pressure) if also == "solid" else None,
         contact_pressure=contact,
         pressed=pressed,
         solids=peak.solids,
     )
 
 
-def _volume(shown: Picture | None, pressure: CellPressure | None) -> Volume | None:
-    """Return the whole of a pin; None for a solid model, whose field has it already."""
+def _volume(
+    task: Task, solution: Solution, surface: Floats, pressure: CellPressure | None
+) -> Volume | None:
+    """Return the whole of a pin; None for a solid model, whose field has it already.
+
+    surface: (P, 3) m, points of it.
+    """
+    assert solution.answer is not None
+    shown = solution.answer.volume(solution.loads, solution.instant)
     if shown is None:
         return None
+    held = solution.held if solution.pressure is not None else None
+    profile = (held.pin if held else task.pin).profile
+    if profile is not None:
+        # Here, for what is read from the cache loads no solver.
+        from fea.section.balance import balanced
+        from fea.section.section_stress import SectionField
+
+        clamps = () if task.lugs else tuple(task.pin.surface(name) for name in task.clamps)
+        loads = solution.loads.on_rings
+        sections = SectionField(profile, task.material, clamps, (loads,))
+        shown = balanced(shown, profile, surface, sections.forces_on(loads, solution.instant))
     pressed = shown.pressed
     if pressed is None and pressure is not None:  # a pin with cuts
         pressed = pressure.at(shown.points) > 0.0

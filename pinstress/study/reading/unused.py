@@ -71,6 +71,16 @@ def _of_codes(table: StudyTable) -> Iterator[str]:
                 f'{key}: has no effect, because only checks of the code "aircraft" have it; add '
                 "that to analysis.code, or remove it"
             )
+    if table.analysis.partial_factors.model_fields_set and not {"general", "civil"} & {*codes}:
+        yield (
+            "analysis.partial_factors: has no effect, because only checks of EN 1993 have them; "
+            'add "civil" to analysis.code, or remove it'
+        )
+    if "aisc" in table.analysis.model_fields_set and "civil" not in codes:
+        yield (
+            'analysis.aisc: has no effect, because only checks of the code "civil" have it; add '
+            "that to analysis.code, or remove it"
+        )
     if table.analysis.design_factor is not None and "lifting" not in codes:
         yield (
             'analysis.design_factor: has no effect, because only checks of the code "lifting" have '

@@ -9,6 +9,7 @@ from pinbase.errors import ArgumentError
 from pinstress.study.schema.cases import CaseTable, Coordinates
 from pinstress.study.schema.types import (
     NOT_NEGATIVE,
+    ONE_OR_SEVERAL,
     POSITIVE,
     Density,
     Direction,
@@ -27,7 +28,6 @@ from pinstress.study.schema.types import (
     Weight,
     Whole,
     exactly_one,
-    one_or_several,
 )
 
 Positive = Annotated[Length, POSITIVE]
@@ -289,7 +289,7 @@ class GroundCase(AtWheel):
     part: Literal["23", "25"] | None = None
     """Part of 14 CFR: one case for each of its rules above, side loads to both sides. The case's
     name has a *, which the names of the rules replace."""
-    factors: Annotated[list[FactorTable], Field(max_length=100)] = []
+    factors: Annotated[list[FactorTable], Field(max_length=100), ONE_OR_SEVERAL] = []
     """Other loads: one table, or several `[[case."NAME *".factors]]` with names."""
     reference: Annotated[Force, POSITIVE] | None = None
     """The largest vertical reaction (25.473, 25.479, 23.479), the static load (23.499), or that to
@@ -310,8 +310,6 @@ class GroundCase(AtWheel):
     spin_up: SpinUpTable | None = None
     """For the drag of spin-up and spring-back. Default: the wheel of the drop; without either, the
     most that is required, 0.8 of the vertical reaction."""
-
-    _listed = field_validator("factors", mode="before")(one_or_several)
 
     @property
     def stands(self) -> Literal["left", "right", "nose"]:

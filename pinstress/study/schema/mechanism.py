@@ -14,6 +14,7 @@ from pinstress.study.schema.forces import (
 from pinstress.study.schema.gears import GearTable, RackTable
 from pinstress.study.schema.types import (
     NOT_NEGATIVE,
+    ONE_OR_SEVERAL,
     POSITIVE,
     Acceleration,
     Angle,
@@ -33,7 +34,6 @@ from pinstress.study.schema.types import (
     Weight,
     both_or_none,
     exactly_one,
-    one_or_several,
     require_one,
 )
 
@@ -272,7 +272,7 @@ class LinkStiffnessTable(StrictTable):
     """Bore of a tube."""
     section: tuple[PositiveLength, PositiveLength] | None = None
     """Section of a rectangular link: [depth in the plane, width across it]."""
-    youngs_modulus: Stress = 210e9
+    youngs_modulus: Annotated[Stress, Field(json_schema_extra={"default": "210 GPa"})] = 210e9
     """Young's modulus; only ratios between links matter."""
     stiffness: Annotated[Annotated[float, Quantity("stiffness")], POSITIVE] | None = None
     """For a link that is no bar, the force across it at its joint farthest from its centre of mass
@@ -310,7 +310,7 @@ class MechanismTable(StrictTable):
     """Bodies by name, except the ground."""
     slider: dict[str, SliderTable] = {}
     """Sliders by name."""
-    drive: list[AnyDrive] = []
+    drive: Annotated[list[AnyDrive], ONE_OR_SEVERAL] = []
     """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom; none
     for a structure, and where `hold` names the locks of every case."""
     gear: dict[str, GearTable] = {}
@@ -334,5 +334,3 @@ class MechanismTable(StrictTable):
     link_stiffness: dict[str, LinkStiffnessTable] = {}
     """Sections of links, by body, by which they share loads out of the plane. Rows of a case with
     such loads have a range over the stiffness of those of which none is stated."""
-
-    _listed = field_validator("drive", mode="before")(one_or_several)

@@ -4,7 +4,7 @@ import math
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, field_validator, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from loads.linkage.parts import Sign
 from loads.space.conditions import directions
@@ -20,6 +20,7 @@ from pinstress.study.schema.mechanism import (
     require_single_mass,
 )
 from pinstress.study.schema.types import (
+    ONE_OR_SEVERAL,
     Acceleration,
     Angle,
     Direction,
@@ -34,7 +35,6 @@ from pinstress.study.schema.types import (
     Weight,
     both_or_none,
     exactly_one,
-    one_or_several,
     require_both,
 )
 
@@ -401,7 +401,7 @@ class SpaceMechanismTable(StrictTable):
     """Joints by name."""
     body: Annotated[dict[str, SpaceBodyTable], Field(min_length=1)]
     """Bodies by name, except the ground."""
-    drive: list[AnySpaceDrive] = []
+    drive: Annotated[list[AnySpaceDrive], ONE_OR_SEVERAL] = []
     """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom; none
     for a structure, and where `hold` names the locks of every case."""
     stop: dict[str, SpaceStopTable] = {}
@@ -416,8 +416,6 @@ class SpaceMechanismTable(StrictTable):
     """Sections of links, by body, by which they share what statics and `sharing` leave open. Those
     of which none is stated are as stiff as the mean of the others, and rows have a range over each
     of them a tenth and ten times as stiff."""
-
-    _listed = field_validator("drive", mode="before")(one_or_several)
 
     @model_validator(mode="before")
     @classmethod

@@ -13,7 +13,7 @@ from pydantic import (
     model_validator,
 )
 
-from assess.codes import Code
+from assess.codes import RECOMMENDED, AiscDesign, Code
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.cases import GivenCase, InstantCase, MotionCase, StaticCase
 from pinstress.study.schema.fatigue import FatigueTable
@@ -60,6 +60,17 @@ AnyMechanism = Annotated[
 AnyCase = GivenCase | MotionCase | StaticCase | InstantCase | DropCase | GroundCase
 
 
+class PartialFactorsTable(StrictTable):
+    """Partial factors of EN 1993-1-8, as a national annex has them."""
+
+    M0: Annotated[Number, Field(ge=0.5)] = RECOMMENDED.M0
+    """Of the resistance of cross-sections: bearing and bending of pins."""
+    M2: Annotated[Number, Field(ge=0.5)] = RECOMMENDED.M2
+    """Of shear of pins."""
+    M6_ser: Annotated[Number, Field(ge=0.5)] = RECOMMENDED.M6_ser
+    """Of replaceable pins at the loads of service."""
+
+
 class AnalysisTable(StrictTable):
     """Requirements on the analysis."""
 
@@ -102,11 +113,16 @@ class AnalysisTable(StrictTable):
     ] = "general"
     """Which checks of strength are made of pins and lugs: textbooks and EN 1993-1-8 ("general");
     AFFDL-TR-69-42, Melcon and Hoblit, Ekvall, Cozzone ("aircraft"); ASME BTH-1 ("lifting");
-    EN 1993-1-8 and ANSI/AISC 360, D5 ("civil"). A list shows them side by side."""
+    EN 1993-1-8, EN 1993-1-1 and ANSI/AISC 360, D5 ("civil"). A list shows them side by side."""
     design_factor: Annotated[Number, Field(ge=1.0)] | None = None
     """Design factor N_d of ASME BTH-1 for the code "lifting"; the standard gives it by the design
     category of the device."""
 
+    partial_factors: PartialFactorsTable = PartialFactorsTable()
+    """Partial factors of EN 1993-1-8, for checks of "general" and "civil"."""
+    aisc: AiscDesign = "LRFD"
+    """How plates are designed by ANSI/AISC 360, for the code "civil": by load and resistance
+    factors at ultimate load ("LRFD"), or by allowable strengths at limit load ("ASD")."""
     reference_temperature: Annotated[
         Temperature, Field(json_schema_extra={"default": "20 degC"})
     ] = 293.15

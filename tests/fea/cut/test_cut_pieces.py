@@ -70,6 +70,21 @@ def test_a_piece_that_cannot_govern_stays_coarse() -> None:
     assert found.peak.max_von_mises == pytest.approx(one.peak.max_von_mises, rel=1e-3)
 
 
+def test_a_piece_that_a_clamp_reaches_has_no_mirror_across_the_axis() -> None:
+    """The start is so near that it belongs to the piece, of which the image would reach a clamp."""
+    d = 0.2 * D
+    hole = Hole(1.6 * D + d / 2.0, d)
+    free = hole.z + 1.5 * D + d / 2.0  # 0.1 D longer than the piece
+
+    def mirrors(length: float) -> tuple[str, ...]:
+        pin = Pin("p", (Segment(length, D), Segment(D, D, name="clamp")))
+        (piece,) = region.pieces(CutPin(pin, (hole,)), ("clamp",))
+        return piece.mirrors
+
+    assert mirrors(free) == ("x", "y")
+    assert mirrors(free + 0.2 * D) == ("x", "y", "z")
+
+
 @pytest.mark.slow
 def test_a_piece_whose_stress_swings_does_not() -> None:
     """For fatigue: a constant load on one hole, half of it to and fro on the other."""

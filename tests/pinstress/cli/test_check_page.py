@@ -33,6 +33,20 @@ def drawings(page: str, kind: str) -> list[ET.Element]:
     return [ET.fromstring(svg) for svg in re.findall(rf'<svg class="{kind}".*?</svg>', page)]
 
 
+def test_a_page_is_replaced_in_one_step(tmp_path: Path) -> None:
+    """The former one, seen by its other name, was emptied first: if interrupted, it was lost."""
+    page, other, link = (tmp_path / name for name in ("check.html", "other.html", "link.html"))
+    first = page_of(ONE_PIN, tmp_path)
+    other.hardlink_to(page)
+    link.symlink_to(page)
+    study = pinstress.study_from(ONE_PIN.replace("One pin", "Another"), ROOT / "studies")
+    write_check_page(study, examine(study), link)
+    assert other.read_text(encoding="utf-8") == first
+    assert "Another" in page.read_text(encoding="utf-8")
+    assert link.is_symlink()
+    assert len(list(tmp_path.iterdir())) == 3
+
+
 def test_lugs_are_drawn_to_the_scale_of_the_pin(tmp_path: Path) -> None:
     """The clevis: lugs of 50 mm about a pin of 20 mm, 10, 20 and 10 mm wide, 1 mm apart."""
     (drawing,) = drawings(page_of((ROOT / "studies" / "clevis.toml").read_text(), tmp_path), "pin")

@@ -72,12 +72,12 @@ def test_a_case_that_is_too_long_for_the_table_of_bodies_is_named(
     command = ["loads", str(study), "--out", str(out)]
     assert run_command_line(command) == 0
     written = [*csv.DictReader((out / "bodies.csv").read_text().splitlines())]
-    assert {"landing", "25.479-drag"} <= {row["case"] for row in written}
-    assert "retract" not in {row["case"] for row in written}
+    assert "landing" in (cases := {row["case"] for row in written})
+    assert "retract" not in cases
     told = "bodies.csv does not have this case: 484 lines, above 483; ask for fewer samples."
     printed = " ".join(capsys.readouterr().out.split())
     assert printed.count(told) == 1
-    assert "landing" not in printed[: printed.index(told)].rpartition("retract: ")[2]
+    assert "In space" in printed[: printed.index(told)].rpartition("retract: ")[2]
     assert told in (out / "report.html").read_text(encoding="utf-8")
 
     monkeypatch.setattr(gather_space, "MAX_BODY_LINES", 4 * 121)

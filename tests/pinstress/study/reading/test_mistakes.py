@@ -164,3 +164,25 @@ def test_what_follows_from_a_mistake_is_not_reported(
     with pytest.raises(InputError) as error:
         parse_study(Path("s.toml"), text.replace(old, new, 1))
     assert re.fullmatch(rf"s\.toml:\d+: {re.escape(message)}", str(error.value))
+
+
+@each(
+    ("study", "old", "new", "message"),
+    [
+        ("one_pin", 'name = "root"', 'name = ""', "pin.B.profile[1].name: is empty"),
+        ("one_pin", "[analysis]", '[fatigue]\nunit = " "\n[analysis]', "fatigue.unit: is empty"),
+        ("one_pin", "[analysis]", '[material."  "]\n[analysis]', "material: a name is empty"),
+        ("slider_crank", 'body = "crank"', 'body = ""', "mechanism.drive.body: is empty"),
+    ],
+)
+def test_a_text_or_name_without_a_letter_is_refused(
+    study: str, old: str, new: str, message: str
+) -> None:
+    """A segment had no name then, a body a blank one, and a drive ended in a traceback."""
+    assert old in STUDIES[study]
+    with raises(InputError, "empty", f": {message}; "):
+        parse_study(Path("s.toml"), STUDIES[study].replace(old, new, 1))
+
+
+def test_the_title_block_may_be_blank() -> None:
+    parse_study(Path("s.toml"), f'{ONE_PIN}\n[report]\nprepared = ""\nrevision = " "\n')

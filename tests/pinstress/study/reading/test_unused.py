@@ -58,6 +58,20 @@ def test_a_design_factor_without_the_code_that_has_it() -> None:
     assert not study_from(text(analysis='design_factor = 2\ncode = "lifting"')).warnings
 
 
+def test_the_way_of_aisc_without_its_code() -> None:
+    (warning,) = study_from(text(analysis='aisc = "ASD"')).warnings
+    assert "analysis.aisc: has no effect" in warning
+    assert not study_from(text(analysis='aisc = "ASD"\ncode = "civil"')).warnings
+
+
+def test_partial_factors_without_a_check_of_en_1993() -> None:
+    stated = "partial_factors = { M0 = 1.1 }\n"
+    (warning,) = study_from(text(analysis=f'{stated}code = "aircraft"')).warnings
+    assert "analysis.partial_factors: has no effect" in warning
+    for code in ("general", "civil"):
+        assert not study_from(text(analysis=f'{stated}code = "{code}"')).warnings
+
+
 @each(
     ("pin", "defaults", "case", "analysis", "key"),
     [
