@@ -26,6 +26,7 @@ from pinstress.study.schema.types import (
     Number,
     Point,
     PositiveLength,
+    Quantity,
     Side,
     Stress,
     StrictTable,
@@ -266,21 +267,27 @@ class LinkStiffnessTable(StrictTable):
     """
 
     diameter: PositiveLength | None = None
-    """Diameter of a round link. Give one of `diameter`, `section` or `rigid`."""
+    """Diameter of a round link. Give one of `diameter`, `section`, `stiffness` or `rigid`."""
     bore: Annotated[Length, NOT_NEGATIVE] = 0.0
     """Bore of a tube."""
     section: tuple[PositiveLength, PositiveLength] | None = None
     """Section of a rectangular link: [depth in the plane, width across it]."""
     youngs_modulus: Annotated[Stress, Field(json_schema_extra={"default": "210 GPa"})] = 210e9
     """Young's modulus; only ratios between links matter."""
+    stiffness: Annotated[Annotated[float, Quantity("stiffness")], POSITIVE] | None = None
+    """For a link that is no bar, the force across it at its joint farthest from its centre of mass
+    over the deflection there, the link being held at the centre. It then yields like the round bar
+    of this stiffness."""
     rigid: Switch = False
     """Whether it does not yield beside the other links."""
 
     @model_validator(mode="after")
     def _one_section(self) -> "LinkStiffnessTable":
-        if (self.diameter is not None) + (self.section is not None) + self.rigid != 1:
+        given = [self.diameter, self.section, self.stiffness, self.rigid or None]
+        if given.count(None) != len(given) - 1:
             raise ArgumentError(
-                "give one of diameter, section = [depth, width] or rigid = true", "give-one"
+                "give one of diameter, section = [depth, width], stiffness or rigid = true",
+                "give-one",
             )
         if self.bore and (self.diameter is None or self.bore >= self.diameter):
             raise ArgumentError("bore must be less than the diameter", "out-of-range")

@@ -66,7 +66,7 @@ def test_a_long_table_is_parquet_with_the_cells_of_the_csv(
 def test_a_case_that_is_too_long_for_the_table_of_bodies_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Four bodies at 121 instants of the retraction, and at one of the landing."""
+    """Four bodies at 121 instants of the retraction, and at one of each landing."""
     monkeypatch.setattr(gather_space, "MAX_BODY_LINES", 4 * 121 - 1)
     study, out = ROOT / "studies" / "side_stay.toml", tmp_path / "out"
     command = ["loads", str(study), "--out", str(out)]

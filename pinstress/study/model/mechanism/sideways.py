@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from geometry import GeometryError, PinLike
 from loads import Dynamics, Linkage
 from loads.space.out_of_plane import Links, Offsets, OutOfPlane, SideLoad, variations
 from loads.space.sharing import STIFFNESS_RATIO
 from loads.space.straight import straight
+from pinbase.arrays import Floats
 from pinstress.study.model.clevis import middle_of
 from pinstress.study.model.mechanism.drives import plane_of
 from pinstress.study.model.mechanism.stiffness import stated_stiffness
@@ -76,7 +79,7 @@ def sideways(
     if not placed and not aside:
         return None
     offsets, note = _offsets(study, mechanism)
-    links = Links(stated_stiffness(table.link_stiffness, table.body))
+    links = Links(stated_stiffness(table.link_stiffness, table.body, _arms(mechanism)))
     return Sideways(tuple(loads), offsets, links, note)
 
 
@@ -110,6 +113,18 @@ def _offsets(study: Study, mechanism: Linkage) -> tuple[Offsets, str]:
     return Offsets(at), (
         f"Offsets of links along the pins count; {placed} placed so that links are straight{out}."
     )
+
+
+def _arms(mechanism: Linkage) -> dict[str, list[Floats]]:
+    """Return the vectors (2,) m from the centre of mass of every body to its joints."""
+    return {
+        body.name: [
+            np.subtract(joint.at, body.centre)
+            for joint in mechanism.joints
+            if body.name in (joint.fixed_in, *(c.body for c in joint.connections))
+        ]
+        for body in mechanism.bodies
+    }
 
 
 def _clamps(shape: PinLike, clamps: Sequence[str]) -> list[float]:

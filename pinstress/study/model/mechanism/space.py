@@ -114,16 +114,25 @@ def space_contradictions(study: Study) -> tuple[SpaceLinkage | None, list[Wrong]
                 Sharing(tuple(rule.connections), tuple(rule.stiffness))
                 for rule in mechanism.sharing
             ),
-            stiffness=_stiffness(mechanism),
+            stiffness=_stiffness(mechanism, bodies, joints),
         ), []
     except LinkageError as error:
         return None, _located(mechanism, error.each)
 
 
-def _stiffness(mechanism: SpaceMechanismTable) -> dict[str, LinkStiffness]:
-    """Return the stiffness of the links that state one; floating pins do not yield."""
+def _stiffness(
+    mechanism: SpaceMechanismTable, bodies: Sequence[RigidBody], joints: Sequence[SpaceJoint]
+) -> dict[str, LinkStiffness]:
+    """Return the stiffness of the links that state one; floating pins do not yield.
+
+    Raises: LinkageError.
+    """
+    arms: dict[str, list[Floats]] = {
+        b.name: [np.subtract(j.at, b.centre) for j in joints if b.name in (j.base, j.moving)]
+        for b in bodies
+    }
     pins = {pin_body(n): RIGID for n, joint in mechanism.joint.items() if joint.fixed_in is None}
-    return stated_stiffness(mechanism.link_stiffness, mechanism.body) | pins
+    return stated_stiffness(mechanism.link_stiffness, mechanism.body, arms) | pins
 
 
 def determined_in_space(study: Study, linkage: SpaceLinkage, held: bool) -> Mobility:

@@ -75,6 +75,7 @@ def _arms(left: str, right: str) -> str:
     [
         ("diameter = 0.05", "diameter = 0.05", 1.0),
         ("diameter = 0.05", "diameter = 0.05\nyoungs_modulus = 840e9", 4.0),
+        ("stiffness = 1e5", "stiffness = 3e5", 3.0),
         # Torsion, of the same square or depth, is alike in both, and does not enter.
         ("section = [0.02, 0.06]\ndepth_along = [1, 0, 0]",
          "section = [0.06, 0.02]\ndepth_along = [0, 0, 3]", 1.0),
@@ -95,6 +96,17 @@ def test_two_arms_share_by_their_stated_stiffness(
         100.0 * ratio / (1.0 + ratio), rel=1e-6
     )
     assert not found.shared  # all is stated
+
+
+def test_a_stated_stiffness_is_that_of_a_round_bar(tmp_path: Path) -> None:
+    """Of an arm of 1 m, held at its middle: 3 E I / (0.5 m)^3."""
+    bar = 3.0 * 210e9 * np.pi / 64.0 * 0.05**4 / 0.5**3
+    one, other = (
+        _loads(tmp_path, _arms(left, "diameter = 0.06"), 0.2).reactions
+        for left in ("diameter = 0.05", f"stiffness = {bar}")
+    )
+    assert other.forces == pytest.approx(one.forces, abs=1e-9)
+    assert other.moments == pytest.approx(one.moments, abs=1e-9)
 
 
 def test_a_bar_is_as_stiff_as_its_section(tmp_path: Path) -> None:
@@ -131,6 +143,7 @@ def test_links_of_no_stated_stiffness_are_varied(tmp_path: Path) -> None:
     [
         ("[mechanism.link_stiffness.bem]\nrigid = true\n", "no body 'bem'"),
         ("[mechanism.link_stiffness.beam]\nsection = [0.1, 0.2]\n", "needs depth_along"),
+        ("[mechanism.link_stiffness.beam]\nstiffness = 1e5\nrigid = true\n", "give one of"),
         ("[mechanism.link_stiffness.beam]\ndiameter = 0.1\ndepth_along = [0, 0, 1]\n",
          "round one has none"),
         (_arms("rigid = true", "rigid = true"), "on rigid links"),
