@@ -126,6 +126,8 @@ def judge(
     tolerance: of the error, relative.
     other_place: bounds, Pa, of the place that has less stress, by the values of both: a row is as
     uncertain as the larger of them.
+
+    Raises: SolveError where stress is read nowhere.
     """
     least, most = other_place or (0.0, 0.0)
     own = evidence.parts.total
@@ -135,6 +137,12 @@ def judge(
     verdict: Verdict = "converged" if known else "unconverged"
     reason = evidence.doubt or accuracy(relative, tolerance, known)
     governing, interval = [zone for zone in evidence.zones if zone.governs], None
+    if governing and not evidence.value:
+        raise SolveError(
+            f"pin {evidence.pin}: all of its surface lies within the excluded distance of places "
+            "without a finite stress; reduce analysis.excluded_distance",
+            "all-excluded",
+        )
     if governing:
         verdict = "singular"
         at_surface = evidence.doubt or accuracy(own_relative, tolerance, own_relative <= tolerance)

@@ -17,8 +17,7 @@ from fea.core.voigt import rotation
 from fea.cut.frames import cartesian, turn_of
 from fea.cut.local_fields import LocalFields
 from fea.cut.movement import of_units, rigid
-from fea.cut.region import zone
-from fea.cut.shown import moved_by, support_motion
+from fea.cut.shown import moved_by, own_ends, support_motion
 from fea.cut.supports import ClampReaction
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.revolve import revolve_solid
@@ -89,18 +88,6 @@ def body(
         points, cells, cell_type, moved, np.concatenate([part.stress for part in parts]),
         np.full(len(points), np.nan), more=dict(more),
     )  # fmt: skip
-
-
-def own_ends(pieces: Sequence[LocalFields]) -> list[tuple[float, float]]:
-    """z of both ends, m, of what is shown of each piece: where two overlap, each has its cuts and
-    what is nearer to these.
-    """
-    low = [p.piece.z0 for p in pieces]
-    high = [p.piece.z1 for p in pieces]
-    for k in range(len(pieces) - 1):
-        if high[k] > low[k + 1]:
-            high[k] = low[k + 1] = 0.5 * (zone(pieces[k].piece)[1] + zone(pieces[k + 1].piece)[0])
-    return list(zip(low, high, strict=True))
 
 
 def _joined(parts: Sequence[BodyPart]) -> dict[str, Ints]:

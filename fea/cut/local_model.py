@@ -100,13 +100,9 @@ class LocalModel:
     @cached_property
     def scatter(self) -> Floats:
         """Relative scatter (P,) of stress with the positions of nodes, of rounded corners."""
-        parts = [
-            np.full(
-                len(r.nodes), ROUNDED_CORNER_SCATTER * r.face.name.endswith(("fillet", "mouth"))
-            )
-            for r in self.faces.readings
-        ]
-        return np.asarray(np.concatenate(parts) / self.finer**2)
+        rounded = [r.face.name.endswith(("fillet", "mouth")) for r in self.faces.readings]
+        rows = np.repeat(rounded, [len(r.nodes) for r in self.faces.readings])
+        return np.asarray(ROUNDED_CORNER_SCATTER * rows / self.finer**2)
 
     def solve(
         self,

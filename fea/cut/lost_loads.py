@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fea.solid.assembly import Discretisation
-from fea.solid.boundary import SurfaceMesh, area_vectors, quadrature, slopes_at
+from fea.cut.piece_faces import PieceFaces
+from fea.solid.boundary import area_vectors, quadrature, slopes_at
 from geometry.mesh.cut_piece import Piece
 from pinbase.arrays import Floats, Mask
 
@@ -81,20 +81,22 @@ def trials(x: Floats, normal: Floats, shears: bool) -> Floats:
     return out
 
 
-def trial_forces(
-    space: Discretisation, surface: SurfaceMesh, bearing: Bearing, shears: bool
-) -> Floats:
-    """Nodal forces (3 N, 6) of the tractions of `trials` on a band."""
+def trial_forces(faces: PieceFaces, bearing: Bearing, shears: bool) -> Floats:
+    """Nodal forces (3 N, 6) of the tractions of `trials` on what is left of a band."""
     (a, b), weight = quadrature()
     shapes, _ = slopes_at(a, b)
-    out = np.zeros((len(space.nodes), 3, 6))
-    area = area_vectors(space.nodes[surface.corners], a, b)
-    area *= np.sign(np.sum(area * surface.normals.mean(axis=1)[:, None], axis=2))[..., None]
+    nodes, surface = faces.space.nodes, faces.surface
+    # The floors of flats and slots face outwards, too.
+    left = np.concatenate([r.face.rows for r in faces.readings if not r.face.cut])
+    corners, outward = surface.corners[left], surface.normals[left].mean(axis=1)
+    out = np.zeros((len(nodes), 3, 6))
+    area = area_vectors(nodes[corners], a, b)
+    area *= np.sign(np.sum(area * outward[:, None], axis=2))[..., None]
     size = np.linalg.norm(area, axis=2)
-    x = np.einsum("qi,fia->fqa", shapes, space.nodes[surface.corners])
+    x = np.einsum("qi,fia->fqa", shapes, nodes[corners])
     normal = area / size[..., None]
     on = bearing.on(x, normal)
     rows = np.flatnonzero(on.any(axis=1))
     t = trials(x[rows], normal[rows], shears) * (size * on)[rows][..., None, None]
-    np.add.at(out, surface.corners[rows], np.einsum("q,qi,fqak->fiak", weight, shapes, t))
+    np.add.at(out, corners[rows], np.einsum("q,qi,fqak->fiak", weight, shapes, t))
     return out.reshape(-1, 6)

@@ -53,8 +53,7 @@ class PieceFaces:
     @cached_property
     def cut(self) -> Mask:
         """Mask (P,) of the points on cuts."""
-        parts = [np.full(len(r.nodes), r.face.cut) for r in self.readings]
-        return np.concatenate(parts)
+        return np.repeat([r.face.cut for r in self.readings], [len(r.nodes) for r in self.readings])
 
     @cached_property
     def nodes(self) -> Ints:

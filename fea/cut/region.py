@@ -152,14 +152,8 @@ def pieces(
         (low, high), end = cut.extent, _ends(groups[-1].values())[1]
         # Cuts are merged if the gap to the group before is short, in proportion to the piece's
         # reach.
-        near = (
-            MERGE_DISTANCE
-            * apart
-            * beyond
-            / PIECE_REACH
-            * _diameter(pin.profile, min(end, low), high)
-        )
-        if low - end < near:
+        near = MERGE_DISTANCE * apart * beyond / PIECE_REACH
+        if low - end < near * _diameter(pin.profile, min(end, low), high):
             groups[-1][name] = cut
         else:
             groups.append({name: cut})
@@ -191,7 +185,7 @@ def _piece(
     middle = 0.5 * (low + high)
     half = max(middle - z0, z1 - middle)
     held = [surface_ends(CutPin(pin), name) for name in clamps]
-    clamped = any(middle - half <= b and a <= middle + half for a, b in held)
+    clamped = any(max(a - middle, middle - b) <= half + pin.tolerance for a, b in held)
     parted = any(a < high and low < b and not (a < low and high < b) for a, b in bands)
     amid = [cut.moved(middle, angle) for cut in cuts.values()]
     if not clamped and not parted and _even(pin, middle, half) and _symmetric(pin, amid, "z"):

@@ -62,7 +62,7 @@ class Relief:
             on = bearing.on(faces.points, faces.normals) & ~faces.cut
             for shear in np.unique(shears).tolist():
                 here = np.flatnonzero(shears == shear)
-                trial = trial_forces(faces.space, faces.surface, bearing, shear)
+                trial = trial_forces(faces, bearing, shear)
                 trial = trial[faces.loaded][:, allowed]
                 # Amounts of the trial tractions that restore these resultants.
                 amount = -np.linalg.solve(modes.T @ trial, lost[:, here])

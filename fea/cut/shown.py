@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 from fea.cut.frames import cartesian
 from fea.cut.local_fields import LocalFields
 from fea.cut.movement import axis_kept, of_units, rigid
+from fea.cut.region import zone
 from fea.cut.supports import ClampReaction, reached
 from fea.harmonic.fields import MeridianFields
 from fea.solid.nodal_loads import Unit
@@ -64,7 +65,7 @@ def shown(
     """
     between = [(p.piece.z0, p.piece.z1) for p in pieces]
     uncut = _revolved(fields, pieces[0].units, between)
-    parts = [uncut, *map(_piece, pieces)]
+    parts = [uncut, *map(_piece, pieces, own_ends(pieces))]
     starts = np.cumsum([0, *(len(part.points) for part in parts)])
     points = np.concatenate([p.points for p in parts])
     displacement = np.concatenate([p.displacement for p in parts])
@@ -87,10 +88,25 @@ def shown(
     )
 
 
-def _piece(piece: LocalFields) -> ShownCut:
-    """The surface of a piece as it is shown."""
+def own_ends(pieces: Sequence[LocalFields]) -> list[tuple[float, float]]:
+    """z of both ends, m, of what is shown of each piece: where two overlap, each has its cuts and
+    what is nearer to these.
+    """
+    low = [p.piece.z0 for p in pieces]
+    high = [p.piece.z1 for p in pieces]
+    for k in range(len(pieces) - 1):
+        if high[k] > low[k + 1]:
+            high[k] = low[k + 1] = 0.5 * (zone(pieces[k].piece)[1] + zone(pieces[k + 1].piece)[0])
+    return list(zip(low, high, strict=True))
+
+
+def _piece(piece: LocalFields, ends: tuple[float, float]) -> ShownCut:
+    """The surface of a piece as it is shown between two z, m."""
+    z = piece.points[piece.triangles, 2]
+    here = (z.max(axis=1) >= ends[0]) & (z.min(axis=1) <= ends[1])
     outline = np.isin(np.arange(len(piece.points)), piece.outer)
-    return ShownCut(piece.points, piece.triangles, piece.stress, piece.uncut, piece.read, outline)
+    triangles = piece.triangles[here]
+    return ShownCut(piece.points, triangles, piece.stress, piece.uncut, piece.read, outline)
 
 
 def support_motion(

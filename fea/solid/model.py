@@ -146,17 +146,9 @@ class SolidModel:
         stress = nodal_stress(self.space, self.material, displacement)
         stress = with_known_traction(stress, boundary, loads.traction, clamped)
         return UnitFields(
-            self.space,
-            boundary,
-            units,
-            displacement,
-            stress,
-            loads.forces,
-            self.fixed,
-            support,
-            self.pin.revolved,
-            extra,
-        )
+            self.space, boundary, units, displacement, stress, loads.forces, self.fixed, support,
+            self.pin.revolved, extra,
+        )  # fmt: skip
 
     def _displace(self, F: Floats) -> tuple[Floats, Floats]:
         """Displacements (N, 3, L) under nodal forces F (N, 3, L), and resultants of clamps."""

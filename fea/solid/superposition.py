@@ -79,7 +79,7 @@ def envelope(
         here = slice(first, first + KEPT_INSTANTS)
         for k, c in enumerate(turned):
             square = square_of(c[here])
-            peaks[k, here] = square[among].max(axis=0)
+            peaks[k, here] = square[among].max(axis=0, initial=0.0)
             if not k:
                 np.maximum(largest, square.max(axis=1), out=largest)
     peaks = np.sqrt(np.maximum(peaks, 0.0))
@@ -88,7 +88,7 @@ def envelope(
     governing = square_of(turned[0][instant : instant + 1])[:, 0]
 
     def place(here: Mask, values: Floats) -> Point:
-        x, y, z = points[here][values[here].argmax()].tolist()
+        x, y, z = points[np.where(here, values, -np.inf).argmax()].tolist()
         return (x, y, z)
 
     return Envelope(

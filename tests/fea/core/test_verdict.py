@@ -6,9 +6,11 @@ from dataclasses import replace
 
 import pytest
 
+from fea.core.linear_solver import SolveError
 from fea.core.peak import ErrorParts, Reason, SingularZone
 from fea.core.verdict import Evidence, judge
 from tests.support.each import each
+from tests.support.errors import raises
 
 SURFACE = Evidence(
     "P", "pull", "harmonic", 200.0, ErrorParts(1.0), (0.0, 0.0, 0.0),
@@ -63,6 +65,13 @@ def test_a_singular_row_has_every_part_in_its_interval_and_its_note() -> None:
     )
     rough = judge(surface.with_parts(cells=9.0), 0.02)
     assert "; outside, estimated error 5.0%, above the tolerance of 2.0%;" in rough.note
+
+
+def test_a_surface_that_is_read_nowhere_has_no_verdict() -> None:
+    """A thin ring: the note divided by the stress, which was zero."""
+    surface = replace(SURFACE, value=0.0, zones=(CLAMP,), excluded=(0.0, 0.0))
+    with raises(SolveError, "all-excluded", "analysis.excluded_distance"):
+        judge(surface, 0.02)
 
 
 @each(

@@ -83,6 +83,11 @@ def test_a_piece_that_a_clamp_reaches_has_no_mirror_across_the_axis() -> None:
 
     assert mirrors(free) == ("x", "y")
     assert mirrors(free + 0.2 * D) == ("x", "y", "z")
+    for length in (0.07, 0.3 + 0.1, 0.1 + 0.7):  # of both ends, whatever their round-off
+        pin = CutPin(Pin("p", (Segment(length, 1.0),)), (Hole(0.5 * length, 0.2 * length),))
+        for clamp in ("start", "end"):
+            (piece,) = region.pieces(pin, (clamp,))
+            assert piece.mirrors == ("x", "y")
 
 
 @pytest.mark.slow
@@ -95,6 +100,22 @@ def test_a_piece_whose_stress_swings_does_not() -> None:
     assert all(part.finer > 2.0 for part in parts(swinging))
     constant = solve_pin(pin, STEEL, (), (pulled([3e4], [1.5e4]),), Requirement(0.02))[0]
     assert [part.finer > 2.0 for part in parts(constant)] == [True, False]
+
+
+def test_the_surface_shows_no_piece_over_the_mouths_of_another() -> None:
+    """Holes a diameter apart, each within the piece of the other, which does not have it."""
+    pin = shaft(Hole(0.08, 0.004), Hole(0.1, 0.004))
+    found = solve_pin(pin, STEEL, (), (pulled([3e4], [0.0]),), Requirement(0.2, meshes=1))[0]
+    assert isinstance(found.answer, CutField)
+    assert len(parts(found)) == 2
+    shown = found.answer.solution.shown
+    middles = shown.points[shown.triangles].mean(axis=1)
+    for z in (0.08, 0.1):
+        for x in (-0.5 * D, 0.5 * D):
+            assert np.linalg.norm(middles - [x, 0.0, z], axis=1).min() > 0.0015
+    x, y, z = middles[np.abs(middles[:, 2] - 0.09) < 0.003].T
+    assert np.ptp(np.sort(np.arctan2(y, x))) > 6.0  # the surface between them is whole
+    assert np.diff(np.sort(z)).max() < 0.002
 
 
 @pytest.mark.slow

@@ -69,7 +69,7 @@ def test_what_is_lost_goes_to_the_band(shears: bool) -> None:
     (bearing,) = bearings(piece, bands)
     assert [bearing.z0, bearing.z1] == pytest.approx([-0.01, 0.01])
     model = LocalModel(piece, piece_mesh(piece, 1.0), STEEL, (), (bearing,))
-    forces = trial_forces(model.space, model.faces.surface, bearing, shears)
+    forces = trial_forces(model.faces, bearing, shears)
     found = resultants(model.space.nodes, forces.reshape(-1, 3, 6)) * 8.0  # an eighth is meshed
     band, mouths = np.pi * D * 0.02, 2.0 * np.pi * d**2 / 4.0
     areas = (band - mouths, band - mouths) if shears else (band / 2.0 - mouths, band / 2.0)
@@ -137,7 +137,7 @@ IN_BAND: dict[str, Cut] = {
 @each("shears", [True, False])
 def test_what_cuts_lose_comes_back_to_round_off(name: str, shears: bool) -> None:
     """Forces and couples on the cut, of a pressure on the side that is cut away, and on the band:
-    none is left over.
+    none is left over, and none acts on the floor of the cut.
     """
     pin = CutPin.of(three(0.03), [IN_BAND[name]])
     bands = loaded_bands(pin, ("A", "B", "C"))
@@ -157,6 +157,9 @@ def test_what_cuts_lose_comes_back_to_round_off(name: str, shears: bool) -> None
     both = [resultants(nodes, x.reshape(-1, 3, 1))[own, 0] for x in (lost, spread)]
     assert np.abs(both[0]).max() > 0.0
     assert np.abs(both[0] + both[1]).max() < 1e-10 * np.abs(both[0]).max()
+    floor = ~np.isin(model.faces.nodes_once, model.faces.nodes[~model.faces.cut])
+    assert floor.any()
+    assert not spread.reshape(-1, 3)[floor].any()
 
 
 @pytest.mark.slow

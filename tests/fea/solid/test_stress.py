@@ -94,6 +94,12 @@ def test_the_envelope_is_the_largest_of_all_instants(bar: UnitFields) -> None:
     assert found.field == pytest.approx(brute.max(axis=0), rel=1e-10)
 
 
+def test_an_envelope_of_no_points_is_zero(bar: UnitFields) -> None:
+    """Where zones of singular stress cover all of a thin ring: it was a traceback."""
+    only_c = PinLoads("case", ("C",), np.array([[[1.0, 2.0, 0.0]]]))
+    assert envelope(bar, only_c, np.zeros(len(bar.points), dtype=bool)).maximum == 0.0
+
+
 def test_a_band_without_force_in_a_case_is_unloaded(bar: UnitFields) -> None:
     only_c = PinLoads("case", ("C",), np.array([[[1.0, 2.0, 0.0]]]))
     assert bar.coefficients(only_c).tolist() == [[0.0, 0.0, 1.0, 2.0]]
