@@ -110,6 +110,8 @@ LANDING = "case.landing"
          'material."AISI 4340".yield_strength', "did you mean 'ksi'?"),
         ("one_pin", '"225 ksi"', '"650 Mpa"', "unknown-unit",
          'material."AISI 4340".yield_strength', "did you mean 'MPa'?"),
+        ("one_pin", '"0.2836 lb/in^3"', '"7850 kg/m3"', "unknown-unit",
+         'material."AISI 4340".density', "did you mean 'kg/m^3'?"),
         ("one_pin", '"225 ksi"', '"225 in"', "wrong-dimension",
          'material."AISI 4340".yield_strength', "not a stress"),
         ("one_pin", '"225 ksi"', '"1,5 GPa"', "decimal-comma",
