@@ -52,7 +52,10 @@ def render(study: CheckedStudy) -> str:
         study=study,
         units=units,
         linkages=[
-            (skeleton.case, Markup(_loaded(skeleton, units)))
+            (
+                skeleton.case + ": a run finds its forces" * (skeleton.case in study.by_run),
+                Markup(_loaded(skeleton, units)),
+            )
             for skeleton in study.skeletons[:MAX_DRAWN_CASES]
         ],
         pins=[

@@ -4,6 +4,7 @@ import datetime
 from typing import Annotated, Any, Literal
 
 from pydantic import (
+    BeforeValidator,
     Discriminator,
     Field,
     Tag,
@@ -24,7 +25,7 @@ from pinstress.study.schema.mechanism import MechanismTable
 from pinstress.study.schema.pins import PinTable
 from pinstress.study.schema.require import RequireTable
 from pinstress.study.schema.sequence import SequenceTable
-from pinstress.study.schema.shown import as_text
+from pinstress.study.schema.shown import as_text, in_toml
 from pinstress.study.schema.size import SizeTable
 from pinstress.study.schema.space import SpaceMechanismTable
 from pinstress.study.schema.types import (
@@ -191,12 +192,24 @@ class PublishedTable(StrictTable):
     """CSV file with the columns case,time,quantity,name,published,reason."""
 
 
+def _date(value: object) -> object:
+    """Return a date as it is, or as a text; pydantic takes numbers for seconds since 1970."""
+    text = value.isoformat() if type(value) is datetime.date else value
+    try:
+        return datetime.date.fromisoformat(text if isinstance(text, str) else "")
+    except ValueError:
+        raise ArgumentError(
+            f"must be a date such as 2026-03-31, without quotes, not {in_toml(value)}",
+            "not-a-date",
+        ) from None
+
+
 class ReportTable(StrictTable):
     """The title block of the report; what is not given is left blank."""
 
     revision: Annotated[str, Field(max_length=100)] = ""
     """Revision, as "B"."""
-    date: datetime.date | None = None
+    date: Annotated[datetime.date, BeforeValidator(_date)] | None = None
     """Date of the revision, as 2026-03-31 without quotes; also the PDF's date of creation."""
     prepared: Annotated[str, Field(max_length=100)] = ""
     """Name of who prepared it."""

@@ -168,3 +168,14 @@ def test_a_page_below_a_file_is_refused_for_what_it_is(
     page = tmp_path / "afile" / "page.html"
     assert run_command_line(["check", str(tmp_path / "one.toml"), "--out", str(page)]) == 2
     assert f"{page.parent} is a file, not a folder" in capsys.readouterr().err
+
+
+def test_forces_that_only_a_run_finds_are_not_those_of_rest(tmp_path: Path) -> None:
+    """A drop, and the ground loads of its reaction, had the leg's own weight as largest force."""
+    page = page_of((ROOT / "studies" / "drop.toml").read_text(encoding="utf-8"), tmp_path)
+    rows = [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in re.findall("<tr>.*?</tr>", page)]
+    planned = {tuple(row[:2]): row[-3:] for row in rows if len(row) == 7}
+    assert {case for _, case in planned} == {"landing", "drag"}
+    for (_, case), row in planned.items():
+        assert row == ["301" if case == "landing" else "1", "–", "–"]
+    assert page.count(": a run finds its forces</figcaption>") == 2
