@@ -134,7 +134,7 @@ class CheckText:
             Margin(
                 self.method, self.clause, self.kind, level, s.factors.at(level), stress, allowable,
                 at=place.at, z=place.z, time=place.time, material=material.name, basis=basis,
-                formula=formula,
+                formula=formula, omits=self.omits,
                 needs=strength_key(material.name, which) if allowable is None else "",
             )
             for level, which, allowable in allowed

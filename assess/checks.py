@@ -12,7 +12,18 @@ from itertools import groupby
 from types import MappingProxyType
 
 from assess.check import Check, Scope
-from assess.clauses import affdl_joint, affdl_lugs, affdl_pins, aisc_d5, bth1, ekvall, melcon_hoblit
+from assess.clauses import (
+    affdl_joint,
+    affdl_lugs,
+    affdl_pins,
+    aisc_d5,
+    bth1,
+    ekvall,
+    eurocode_sections,
+    melcon_hoblit,
+    melcon_hoblit_pin,
+    special_bearing,
+)
 from assess.clauses.lug_checks import lug_checks, required_lug_checks
 from assess.clauses.lug_collapse import lug_collapse, lug_rupture
 from assess.clauses.lug_out_of_plane import lug_out_of_plane
@@ -73,15 +84,18 @@ AIRCRAFT: tuple[Check, ...] = (
     melcon_hoblit.shear_bearing,
     melcon_hoblit.tension,
     melcon_hoblit.lug_yield,
+    melcon_hoblit.bushing_yield,
     melcon_hoblit.transverse,
     melcon_hoblit.transverse_yield,
     melcon_hoblit.oblique,
     melcon_hoblit.oblique_yield,
+    special_bearing.special_bearing,
     ekvall.ekvall_transverse,
     ekvall.ekvall_bore_stress,
     affdl_joint.affdl_joint,
     affdl_pins.pin_shear,
     affdl_pins.pin_bending,
+    melcon_hoblit_pin.peaked_bending,
 )
 LIFTING: tuple[Check, ...] = (
     bth1.bth1_tension,
@@ -91,6 +105,7 @@ LIFTING: tuple[Check, ...] = (
 )
 CIVIL: tuple[Check, ...] = (
     *(check for check in CHECKS if check.kind == "clause"),
+    eurocode_sections.eurocode_section,
     aisc_d5.aisc_member,
 )
 SETS: Mapping[Code, tuple[Check, ...]] = MappingProxyType(

@@ -1,4 +1,4 @@
-"""Efficiency factors of lugs, which a study reads off the figures of its source."""
+"""Factors of lugs, which a study reads off the figures of its source, or off the rules."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ class LugFactors:
 
     K, K_n: of AFFDL-TR-69-42, figures 9-2 and 9-4. k_br, k_t: of Melcon and Hoblit for
     shear-bearing and tension, C: of the yield load; k_tru, k_try: for transverse loads, ultimate
-    and yield.
+    and yield. gamma: of the pressure of a pin in bending, which peaks at the faces of the lug.
+    bearing: the special factor of 14 CFR 25.623 and 25.693.
     """
 
     K: float | None = None
@@ -21,3 +22,5 @@ class LugFactors:
     C: float | None = None
     k_tru: float | None = None
     k_try: float | None = None
+    gamma: float | None = None
+    bearing: float | None = None

@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from assess.codes import DEFAULT_CODES, FITTING_FACTORS, Code
+from assess.codes import (
+    DEFAULT_CODES,
+    FITTING_FACTORS,
+    RECOMMENDED,
+    AiscDesign,
+    Code,
+    PartialFactors,
+)
 from assess.fatigue.records import PointFatigue
 from assess.lug_factors import LugFactors
 from assess.margin import Level
@@ -82,7 +89,8 @@ class SectionForces:
     """Shear force and bending moment along a pin, by one way of finding them.
 
     z: of S stations, (S,) m. sections, labels: the round section and the name of the segment at
-    each. shear, moment: at T instants, (T, S) N and N m. times: (T,) s, None without a motion.
+    each. shear, moment: at T instants, (T, S) N and N m; axial, torque: the size of the axial force
+    and of the torque, likewise. times: (T,) s, None without a motion.
     basis: where the forces come from. kind: the same for programs. exact: finds the largest nominal
     stress between the stations, too, where the diagrams are polynomials.
     """
@@ -92,6 +100,8 @@ class SectionForces:
     labels: tuple[str, ...]
     shear: Floats
     moment: Floats
+    axial: Floats
+    torque: Floats
     times: Floats | None
     basis: str
     kind: ForcesKind = "even"
@@ -178,8 +188,8 @@ class Situation:
 
     codes: the sets of checks that the study chooses (assess.checks). required: the checks of
     bearing and shear, with their levels, that it requires of the pin under any code.
-    design_factor: N_d of ASME BTH-1. bending_factor: the modulus of rupture of the pin over its
-    ultimate strength.
+    design_factor: N_d of ASME BTH-1. partial: factors of EN 1993-1-8. aisc: the way of design by
+    ANSI/AISC 360. bending_factor: the modulus of rupture of the pin over its ultimate strength.
     lug_factors: efficiency factors of lugs, by connection. lug_stresses: of those whose shank is
     known; shank_angles: the directions of these shanks, by connection.
     """
@@ -206,6 +216,8 @@ class Situation:
     codes: tuple[Code, ...] = DEFAULT_CODES
     required: frozenset[tuple[RequiredCheck, Level]] = frozenset()
     design_factor: float | None = None
+    partial: PartialFactors = RECOMMENDED
+    aisc: AiscDesign = "LRFD"
     bending_factor: float | None = None
     lug_factors: Mapping[str, LugFactors] = field(default_factory=dict)
     lug_stresses: tuple[LugStress, ...] = ()

@@ -66,15 +66,24 @@ def wider(
     resists: what a check carries in proportion to, which grows with a power of the diameter of a
     solid pin.
     """
-    now, bore = 2.0 * section.outer, 2.0 * section.inner
-    if not bore or not 0.0 < utilisation < float("inf"):
-        return scaled("diameter", now, utilisation, power)
+    if not section.inner or not 0.0 < utilisation < float("inf"):
+        return scaled("diameter", 2.0 * section.outer, utilisation, power)
 
     def used(wall: float) -> float:
         return utilisation * resists(section) / resists(Circle(section.inner + wall, section.inner))
 
+    return diameter_of_wall(section, used)
+
+
+def diameter_of_wall(section: Circle, used: Callable[[float], float]) -> WorkQuantity | None:
+    """Return the diameter of a pin that would just pass with its bore as it is, as `would_pass`.
+
+    used: the utilisation by the wall of the section, m; of a solid one its radius.
+    """
     wall = would_pass(used, section.outer - section.inner)
-    return None if wall is None else WorkQuantity("diameter", bore + 2.0 * wall, "length")
+    if wall is None:
+        return None
+    return WorkQuantity("diameter", 2.0 * (section.inner + wall), "length")
 
 
 def would_pass(utilisation: Callable[[float], float], now: float) -> float | None:
@@ -84,17 +93,15 @@ def would_pass(utilisation: Callable[[float], float], now: float) -> float | Non
     utilisation: as a function of the dimension; it falls as this grows.
     now: the present value.
     """
-    from scipy.optimize import brentq  # where it is needed: its import takes long
-
     step = STEP_RATIO if utilisation(now) > 1.0 else 1.0 / STEP_RATIO
     last = now
     while now / MAX_CHANGE <= last <= now * MAX_CHANGE:
         following = last * step
         if (utilisation(following) > 1.0) != (step > 1.0):
             low, high = sorted((last, following))
-            root: float = brentq(
-                lambda x: utilisation(x) - 1.0, low, high, rtol=PASSING_TOLERANCE, xtol=1e-12
-            )
-            return root * (1.0 + PASSING_TOLERANCE)
+            while high - low > PASSING_TOLERANCE * high:  # SciPy takes long to import
+                middle = 0.5 * (low + high)
+                low, high = (middle, high) if utilisation(middle) > 1.0 else (low, middle)
+            return high
         last = following
     return None

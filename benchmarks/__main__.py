@@ -58,7 +58,7 @@ from benchmarks.runs import (
     speed,
     sweep,
 )
-from benchmarks.solids import calculix, ngsolve_peer
+from benchmarks.solids import calculix, expected, ngsolve_peer
 from benchmarks.space import many_bodies, peers_space
 from pinbase.processes.pool import Job, ProcessDied, Tell, cores, in_parallel
 
@@ -75,6 +75,7 @@ ACCURACY = {
     "terms": modelling.terms,
     "instants": modelling.instants,
     "recovery": recovery.recovery,
+    "expected": expected.expected,
     "edge-peak": edge_peak.edge_peak,
     "places": places.places,
     "cells": cells.cells,

@@ -193,6 +193,8 @@ def _written(value: object, arrays: list[Array]) -> object:
         return [type(value).__name__, *content]
     if isinstance(value, tuple | list):
         return [_written(item, arrays) for item in value]
+    if isinstance(value, frozenset):
+        return [_written(item, arrays) for item in sorted(value)]
     if isinstance(value, dict):
         return {str(key): _written(item, arrays) for key, item in value.items()}
     raise TypeError(f"a {type(value).__name__} cannot be packed")
@@ -217,6 +219,8 @@ def _read(hint: Any, value: Any, arrays: dict[str, Array]) -> Any:
             return array
     if origin is tuple and isinstance(value, list):
         return tuple(_read(item_kind, item, arrays) for item_kind, item in _each(kind, value))
+    if origin is frozenset and isinstance(value, list):
+        return frozenset(_read(inner[0], item, arrays) for item in value)
     if origin in (dict, Mapping) and isinstance(value, dict):
         return {key: _read(inner[1], item, arrays) for key, item in value.items()}
     if is_dataclass(kind) and isinstance(value, list):

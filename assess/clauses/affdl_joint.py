@@ -17,9 +17,7 @@ Source: AFFDL-TR-69-42, Stress Analysis Manual, 9.4, equations 9-11 to 9-19.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-
-import numpy as np
+from dataclasses import dataclass, replace
 
 from assess.check import CheckText, WorstPlace, check
 from assess.clauses.affdl_lugs import (
@@ -34,12 +32,11 @@ from assess.clauses.eye import LoadedEye, loaded_eyes
 from assess.clauses.eye_margin import lacks_pull
 from assess.margin import Margin, strength_key
 from assess.situation import Situation
-from assess.strength.bending_arms import LAYOUT_TOLERANCE, layout
-from assess.work import Work, work
-from fea.beam.round_section import thinnest_section
+from assess.strength.bending_arms import in_double_shear
+from assess.work import Work, diameter_of_wall, work
+from fea.beam.round_section import Circle, thinnest_section
 from geometry import ArgumentError, Band
 
-LAYOUT = "double shear"
 LAYOUT_NEEDED = "symmetrical double shear, with the sizes of all three lugs"
 
 
@@ -49,7 +46,7 @@ class DoubleShear:
 
     outer, middle: what one outer and the middle lug carry with their bushings, P_1 and P_2, N.
     thickness: t_1 and t_2, gap: g, m. moment: M_u that breaks the pin, N m. shear: what breaks it
-    in both planes, N.
+    in both planes, N. section: that breaks first in bending.
     """
 
     outer: float
@@ -58,6 +55,14 @@ class DoubleShear:
     gap: float
     moment: float
     shear: float
+    section: Circle
+
+    def with_wall(self, wall: float) -> DoubleShear:
+        """The joint with another wall of the pin, m, in the same lugs."""
+        section = Circle(self.section.inner + wall, self.section.inner)
+        moment = self.moment * section.modulus / self.section.modulus
+        shear = self.shear * section.area / self.section.area
+        return replace(self, moment=moment, shear=shear, section=section)
 
     @property
     def arm(self) -> float:
@@ -140,14 +145,19 @@ def affdl_joint(text: CheckText, s: Situation) -> list[Margin]:
     bands, loaded = _in_order(s)
     t = int(loaded[1].size.argmax())
     force, place = float(loaded[1].size[t]), WorstPlace.at_band(bands[1], s.loads, t)
-    name, basis = s.material.name, loaded[1].basis
-    return [text.margin(s, force, joint.load, place, name, basis, joint.works())]
+    name, basis, section = s.material.name, loaded[1].basis, joint.section
+
+    def of_wall(wall: float) -> float:
+        return s.factors.at(text.level) * force / joint.with_wall(wall).load
+
+    passing = diameter_of_wall(section, of_wall) if joint.lugs > joint.load else None
+    return [text.margin(s, force, joint.load, place, name, basis, joint.works(), passing)]
 
 
 def joint_of(s: Situation) -> DoubleShear | list[str]:
     """The joint of a situation, or what it lacks to be one, or to be checked."""
     bands, eyes = _in_order(s)
-    if len(bands) != len(eyes) or not _symmetrical(s):
+    if len(bands) != len(eyes) or not in_double_shear(s):
         return [LAYOUT_NEEDED]
     if needs := [need for eye in eyes if (need := lacks_pull(eye))]:
         return needs[:1]
@@ -155,13 +165,6 @@ def joint_of(s: Situation) -> DoubleShear | list[str]:
         return _joint(s, bands, eyes)
     except ArgumentError as error:
         return [str(error)]
-
-
-def _symmetrical(s: Situation) -> bool:
-    """Whether the joint is in symmetrical double shear at every instant with a notable force."""
-    size = s.across.max(axis=1)
-    loaded = np.flatnonzero(size > LAYOUT_TOLERANCE * size.max())
-    return all(layout(s, int(t)) == LAYOUT for t in loaded)
 
 
 def _in_order(s: Situation) -> tuple[list[Band], list[LoadedEye]]:
@@ -191,14 +194,17 @@ def _joint(s: Situation, bands: list[Band], eyes: list[LoadedEye]) -> DoubleShea
     first, middle, last = (load for load in loads if isinstance(load, float))
     gap = max(bands[1].z0 - bands[0].z1, bands[2].z0 - bands[1].z1)
     outer = max(bands[0].length, bands[2].length)
-    moment = min(
-        strength.result.value * section.modulus
-        for section, strength in strengths.items()
-        if isinstance(strength, Work)
+    moment, section = min(
+        (
+            (strength.result.value * section.modulus, section)
+            for section, strength in strengths.items()
+            if isinstance(strength, Work)
+        ),
+        key=lambda x: x[0],
     )
     return DoubleShear(
         min(first, last), middle, (outer, bands[1].length), gap, moment,
-        2.0 * fsu * min(section.area for section in sections),
+        2.0 * fsu * min(section.area for section in sections), section,
     )  # fmt: skip
 
 

@@ -163,7 +163,7 @@ def _margins(
             continue
         capacity = capacity_of(s, x)
         if not isinstance(capacity, list):
-            margins.append(eye_margin(text, s, x, x.axial, capacity, "width"))
+            margins.append(eye_margin(text, s, x, x.axial, capacity, "thickness"))
         elif getattr(s.factors_of(x.connection), instead) is None:
             margins.append(text.lacks(s, *capacity))
     return margins

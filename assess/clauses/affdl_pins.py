@@ -19,15 +19,14 @@ import numpy as np
 
 from assess.check import CheckText, WorstPlace, check
 from assess.clauses.affdl_joint import DoubleShear, joint_of
-from assess.clauses.cozzone import bending_strength
+from assess.clauses.cozzone import PIN_OMITS, bending_strength
+from assess.clauses.melcon_hoblit_pin import peaking_bands
 from assess.margin import Margin, for_comparison, strength_key
 from assess.situation import Situation
 from assess.work import Work, wider, work
 from fea.beam.round_section import Circle
 from geometry import ArgumentError
 from pinbase.arrays import Floats
-
-PIN_OMITS = "Not covered: shear together with bending, axial force, a bore that is crushed."
 
 
 @check("pin shear, rupture", "AFFDL-TR-69-42, 9.4, eq. 9-12", kind="clause",
@@ -56,7 +55,8 @@ def pin_shear(text: CheckText, s: Situation) -> list[Margin]:
 def pin_bending(text: CheckText, s: Situation) -> list[Margin]:
     """The bending moment in the worst section against F_b W.
 
-    Even bearing is there for comparison where the joint is checked with the load at the faces.
+    Even bearing is there for comparison where the joint is checked with the load at the faces, or
+    with pressure that peaks there (assess.clauses.melcon_hoblit_pin).
     """
     if s.forces.kind == "concentrated":
         return []
@@ -79,7 +79,8 @@ def pin_bending(text: CheckText, s: Situation) -> list[Margin]:
         return strengths[section], moment
 
     margin = _worst(text, s, s.forces.moment, resisted, ("modulus", 3.0))
-    shifts = s.forces.kind == "even" and s.governs and isinstance(joint_of(s), DoubleShear)
+    even = s.forces.kind == "even" and s.governs
+    shifts = even and (peaking_bands(s) is not None or isinstance(joint_of(s), DoubleShear))
     return [for_comparison(margin) if shifts else margin]
 
 

@@ -24,6 +24,7 @@ from fea.core.material import Material
 from geometry import ArgumentError
 from pinbase.keys import key_part
 
+PIN_OMITS = "Not covered: shear together with bending, axial force, a bore that is crushed."
 YIELD_OFFSET = 0.002  # plastic strain at the yield strength
 
 
@@ -83,7 +84,7 @@ def bending_strength(s: Situation, section: Circle) -> Work | list[str]:
         )  # fmt: skip
     if m.ultimate_strain is None:
         instead = material_key(m.name, "ultimate_strain")
-        return [f"pin.{key_part(s.pin.name)}.bending_factor (or {instead}, for Cozzone's)"]
+        return [f"pin.{key_part(s.pin.name)}.bending_factor or {instead}"]
     if m.yield_strength is None:
         return [strength_key(m.name, "yield")]
     return cozzone_strength(m, section, m.ultimate_strain)

@@ -18,6 +18,7 @@ from pinbase.arrays import Floats
 
 EyeUtilisation = Callable[["PlateEye"], float]
 MAX_UTILISATION = 1e9  # that of an eye that cannot be, so that roots can be sought
+ROOT_TOLERANCE = 0.01  # of a utilisation of 1; further off is the last eye that can be, no root
 ROUND_OFF = 1e-9  # of a force, up to which its component along a direction is none
 AXIAL_BASIS = "the force taken along the shank, whose direction is not given"
 
@@ -75,7 +76,7 @@ class PlateEye:
 
     def would_pass(self, dimension: str, utilisation: EyeUtilisation) -> float | None:
         """The value of a dimension, m, at which a utilisation of the eye is 1; None where none is
-        near, and for the width of an eccentric head.
+        near, where every eye that can be passes, and for the width of an eccentric head.
         """
         if self.eccentric and dimension == "width":
             return None
@@ -87,7 +88,8 @@ class PlateEye:
             except ArgumentError:
                 return MAX_UTILISATION
 
-        return would_pass(used, getattr(self, dimension))
+        value = would_pass(used, getattr(self, dimension))
+        return value if value and abs(used(value) - 1.0) < ROOT_TOLERANCE else None
 
 
 @dataclass(frozen=True)
@@ -112,12 +114,12 @@ class LoadedEye:
 def eye_of(s: Situation, lug: Lug) -> PlateEye:
     """The eye of a lug on its band of the pin, as thick as the band is long.
 
-    Without a shank the head is round, and its end half of its width from the centre. The clearance
-    of a bushing is not in the hole of the lug; any other is the largest that is stated.
+    Without a shank the head is round, and its end half of its width from the centre. The hole is
+    as much larger than the pin as the largest clearance that is stated, and the walls of a bushing.
     """
     band, bushed, shank = s.pin.band(lug.connection), lug.bushing is not None, lug.shank
     pin = 2.0 * band.radius
-    ring = 2.0 * lug.bushing.thickness if lug.bushing else max(lug.loosest, 0.0)
+    ring = max(lug.loosest, 0.0) + (2.0 * lug.bushing.thickness if lug.bushing else 0.0)
     if shank is None:
         return PlateEye(lug.outer_diameter, pin + ring, pin, band.length, bushed)
     square, width = shank.shape == "square", lug.outline(band.radius).width_at_bore

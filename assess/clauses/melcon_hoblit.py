@@ -3,12 +3,14 @@
     shear-bearing    P_bru = k_br F_tux D t
     tension          P_tu = k_t F_tu (W - D) t
     yield            P_y = C (F_tyx / F_tux) min(P_bru, P_tu)
+    bushing, yield   P_y = 1.85 F_cy Dp t
     transverse       P_tru = k_tru F_tux D t       P_try = k_try F_tyx D t
     oblique          (R_a^1.6 + R_tr^1.6)^0.625 <= 1
 
 R_a and R_tr are the axial and the transverse part of the force over what the lug carries of each.
 The efficiency factors are those of the method's figures, which no formula gives: the study states
-them.
+them. They hold for the width over the bore at which they were read: what would just pass is named
+as a thickness.
 
 The study has one ultimate and one yield strength of a material; those across the grain (F_tux,
 F_tyx) are to be stated there where they are lower.
@@ -29,11 +31,12 @@ from assess.clauses.eye import LoadedEye, PlateEye, loaded_eyes, place_of
 from assess.clauses.eye_margin import eye_margin, strengths_of
 from assess.margin import RATIO_DIMENSION, Margin, strength_key
 from assess.situation import Situation
-from assess.work import Work, work
+from assess.work import Work, scaled, work
 from pinbase.arrays import Floats
 from pinbase.keys import lug_key
 
 NIU = "Niu, Airframe Stress Analysis, 9.8, after Melcon & Hoblit"
+BUSHING_BEARING = 1.85  # of the bushing's yield strength in compression, at yield
 OBLIQUE_EXPONENT = 1.6  # of the interaction; 0.625 is its inverse
 NIU_OMITS = (
     "Not covered: elongations under 5 %, strength across the grain other than the material's, "
@@ -63,6 +66,15 @@ def yield_load(ultimate_load: float, C: float, yields: float, ultimate: float) -
         "P_y", C * yields / ultimate * ultimate_load, "force", "{C} × ({F_ty} / {F_tu}) × {P_u}",
         C=(C, "1"), F_ty=(yields, "stress"), F_tu=(ultimate, "stress"),
         P_u=(ultimate_load, "force"),
+    )  # fmt: skip
+
+
+def bushing_yield_load(crushes: float, eye: PlateEye) -> Work:
+    """P_y of a bushing, N. crushes: its yield strength in compression, Pa."""
+    return work(
+        "P_y", BUSHING_BEARING * crushes * eye.pin * eye.thickness, "force",
+        "1.85 × {F_cy} × {D_p} × {t}",
+        F_cy=(crushes, "stress"), D_p=(eye.pin, "length"), t=(eye.thickness, "length"),
     )  # fmt: skip
 
 
@@ -111,7 +123,7 @@ def _along(
         if not ultimate:
             margins.append(text.lacks(s, *strengths_of(x.lug).missing))
             continue
-        margins.append(eye_margin(text, s, x, x.axial, partial(load, k, ultimate), "width"))
+        margins.append(eye_margin(text, s, x, x.axial, partial(load, k, ultimate), "thickness"))
     return margins
 
 
@@ -134,7 +146,26 @@ def lug_yield(text: CheckText, s: Situation) -> list[Margin]:
             loads = shear_bearing_load(k_br, fu, eye), tension_load(k_t, fu, eye)
             return yield_load(min(load.result.value for load in loads), C, fy, fu)
 
-        margins.append(eye_margin(text, s, x, x.axial, capacity, "width"))
+        margins.append(eye_margin(text, s, x, x.axial, capacity, "thickness"))
+    return margins
+
+
+@check("Melcon-Hoblit bushing", NIU, kind="clause", takes="loads", dimension="force",
+       omits=NIU_OMITS)  # fmt: skip
+def bushing_yield(text: CheckText, s: Situation) -> list[Margin]:
+    """The force on every bushed eye of which k_br or k_t is given against the yield load of its
+    bushing, which the manual's at ultimate load (assess.clauses.affdl_lugs) is below.
+    """
+    margins = []
+    for x in loaded_eyes(s):
+        if x.bushing is None or not _axial_given(s, x):
+            continue
+        crushes = x.bushing.yield_strength
+        if crushes is None:
+            margins.append(text.lacks(s, strength_key(x.bushing.name, "yield")))
+        else:
+            capacity = partial(bushing_yield_load, crushes)
+            margins.append(eye_margin(text, s, x, x.size, capacity, "thickness"))
     return margins
 
 
@@ -224,7 +255,8 @@ def _combined(
         "R", used[t], RATIO_DIMENSION, "({R_a}^1.6 + {R_tr}^1.6)^0.625", R_a=(R_a, "1"),
         R_tr=(R_tr, "1"),
     )  # fmt: skip
-    return text.margin(s, float(used[t]), 1.0, place, x.lug.name, x.basis, (*works, both))
+    passing = scaled("thickness", x.eye.thickness, s.factors.at(text.level) * float(used[t]), 1.0)
+    return text.margin(s, float(used[t]), 1.0, place, x.lug.name, x.basis, (*works, both), passing)
 
 
 def _pulled(s: Situation) -> list[LoadedEye]:

@@ -12,6 +12,7 @@ from fea.support.records import Couple
 from pinbase.dimensions import Time
 
 MAX_OPPOSED_COSINE = -0.99  # cosine between the forces of outer lugs and of the middle one
+DOUBLE_SHEAR = "double shear"
 LAYOUT_TOLERANCE = 0.05  # by which outer lugs may differ in force, width and gap
 
 
@@ -49,10 +50,17 @@ def bending_arms(s: Situation, joint: Couple | None, model: str) -> BendingArms:
     )
 
 
+def in_double_shear(s: Situation) -> bool:
+    """Whether the pin is in symmetrical double shear at every instant with a notable force."""
+    size = s.across.max(axis=1)
+    loaded = np.flatnonzero(size > LAYOUT_TOLERANCE * size.max())
+    return all(layout(s, int(t)) == DOUBLE_SHEAR for t in loaded)
+
+
 def layout(s: Situation, instant: int = 0) -> str:
     """The layout of the bands at an instant, by its number.
 
-    It is "double shear" where the even moment is that of EN 1993-1-8, figure 3.11.
+    It is DOUBLE_SHEAR where the even moment is that of EN 1993-1-8, figure 3.11.
     """
     if s.clamps:
         return "clamped"
@@ -71,7 +79,7 @@ def layout(s: Situation, instant: int = 0) -> str:
         (middle.z0 - left.z1, right.z0 - middle.z1),
     )
     same = all(abs(a - b) <= LAYOUT_TOLERANCE * max(a, b) for a, b in pairs)
-    return "double shear" if same else "double shear, not symmetrical"
+    return DOUBLE_SHEAR if same else f"{DOUBLE_SHEAR}, not symmetrical"
 
 
 def _opposed(force: np.ndarray) -> bool:

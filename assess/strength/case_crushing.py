@@ -6,6 +6,8 @@ has found (fea.support.contact.case_crushing), against first yield of the core.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from assess.check import CheckText, WorstPlace, check
 from assess.margin import Margin
 from assess.situation import Situation
@@ -20,7 +22,7 @@ from assess.situation import Situation
 )
 def crushed_case(text: CheckText, s: Situation) -> list[Margin]:
     """The margin of the core's yield strength beneath the pressure; only of hardened pins in
-    contact.
+    contact. The safety factor that the study requires replaces a smaller factor at limit load.
     """
     places = s.row.peak.places if s.row else None
     crushing = places.contact.crushing if places and places.contact else None
@@ -29,4 +31,6 @@ def crushed_case(text: CheckText, s: Situation) -> list[Margin]:
     place = WorstPlace(crushing.band, crushing.z)
     basis = "core beneath the case, by the pressure alone"
     demand, allowable = crushing.max_von_mises, crushing.strength
-    return [text.margin(s, demand, allowable, place, s.material.name, basis)]
+    margin = text.margin(s, demand, allowable, place, s.material.name, basis)
+    required = s.row.required if s.row else None
+    return [replace(margin, factor=max(margin.factor, required or 0.0))]

@@ -34,7 +34,7 @@ from assess.check import CheckText, Rupture, WorstPlace, check
 from assess.margin import Margin
 from assess.requirement import RequiredCheck
 from assess.situation import ForcesKind, NominalStress, Situation
-from assess.work import Work, wider, work
+from assess.work import Work, scaled, wider, work
 from fea.beam.line_load import acting, shares
 from fea.beam.timoshenko import SHEAR, stepped_beam
 from fea.core.hardened import linear_strength
@@ -61,6 +61,11 @@ METHODS_BY_FORMULA: Mapping[RequiredCheck, tuple[str, ...]] = MappingProxyType(
     {"bearing": BEARING_METHODS, "shear": SHEAR_METHODS}
 )
 BENDING_FORMULA = "M c / I"
+NOMINAL_OMITS = (
+    "Not covered: stress at notches and beneath lugs, axial force and torque, which the von Mises "
+    "stress of the model has."
+)
+BEARING_OMITS = "Not covered: uneven pressure along the band and its edges, wear."
 MAX_HALF_DIFFERENCE = 0.1  # part of a band's load by which its two sides may differ in double shear
 
 
@@ -69,7 +74,8 @@ def shear_yield(material: Material) -> float | None:
     return material.yield_strength / math.sqrt(3.0) if material.yield_strength else None
 
 
-@check("single shear, mean", SHIGLEY_JOINTS, kind="hand", takes="section forces")
+@check("single shear, mean", SHIGLEY_JOINTS, kind="hand", takes="section forces",
+       omits=NOMINAL_OMITS)  # fmt: skip
 def mean_shear(text: CheckText, s: Situation) -> list[Margin]:
     """The mean shear stress V / A of the section where it is largest."""
     if not s.chosen:
@@ -78,7 +84,8 @@ def mean_shear(text: CheckText, s: Situation) -> list[Margin]:
     return _along(text, s, stress, shear_yield(s.material), "V / A", "shear")
 
 
-@check("single shear, at the neutral axis", f"{SHIGLEY}, 3-11", kind="hand", takes="section forces")
+@check("single shear, at the neutral axis", f"{SHIGLEY}, 3-11", kind="hand",
+       takes="section forces", omits=NOMINAL_OMITS)  # fmt: skip
 def neutral_axis_shear(text: CheckText, s: Situation) -> list[Margin]:
     """The shear stress at the neutral axis, V Q / (I t), which is 4 V / (3 A) of a solid pin."""
     if not s.chosen:
@@ -88,7 +95,7 @@ def neutral_axis_shear(text: CheckText, s: Situation) -> list[Margin]:
     return _along(text, s, stress, shear_yield(s.material), formula)
 
 
-@check("double shear, mean", SHIGLEY_JOINTS, kind="hand", takes="statics")
+@check("double shear, mean", SHIGLEY_JOINTS, kind="hand", takes="statics", omits=NOMINAL_OMITS)
 def double_shear(text: CheckText, s: Situation) -> list[Margin]:
     """The mean shear stress F / (2 A) at every band whose load, when it is largest, goes half to
     each side.
@@ -108,16 +115,24 @@ def double_shear(text: CheckText, s: Situation) -> list[Margin]:
         load = np.linalg.norm(V[0] - V[1], axis=1)
         t = int(load.argmax())
         if load[t] > 0.0 and np.linalg.norm(V[0, t] + V[1, t]) <= MAX_HALF_DIFFERENCE * load[t]:
-            area = min(forces.sections[i].area for i in adjacent)
+            section = min((forces.sections[i] for i in adjacent), key=lambda x: x.area)
             place = WorstPlace.at_band(band, loads, t)
-            stress, material = float(load[t]) / (2.0 * area), s.material
-            margins += text.at_levels(
-                s, stress, place, material, shear_yield(material), "shear", "F / (2 A)"
-            )
+            shown = work(
+                "τ", float(load[t]) / (2.0 * section.area), "stress", "{F} / (2 × {A})",
+                F=(float(load[t]), "force"), A=(section.area, "length^2"),
+            )  # fmt: skip
+            of_band = text.at_levels(
+                s, shown.result.value, place, s.material, shear_yield(s.material), "shear",
+                "F / (2 A)",
+            )  # fmt: skip
+            margins += [
+                replace(m, work=(shown,), passing=wider(section, m.used, 2.0, attrgetter("area")))
+                for m in of_band
+            ]
     return margins
 
 
-@check("bearing", BEARING_SOURCE, kind="hand", takes="statics")
+@check("bearing", BEARING_SOURCE, kind="hand", takes="statics", omits=BEARING_OMITS)
 def bearing(text: CheckText, s: Situation) -> list[Margin]:
     """The force across every loaded band over its projected area, F / (d L)."""
     loads, material, margins = s.on_bands, s.material, list[Margin]()
@@ -126,15 +141,23 @@ def bearing(text: CheckText, s: Situation) -> list[Margin]:
         size = np.hypot(loads.forces[:, i, 0], loads.forces[:, i, 1])
         t = int(size.argmax())
         if size[t] > 0.0:
-            pressure = float(size[t]) / (2.0 * band.radius * band.length)
-            place = WorstPlace.at_band(band, loads, t)
-            margins += text.at_levels(
-                s, pressure, place, material, material.yield_strength, "bearing", "F / (d L)"
-            )
+            d, place = 2.0 * band.radius, WorstPlace.at_band(band, loads, t)
+            shown = work(
+                "σ", float(size[t]) / (d * band.length), "stress", "{F} / ({d} × {L})",
+                F=(float(size[t]), "force"), d=(d, "length"), L=(band.length, "length"),
+            )  # fmt: skip
+            of_band = text.at_levels(
+                s, shown.result.value, place, material, material.yield_strength, "bearing",
+                "F / (d L)",
+            )  # fmt: skip
+            margins += [
+                replace(m, work=(shown,), passing=scaled("thickness", band.length, m.used, 1.0))
+                for m in of_band
+            ]
     return margins
 
 
-@check(*BENDING_TEXTS["even"], kind="hand", takes="section forces")
+@check(*BENDING_TEXTS["even"], kind="hand", takes="section forces", omits=NOMINAL_OMITS)
 def bending(text: CheckText, s: Situation) -> list[Margin]:
     """The elastic bending stress M c / I, with each kind of section forces.
 

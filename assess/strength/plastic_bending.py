@@ -14,7 +14,7 @@ bending, which gives this circle. Axial force and torque are not in it: assess.p
 them.
 
 This is a rule of pinstress and of no standard. EN 1993-1-1:2005 has shear alone in 6.2.6, bending
-with shear in 6.2.8, both with axial force in 6.2.9 and 6.2.10.
+with shear in 6.2.8, both with axial force in 6.2.9 and 6.2.10 (assess.clauses.eurocode_sections).
 
 Source: EN 1993-1-1:2005, 6.2.6(3) g, for the shear area of a circular hollow section alone.
 """
@@ -25,9 +25,10 @@ import math
 
 import numpy as np
 
-from assess.check import CheckText, check
+from assess.check import CheckText, Passing, check
 from assess.margin import RATIO_DIMENSION, Margin, strength_key
 from assess.situation import Situation
+from assess.work import Work, diameter_of_wall, work
 from fea.beam.plastic_interaction import cased_rings
 from fea.beam.round_section import Circle
 
@@ -57,6 +58,7 @@ def _moment(s: Situation, z: float, section: Circle) -> float:
     takes="section forces",
     level="ultimate",
     dimension=RATIO_DIMENSION,
+    omits="Not covered: axial force and torque, which limit loads have.",
 )
 def plastic_bending(text: CheckText, s: Situation) -> list[Margin]:
     """The utilisation of the section that is nearest to a hinge, by even loads or the joint."""
@@ -68,4 +70,31 @@ def plastic_bending(text: CheckText, s: Situation) -> list[Margin]:
     M = np.array([_moment(s, *at) for at in zip(forces.z, forces.sections, strict=True)])
     V = np.array([plastic_shear(section, fy) for section in forces.sections])
     used = np.hypot(forces.moment / M, forces.shear / V)
-    return [text.along(s, used, np.ones(used.shape[1]), INTERACTION_RULE)]
+    factor = s.factors.at(text.level)
+
+    def shown(k: int) -> tuple[Work, Passing]:
+        section, t = forces.sections[k], int(used[:, k].argmax())
+        moment, shear = float(forces.moment[t, k]), float(forces.shear[t, k])
+        both = work(
+            "u", float(used[t, k]), RATIO_DIMENSION, "√(({M} / {M_pl})² + ({V} / {V_pl})²)",
+            M=(moment, "moment"), M_pl=(float(M[k]), "moment"), V=(shear, "force"),
+            V_pl=(float(V[k]), "force"),
+        )  # fmt: skip
+
+        # Where the section is the same: with its diameter the worst place may change, among those
+        # that no other exceeds in both moment and shear.
+        alike = np.array([other == section for other in forces.sections])
+        bent, sheared = (forces.moment / M)[:, alike].ravel(), (forces.shear / V)[:, alike].ravel()
+        falling = np.lexsort((-sheared, -bent))
+        before = np.maximum.accumulate(np.append(-1.0, sheared[falling][:-1]))
+        front = falling[sheared[falling] > before]
+
+        def of_wall(wall: float) -> float:
+            other = Circle(section.inner + wall, section.inner)
+            m = bent[front] * section.plastic_modulus / other.plastic_modulus
+            v = sheared[front] * plastic_shear(section, fy) / plastic_shear(other, fy)
+            return factor * float(np.hypot(m, v).max())
+
+        return both, lambda _: diameter_of_wall(section, of_wall)
+
+    return [text.along(s, used, np.ones(used.shape[1]), INTERACTION_RULE, shown)]

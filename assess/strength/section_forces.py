@@ -28,7 +28,7 @@ from assess.situation import NominalStress, Resists, SectionForces, Situation
 from fea.beam.line_load import acting, shares
 from fea.beam.round_section import thinnest_section
 from fea.beam.stress import sample
-from fea.beam.timoshenko import MOMENT, SHEAR, InternalForces, stepped_beam
+from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
 from fea.support.records import JointForces
 from pinbase.arrays import Floats
 
@@ -89,6 +89,10 @@ def of_joint(s: Situation, joint: JointForces) -> SectionForces:
     sides = [np.searchsorted(inner, joint.z, side=side) for side in ("left", "right")]
     segments, z = [int(i) for i in np.concatenate(sides)], np.tile(joint.z, 2)
     from_start = (z - np.array(s.pin.stations)[segments]).tolist()
+    moment = np.tile(joint.moment, 2)
+    along = [
+        np.zeros_like(moment) if x is None else np.tile(x, 2) for x in (joint.axial, joint.torque)
+    ]
     return SectionForces(
         z,
         tuple(
@@ -97,7 +101,9 @@ def of_joint(s: Situation, joint: JointForces) -> SectionForces:
         ),
         tuple(s.pin.labels[i] for i in segments),
         np.tile(joint.shear, 2),
-        np.tile(joint.moment, 2),
+        moment,
+        along[0],
+        along[1],
         joint.times,
         JOINT_MODEL_BASIS,
         "joint",
@@ -105,19 +111,20 @@ def of_joint(s: Situation, joint: JointForces) -> SectionForces:
 
 
 def _values(forces: InternalForces, c: Floats, cells: Cells, z: Floats) -> Floats:
-    """Shear and moment in both planes, (2, S, T, 2)."""
+    """Shear, moment, axial force and torque by phase, (4, S, T, 2)."""
     inside = forces.inside(cells, z)
-    return np.stack([np.einsum("sk,tpk->stp", inside[:, q], c) for q in (SHEAR, MOMENT)])
+    parts = (SHEAR, MOMENT, AXIAL, TORQUE)
+    return np.stack([np.einsum("sk,tpk->stp", inside[:, q], c) for q in parts])
 
 
 def _at_middles(s: Situation, forces: InternalForces, c: Floats) -> Floats:
-    """Shear and moment on both sides of concentrated loads, (2, 2 C, T, 2).
+    """The same on both sides of concentrated loads, (4, 2 C, T, 2).
 
     The shear there is that beyond the band, at which the diagrams end anyway.
     """
     bands = [s.pin.band(name) for name in s.loads.surfaces]
     middles = np.array([b.middle for b in bands])
-    V, M = _values(forces, c, _cells(forces, middles), middles)
+    _, M, *others = _values(forces, c, _cells(forces, middles), middles)
     lengths = np.array([b.length for b in bands])[:, None, None]
     force = np.moveaxis(s.loads.forces[..., :2], 0, 1)
     couple = np.moveaxis(s.loads.moments, 0, 1)
@@ -125,8 +132,9 @@ def _at_middles(s: Situation, forces: InternalForces, c: Floats) -> Floats:
     M = M - force * lengths / 8.0
     return np.stack(
         [
-            np.repeat(np.zeros_like(V), 2, axis=0),
+            np.repeat(np.zeros_like(M), 2, axis=0),
             np.stack([M + turning / 2.0, M - turning / 2.0], axis=1).reshape(-1, *M.shape[1:]),
+            *(np.repeat(x, 2, axis=0) for x in others),
         ]
     )
 
@@ -138,7 +146,7 @@ def _cells(forces: InternalForces, z: Floats) -> Cells:
 def _sized(
     s: Situation, forces: InternalForces, cells: Cells, z: Floats, values: Floats
 ) -> SectionForces:
-    V, M = np.linalg.norm(values, axis=-1)
+    V, M, N, T = np.linalg.norm(values, axis=-1)
     middles = 0.5 * (forces.stations[1:] + forces.stations[:-1])
     segments = np.searchsorted(s.pin.stations[1:-1], middles, side="right")
     return SectionForces(
@@ -147,6 +155,8 @@ def _sized(
         tuple(s.pin.labels[segments[int(i)]] for i in cells),
         V.T,
         M.T,
+        N.T,
+        T.T,
         s.loads.times,
         EVEN_LOAD_BASIS if s.balanced else f"{EVEN_LOAD_BASIS}; {SHARED_COUPLE_BASIS}",
     )

@@ -19,6 +19,7 @@ KINDS = {
     "limit": "Metal that broke: limit load at yield",
     "ultimate": "Metal that broke: ultimate load",
     "worked": "Worked examples in print",
+    "other": "Worked examples by a method that we do not have",
     "elements": "Published finite elements",
     "exact": "Exact solutions",
 }

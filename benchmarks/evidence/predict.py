@@ -20,7 +20,7 @@ from benchmarks.evidence.plane import plane_predictions
 from pinstress import changed_study, load_study
 from reports.data.results import Results
 
-IN_CONTACT = " in contact"
+IN_CONTACT, AT_ULTIMATE = " in contact", " at ultimate load"
 # What a study that prescribes its loads changes to have its joint solved, as is the default.
 CONTACT = {
     "analysis.joints": "contact",
@@ -96,14 +96,16 @@ def _read(results: Results, printed: Printed) -> float:
     every = [m.margin for m in results.margins]
     every += [check for pin in results.pins for check in pin.hand_checks]
     governing = (m for m in every if (m.method, m.at) == (printed.check, printed.at) and m.governs)
-    margin = next((m for m in governing if not m.needs), None)
+    read = printed.read.removesuffix(AT_ULTIMATE)
+    levels = ("ultimate",) if read != printed.read else ("limit", "ultimate")
+    margin = next((m for m in governing if not m.needs and m.level in levels), None)
     if margin is None:
         raise LookupError(f"{printed.study} has no check {printed.check!r} at {printed.at!r}")
-    if printed.read.startswith("work "):
-        return _of_work(margin, printed.read.removeprefix("work "))
-    if printed.read == "1 + margin":
+    if read.startswith("work "):
+        return _of_work(margin, read.removeprefix("work "))
+    if read == "1 + margin":
         return 1.0 / margin.used
-    return float(getattr(margin, printed.read))
+    return float(getattr(margin, read))
 
 
 def _of_work(margin: Margin, symbol: str) -> float:

@@ -10,6 +10,8 @@ import tempfile
 from pathlib import Path
 
 from benchmarks.motion.scissor import HIGH, LOW, SPAN, lift
+from benchmarks.space.many_bodies import SPAN as TIME
+from benchmarks.space.many_bodies import SWING, train
 from benchmarks.timing import table
 
 STAGES, FOUR_BARS = 50, 51  # of 103 bodies
@@ -24,8 +26,14 @@ samples = INSTANTS
 
 
 def linkages() -> str:
-    """A scissor lift and a chain of four-bars: the command's cost by the number of instants."""
-    studies = {"lift": lift_study(STAGES), "four-bars": chain_study(FOUR_BARS)}
+    """A scissor lift, a chain of four-bars and one of four-bars in space: the command's cost by the
+    number of instants.
+    """
+    studies = {
+        "lift": lift_study(STAGES),
+        "four-bars": chain_study(FOUR_BARS),
+        "four-bars in space": space_study(STAGES),
+    }
     rows = [(name, *_row(text, n)) for name, text in studies.items() for n in INSTANTS]
     return table(("linkage", "instants", "processor, s", "memory, MB", "report, MB"), rows)
 
@@ -74,6 +82,31 @@ def chain_study(four_bars: int, seed: int = 1) -> str:
         ]
         if k < four_bars:
             parts.append(_body(f"c{k}", 8.0, _middle(tip, tips[k + 1]), 2.7))
+    return HEAD + "\n".join(parts)
+
+
+def space_study(stages: int) -> str:
+    """The study of four-bars in space, each driven by the rocker of the one before."""
+    linkage = train(stages)
+    parts = [
+        "dimension = 3",
+        f"gravity = {[*linkage.gravity]}",
+        f'[mechanism.drive]\njoint = "{linkage.joints[0].name}"\nlaw = "cycloidal"\n'
+        f'start = "0 deg"\nend = "{SWING} rad"\nduration = {TIME}',
+    ]
+    for joint in linkage.joints:
+        axes = (("axis", joint.axis), ("second_axis", joint.second_axis))
+        parts += [
+            f'[mechanism.joint.{joint.name}]\nat = {[*joint.at]}\nkind = "{joint.kind}"',
+            *(f"{key} = {[*axis]}" for key, axis in axes if axis is not None),
+            f'fixed_in = "{joint.base}"\nconnections = {{ {joint.name} = "{joint.moving}" }}',
+        ]
+    for body in linkage.bodies:
+        (xx, xy, xz), (_, yy, yz), (_, _, zz) = body.inertia
+        parts.append(
+            f"[mechanism.body.{body.name}]\nmass = {body.mass}\ncentre = {[*body.centre]}\n"
+            f"inertia = {[xx, yy, zz, xy, xz, yz]}"
+        )
     return HEAD + "\n".join(parts)
 
 

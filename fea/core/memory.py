@@ -48,6 +48,20 @@ def allowed_memory(limit: float | None) -> float:
     return MEMORY_SHARE * free_memory() if limit is None else limit
 
 
+def most_unknowns(limit: float | None, local_loads: int = 0) -> float:
+    """The number of unknowns for which the memory is allowed: of a solid, or of a local solid with
+    so many unit loads.
+
+    limit: MB.
+    """
+    allowed, low, high = allowed_memory(limit), 1.0, 1e12
+    while high > 1.001 * low:
+        middle = math.sqrt(low * high)
+        need = local_memory(middle, local_loads) if local_loads else solid_memory(middle)
+        low, high = (middle, high) if need <= allowed else (low, middle)
+    return low
+
+
 def too_much(
     unknowns: float, limit: float | None, section_loads: int = 0, local_loads: int = 0
 ) -> str:

@@ -21,6 +21,7 @@ import numpy as np
 
 from fea.core.local_fit import continuation
 from fea.core.material import Material
+from fea.core.memory import most_unknowns
 from fea.core.pin_loads import UnitLoad
 from fea.cut.evaluate import fine_about
 from fea.cut.frames import cartesian, turn_of
@@ -116,7 +117,8 @@ def added_compliance(
     rings = tuple(dict.fromkeys(name for x in loads for load in x for name in load.surfaces))
     grades = [*(fine_about(piece, 0) for piece in pieces), *finer_at_rings(pin, rings)]
     section = HarmonicModel(pin, meridian_mesh(pin, FIRST_MESH_SIZE, (), grades), material, ())
-    models = [LocalMesh(x, material, (), LocalFineness.of(0), (), bands).model() for x in pieces]
+    first_mesh, most = LocalFineness.of(0), most_unknowns(None, 1)
+    models = [LocalMesh(x, material, (), first_mesh, (), bands, most).model() for x in pieces]
     points = np.concatenate([section_points(model) for model in models])
     fields = [section.solve(x, points) for x in loads]
     units = [tuple((load, p) for load in x for p in load.phases) for x in loads]

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
+from fea.core.memory import most_unknowns
 from fea.core.mesh_result import MeshMaximum
 from fea.core.model import MeshBefore, MeshProblem, MeshSequence
 from fea.core.pin_loads import PinLoads
@@ -54,6 +56,7 @@ def cut_solution(
     distance: float = 0.1,
     finer: LocalFineness | None = None,
     reused: Sequence[LocalFields] = (),
+    most: float = math.inf,
 ) -> CutSolution:
     """Solve all unit loads on mesh number `level` of the section and of the pieces.
 
@@ -62,6 +65,7 @@ def cut_solution(
     distance: as in fea.cut.inner_corners.
     finer: fineness of the pieces, instead of that of the level.
     reused: fields of pieces that need no finer mesh.
+    most: unknowns of a piece that are allowed.
 
     Raises: MeshError, SolveError.
     """
@@ -71,7 +75,7 @@ def cut_solution(
     known = [next((k for k in reused if k.piece == piece), None) for piece in pieces]
     memo = problem.memo or Memo()
     posed = [
-        PosedPiece(LocalMesh(piece, material, clamps, finer, high, bands), memo)
+        PosedPiece(LocalMesh(piece, material, clamps, finer, high, bands, most), memo)
         for piece, reused_piece in zip(pieces, known, strict=True)
         if reused_piece is None
     ]
@@ -233,8 +237,9 @@ class LocalSolids:
                 reach *= REACH_FACTOR
         local = pieces(self._cut, problem.clamps, reach, self._bands, spacing)
         posed = section_problem(problem, self._memo, self._first)
+        most = most_unknowns(problem.memory, len({load for load, _ in _units(problem.cases)}) or 1)
         solution = cut_solution(
-            posed, local, level, results, self._bands, problem.distance, reused=reused
+            posed, local, level, results, self._bands, problem.distance, reused=reused, most=most
         )
         return CutMesh(problem, solution, reach, spacing)
 

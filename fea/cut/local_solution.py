@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -54,6 +55,7 @@ class LocalMesh:
     finer: its fineness, finest about points where stress was high on the meshes before.
     high: these, m, in the pin's frame.
     bands: loaded ones of the pin, with cuts in them.
+    most: unknowns that are allowed.
     """
 
     piece: Piece
@@ -62,6 +64,7 @@ class LocalMesh:
     finer: LocalFineness
     high: Sequence[Point] = ()
     bands: Sequence[tuple[float, float]] = ()
+    most: float = math.inf
 
     @property
     def content(self) -> object:
@@ -78,7 +81,7 @@ class LocalMesh:
         spots: Spots = ()
         if self._here:
             spots = [point_of(x) for x in unmirrored(piece, np.array(self._here))]
-        mesh = piece_mesh(piece, finer.edges, spots, finer.spots)
+        mesh = piece_mesh(piece, finer.edges, spots, finer.spots, self.most)
         held, loaded = _clamped(piece, self.clamps), bearings(piece, self.bands)
         return LocalModel(piece, mesh, self.material, held, loaded, finer.spots)
 

@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from fea.core.material import Material
-from fea.core.memory import require_memory
+from fea.core.memory import most_unknowns, require_memory
 from fea.core.mesh_result import MeshMaximum, ZoneMaximum
 from fea.core.model import MeshBefore, MeshProblem, MeshSequence
 from fea.core.pin_loads import PinLoads, UnitLoad
@@ -62,7 +62,8 @@ def solid_solution(
     if profile is not None:
         turned = tuple(name for name in clamps if name in (*END_FACES, *profile.labels))
         edges += tuple(z for _, z in clamp_rims(profile, turned))
-    mesh = solid_mesh(pin, size, tuple(dict.fromkeys(edges)), element)
+    most = most_unknowns(memory)
+    mesh = solid_mesh(pin, size, tuple(dict.fromkeys(edges)), element, most)
     units = acting(cases) or ((UnitLoad(names[0], "force", 1), 0),)  # whose coefficient is zero
     model = SolidModel(pin, mesh, material, clamps)
     require_memory(pin.name, model.unknowns, memory)

@@ -189,6 +189,8 @@ class JointForces:
 
     times: (T,), None without a motion.
     forces: of the lugs on the pin along x and y, (T, L, 2).
+    axial, torque: the size of the axial force and of the torque (T, Z); None where they are not
+    known to act.
     """
 
     z: Lengths
@@ -197,6 +199,8 @@ class JointForces:
     moment: Moments
     lugs: tuple[str, ...]
     forces: Forces
+    axial: Forces | None = None
+    torque: Moments | None = None
 
 
 @dataclass(frozen=True)

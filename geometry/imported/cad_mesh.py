@@ -16,6 +16,7 @@ import numpy as np
 from geometry.imported.body_file import BodyFile
 from geometry.imported.solid_volume import solid_volume
 from geometry.mesh.cut_solid import near
+from geometry.mesh.expected import require_few
 from geometry.mesh.gmsh_session import failure, formula_size, gmsh_model, set_size, silence
 from geometry.mesh.gmsh_tetrahedra import collect, repair
 from geometry.mesh.solid_mesh import MeshSize, SolidMesh, sound_mesh
@@ -24,15 +25,16 @@ from geometry.shape.pin import GeometryError
 MAX_PLANE_CURVATURE = 1e-9  # of a plane surface, times the body's size
 
 
-def cad_mesh(file: BodyFile, size: MeshSize) -> SolidMesh:
+def cad_mesh(file: BodyFile, size: MeshSize, most: float = math.inf) -> SolidMesh:
     """The mesh of the solid in a file, m.
 
     Its boundaries are the file's surfaces, by their names or as "face 1" and so on.
+    most: unknowns that are allowed.
 
     Raises: GeometryError when the file is not geometry or does not contain one solid; MeshError.
     """
     cause = f"very small faces and edges in {file.path.name}"
-    return sound_mesh(lambda finer: _mesh(file, finer), size, file.name, cause)
+    return sound_mesh(lambda finer: _mesh(file, finer, most), size, file.name, cause)
 
 
 def cad_volume(file: BodyFile) -> float:
@@ -42,7 +44,7 @@ def cad_volume(file: BodyFile) -> float:
         return solid_volume(gmsh, solids[0]) * file.unit**3
 
 
-def _mesh(file: BodyFile, size: MeshSize) -> SolidMesh:
+def _mesh(file: BodyFile, size: MeshSize, most: float) -> SolidMesh:
     """A mesh of the solid of this size, m, after repair."""
     with gmsh_model(f"{file.name}, {file.path.name}") as gmsh:
         solids = solids_of(gmsh, file)
@@ -50,6 +52,7 @@ def _mesh(file: BodyFile, size: MeshSize) -> SolidMesh:
         cuts = [v / file.unit for v in z]
         faces = _split(gmsh, file, solids, cuts)
         _set_sizes(gmsh, size, cuts)
+        require_few(gmsh, file.name, most)
         gmsh.model.mesh.generate(3)
         gmsh.model.mesh.setOrder(2)
         jacobian, repaired = repair(gmsh)

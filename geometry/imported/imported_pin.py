@@ -72,14 +72,14 @@ class SolidBody:
         """The coarse mesh on which the body is measured."""
         return self.mesh(MEASURING_MESH_SIZE)
 
-    def mesh(self, size: MeshSize) -> SolidMesh:
+    def mesh(self, size: MeshSize, *most: float) -> SolidMesh:
         """A mesh of this size.
 
         The elements of a mesh file are halved once for every factor of two by which `size` is finer
-        than the default.
+        than the default. most: unknowns that are allowed of others, one number.
         """
         if not self.meshed:
-            solid: SolidMesh = self.call(cad_mesh, self.file, size)
+            solid: SolidMesh = self.call(cad_mesh, self.file, size, *most)
             return SolidMesh(with_places(solid.mesh, self.file), solid.jacobian, solid.repaired)
         solid = self._read
         mesh = with_places(solid.mesh, self.file)

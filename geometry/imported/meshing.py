@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from geometry.imported.imported_pin import SolidBody
@@ -14,18 +15,23 @@ from geometry.shape.pin_like import PinLike
 
 
 def solid_mesh(
-    pin: PinLike, size: MeshSize, edges: tuple[float, ...] = (), element: Element = "curved"
+    pin: PinLike,
+    size: MeshSize,
+    edges: tuple[float, ...] = (),
+    element: Element = "curved",
+    most: float = math.inf,
 ) -> SolidMesh:
     """The mesh of a pin.
 
     edges: z of further circles on the surface at which it is refined, m; for a body from a file
     these are the ends of its bands.
     element: kind of tetrahedra.
+    most: unknowns of quadratic ones that are allowed.
 
     Raises: MeshError.
     """
     if isinstance(pin, SolidBody):
-        solid = pin.mesh(size)
+        solid = pin.mesh(size, most)
         return replace(solid, mesh=with_element(solid.mesh, element))
     assert isinstance(pin, Pin | CutPin)
-    return turned.solid_mesh(pin, size, edges, element)
+    return turned.solid_mesh(pin, size, edges, element, most)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from geometry.mesh.cut_solid import Cuts, cut_solid, named_parts, near
+from geometry.mesh.expected import require_few
 from geometry.mesh.gmsh_session import formula_size, gmsh_model
 from geometry.mesh.gmsh_tetrahedra import collect, repair
 from geometry.mesh.scale import unit_of_solid
@@ -107,27 +108,34 @@ def clipped(pin: Pin, z0: float, z1: float) -> Pin:
     return Pin(pin.name, tuple(segments))
 
 
-def piece_mesh(piece: Piece, finer: float, spots: Spots = (), at_spots: float = 1.0) -> SolidMesh:
+def piece_mesh(
+    piece: Piece,
+    finer: float,
+    spots: Spots = (),
+    at_spots: float = 1.0,
+    most: float = math.inf,
+) -> SolidMesh:
     """The mesh of a piece, on the positive side of its mirror planes.
 
     Boundaries: the planes are "mirror x", "mirror y" and, for "z", "start"; smooth parts of cuts
     are "hole 1 wall" and so on.
     finer: fineness at the edges of cuts, relative to the first mesh.
     spots: points (x, y, z) near cuts, m. at_spots: fineness there, relative to the first mesh.
+    most: unknowns that are allowed.
 
     Raises: MeshError; GeometryError as geometry.mesh.cut_solid.
     """
     cause = "a cut that almost touches another surface"
 
     def make(size: MeshSize) -> SolidMesh:
-        return _mesh(piece, size, spots, at_spots)
+        return _mesh(piece, size, spots, at_spots, most)
 
     return sound_mesh(make, MeshSize(QUARTER_CIRCLE_ELEMENTS * finer), piece.profile.name, cause)
 
 
-def _mesh(piece: Piece, size: MeshSize, spots: Spots, at_spots: float) -> SolidMesh:
+def _mesh(piece: Piece, size: MeshSize, spots: Spots, at_spots: float, most: float) -> SolidMesh:
     """A mesh of a piece. size: `across` is the number of elements on a quarter of a hole's edge."""
-    unit = unit_of_solid(piece.profile)
+    unit = unit_of_solid(piece.profile, piece.cuts.values())
     scaled = piece.scaled(1.0 / unit)
     finer = size.across / QUARTER_CIRCLE_ELEMENTS
     with gmsh_model(scaled.profile.name) as gmsh:
@@ -149,6 +157,7 @@ def _mesh(piece: Piece, size: MeshSize, spots: Spots, at_spots: float) -> SolidM
         # With gmsh's 1e-9, edges on which the size has kinks take up to 20 times all other time.
         gmsh.option.setNumber("Mesh.LcIntegrationPrecision", 1e-4)
         set_sizes(gmsh, scaled.profile, REMOTE_MESH_SIZE.finer(finer**0.5), (), fields)
+        require_few(gmsh, scaled.profile.name, most)
         gmsh.model.mesh.generate(3)
         gmsh.model.mesh.setOrder(2)
         jacobian, repaired = repair(gmsh)

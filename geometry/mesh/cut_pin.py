@@ -8,7 +8,7 @@ from functools import cached_property
 from itertools import combinations
 from typing import ClassVar
 
-from geometry.mesh.cut_solid import cut_solid, name_faces
+from geometry.mesh.cut_solid import cut_solid, named_parts
 from geometry.mesh.gmsh_session import gmsh_model
 from geometry.mesh.scale import unit_of_solid
 from geometry.shape.features import Cut, marks_of
@@ -124,11 +124,11 @@ class CutPin:
         """
         if self.revolved:
             return self.profile.volume
-        unit = unit_of_solid(self.profile)
+        unit = unit_of_solid(self.profile, self.cuts.values())
         cut = self.scaled(1.0 / unit)
         with gmsh_model(self.name) as gmsh:
             solid = cut_solid(gmsh, cut.profile, cut.cuts)
-            name_faces(gmsh, cut.profile, cut.cuts)
+            named_parts(gmsh, cut.profile, cut.cuts)
             return float(gmsh.model.occ.getMass(*solid)) * unit**3
 
     def require_whole(self) -> None:

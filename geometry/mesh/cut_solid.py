@@ -20,12 +20,16 @@ from geometry.shape.profile import Edge, kind_of, meridian, off_edge
 from pinbase.arrays import Floats
 
 Cuts = Mapping[str, Cut]  # by their names, such as "hole 1"
+Parts = Mapping[tuple[str, str], list[int]]  # face tags by name and part (named_parts)
 Entity = tuple[int, int]
 
 MIRROR_COMPONENTS = {"mirror x": 0, "mirror y": 1}  # the coordinate that vanishes on each plane
 # Of the pin's size: OpenCASCADE's curves lie up to 1e-5 off both their surfaces.
 MAX_CURVE_DEVIATION = 1e-4
 CURVE_TOLERANCE = 1e-6  # of the pin's size: a curve this close to a surface lies on it
+# Across a quarter circle, on the first mesh: with fewer its facets turn by so much that the corner
+# looks sharp (fea.solid.sharp_edges). FIRST_ACROSS: the fineness of that mesh.
+ARC_ELEMENTS, FIRST_ACROSS = 3.0, 4.0
 EDGE_SAMPLE_FRACTIONS = (0.0, 0.21, 0.5, 0.77, 1.0)  # of the length of a curve
 
 
@@ -205,8 +209,7 @@ def named_parts(
         if deviations[best] > MAX_CURVE_DEVIATION * size:
             raise MeshError(
                 f"pin {pin.name}: face {face} of gmsh's solid matches no surface of the pin; look "
-                "for surfaces that just touch, or for a mouth_radius above a quarter of its hole's "
-                "diameter",
+                "for surfaces that just touch",
                 "surface-unmatched",
             )
         named.setdefault(known[best][0], []).append(int(face))
@@ -215,15 +218,14 @@ def named_parts(
     return named
 
 
-def name_faces(gmsh: Any, pin: Pin, cuts: Cuts) -> dict[str, list[int]]:
+def name_faces(parts: Parts, cuts: Cuts) -> dict[str, list[int]]:
     """Face tags of the solid by name: the profile's edges, "hole 1", "flat 1" and so on.
 
     The steps at a flat's ends are "flat 1 end".
-
-    Raises: as named_parts.
+    parts: tags by name and part (named_parts).
     """
     named: dict[str, list[int]] = {}
-    for (name, part), tags in named_parts(gmsh, pin, cuts).items():
+    for (name, part), tags in parts.items():
         is_end = isinstance(cuts.get(name), Flat) and part != "floor"
         named.setdefault(f"{name} end" if is_end else name, []).extend(tags)
     return named
@@ -267,15 +269,16 @@ def _off_mirror(axis: int) -> Off:
 
 
 def grade(
-    gmsh: Any, cuts: Cuts, faces: dict[str, list[int]], far: float, finer: float, growth: float
+    gmsh: Any, pin: Pin, cuts: Cuts, parts: Parts, far: float, finer: float, growth: float
 ) -> list[int]:
     """Size fields at cuts.
 
     Holes have 4 `finer` elements around, their edges twice as many; edges of flats have half of the
-    size `far`.
-    faces: tags by name. far: largest element size, m. growth: increase of the size per distance.
+    size `far`. Across rounded corners of other cuts there are at least ARC_ELEMENTS.
+    parts: tags by name and part (named_parts). far: largest element size, m. growth: increase of
+    the size per distance.
     """
-    tags = []
+    tags, faces = [], name_faces(parts, cuts)
     for name, cut in cuts.items():
         surfaces = faces[name]
         if isinstance(cut, Flat):
@@ -285,6 +288,10 @@ def grade(
         h = min(far, math.pi * cut.size / (4.0 * finer))
         tags.append(near(gmsh, "SurfacesList", surfaces, h, growth))
         tags.append(near(gmsh, "CurvesList", _edges(gmsh, surfaces), h / 2, growth))
+        for part in cut.surfaces(pin):
+            arc = math.pi / 2.0 * part.radius / (ARC_ELEMENTS * max(1.0, finer / FIRST_ACROSS))
+            if part.radius and arc < h and (name, part.part) in parts:
+                tags.append(near(gmsh, "SurfacesList", parts[name, part.part], arc, growth))
     return tags
 
 

@@ -7,8 +7,10 @@ micrometre. The unit is a power of two, which changes no digit of any dimension.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from itertools import pairwise
 
+from geometry.shape.features import Cut
 from geometry.shape.pin import Pin
 
 MIN_DIMENSION = 1e-4  # m; far enough above their tolerances
@@ -20,12 +22,18 @@ def unit_of(pin: Pin) -> float:
     return float(2.0 ** round(math.log2(pin.smallest_diameter)))
 
 
-def unit_of_solid(pin: Pin) -> float:
-    """The unit (m) for the solid of a pin: 1 where its dimensions suit metres, else `unit_of`."""
+def unit_of_solid(pin: Pin, cuts: Iterable[Cut] = ()) -> float:
+    """The unit (m) for the solid of a pin with cuts: 1 where its dimensions suit metres, else
+    `unit_of`, as for rounded mouths, of which OpenCASCADE makes every third in metres.
+    """
     small = [x for s in pin.segments for x in (s.length, *s.bores, *(w / 2 for w in s.walls))]
     small += [rounding.radius for rounding in pin.roundings]
     for left, right in pairwise(pin.segments):
         step, step_inside = left.diameters[1] - right.diameter, left.bores[1] - right.bore
         small += [abs(step) / 2, abs(step_inside) / 2]
+    for cut in cuts:
+        if cut.undivided:
+            return unit_of(pin)
+        small += [cut.size, *(part.radius for part in cut.surfaces(pin))]
     fits = min(x for x in small if x) >= MIN_DIMENSION and pin.smallest_diameter <= MAX_DIAMETER
     return 1.0 if fits else unit_of(pin)

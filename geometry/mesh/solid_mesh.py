@@ -10,8 +10,9 @@ from typing import Any
 from skfem import MeshTet1
 
 from geometry.mesh.cut_pin import CutPin
-from geometry.mesh.cut_solid import cut_solid, grade, name_faces
+from geometry.mesh.cut_solid import cut_solid, grade, name_faces, named_parts
 from geometry.mesh.elements import Element
+from geometry.mesh.expected import require_few
 from geometry.mesh.gmsh_session import MeshError, formula_size, gmsh_model, set_size
 from geometry.mesh.gmsh_tetrahedra import MIN_JACOBIAN_RATIO, collect, repair
 from geometry.mesh.revolve import revolve
@@ -67,17 +68,23 @@ class SolidMesh:
 
 
 def solid_mesh(
-    pin: Pin | CutPin, size: MeshSize, edges: tuple[float, ...] = (), element: Element = "curved"
+    pin: Pin | CutPin,
+    size: MeshSize,
+    edges: tuple[float, ...] = (),
+    element: Element = "curved",
+    most: float = math.inf,
 ) -> SolidMesh:
     """The mesh of a pin.
 
     edges: z of further circles on the surface at which it is refined, m.
     element: kind of tetrahedra.
+    most: unknowns of quadratic ones that are allowed.
 
-    Raises: MeshError when elements are still inverted or slivers after repair and on finer meshes.
+    Raises: MeshError when elements are still inverted or slivers after repair and on finer meshes,
+    or when there would be far too many.
     """
     cause = "a fillet or bore that is very small compared with its neighbours"
-    return sound_mesh(lambda finer: _mesh(pin, finer, edges, element), size, pin.name, cause)
+    return sound_mesh(lambda finer: _mesh(pin, finer, edges, element, most), size, pin.name, cause)
 
 
 def sound_mesh(
@@ -105,26 +112,28 @@ def sound_mesh(
 
 
 def _mesh(
-    pin: Pin | CutPin, size: MeshSize, edges: tuple[float, ...], element: Element
+    pin: Pin | CutPin, size: MeshSize, edges: tuple[float, ...], element: Element, most: float
 ) -> SolidMesh:
     """A mesh of a pin of this size, after repair; arguments as of `solid_mesh`."""
     profile = pin.profile
     _require_reasonable(profile, size)
-    unit = unit_of_solid(profile)
+    unit = unit_of_solid(profile, pin.cuts.values())
     pin, profile = pin.scaled(1.0 / unit), profile.scaled(1.0 / unit)
     edges = tuple(z / unit for z in edges)
     with gmsh_model(pin.name) as gmsh:
         more: list[int] = []
         if pin.cuts:
             cut_solid(gmsh, profile, pin.cuts)
-            surfaces = name_faces(gmsh, profile, pin.cuts)
-            far = _far(profile, size)
-            more = grade(gmsh, pin.cuts, surfaces, far, size.across, size.growth)
+            parts = named_parts(gmsh, profile, pin.cuts)
+            surfaces, far = name_faces(parts, pin.cuts), _far(profile, size)
+            more = grade(gmsh, profile, pin.cuts, parts, far, size.across, size.growth)
         else:
             outline = meridian(profile)
             revolve(gmsh, outline)
             surfaces = _name_surfaces(gmsh, profile, outline)
         set_sizes(gmsh, profile, size, edges, more)
+        if element != "linear":
+            require_few(gmsh, pin.name, most)
         gmsh.model.mesh.generate(3)
         if element == "linear":
             return SolidMesh(collect(gmsh, surfaces).scaled(unit), 1.0, 0)

@@ -37,7 +37,9 @@ from pinbase.errors import Place
 MIN_SAME_SIDE_COSINE = 0.9  # of the angle between holes that are open on the same side
 MIN_WALL_RATIO = 0.02  # of a diameter: thinner walls cannot be made, and take excessive meshes
 MAX_TILT = math.pi / 3.0 + 1e-12  # rad; chosen by judgement
-MAX_MOUTH_REACH = 1.5  # largest extent of a rounded mouth over its radius
+# Of a mouth over the one whose rounding shrinks to a point: beyond it OpenCASCADE takes 5 % more
+# from the edges than a ball of the radius leaves, or fails.
+MAX_MOUTH_SHARE = 0.8
 
 
 @dataclass(frozen=True)
@@ -159,15 +161,20 @@ class Hole(Drilled):
         return parts
 
     def _off_mouth(self, pin: Pin) -> Off:
-        """Distance of points from the ring in which the rounded edge of a mouth lies."""
+        """Distance of points from the ring in which the rounded edge of a mouth lies.
+
+        A ball that touches the pin's surface and the hole's wall from within rolls along it.
+        """
         a, rho, outer = self.diameter / 2.0, self.mouth_radius, outer_radius(pin, self.z)
+        widest = (a + rho) * outer / (outer - rho)  # where it touches the surface, at its sides
+        least = math.sqrt((outer - rho) ** 2 - 2.0 * a * rho - rho**2)  # and where the wall
         placed = self.placed(pin, 4.0 * pin.largest_diameter)
 
         def off(x: Floats) -> Floats:
             s, _ = placed.local(x)
             r = np.hypot(x[:, 0], x[:, 1])
-            aside = np.maximum(s - a - MAX_MOUTH_REACH * rho, a - s)
-            return np.maximum(np.maximum(aside, outer - MAX_MOUTH_REACH * rho - r), 0.0)
+            aside = np.maximum(s - widest, a - s)
+            return np.maximum(np.maximum(aside, least - r), 0.0)
 
         return off
 
@@ -303,8 +310,9 @@ class Hole(Drilled):
                 "mouth-not-on-cylinder",
             )
             require(
-                self.mouth_radius < 0.9 * (least - r),
-                "the radius of its mouth does not fit beside the hole; reduce it",
+                r + 2.0 * self.mouth_radius < MAX_MOUTH_SHARE * least,
+                "the radius of its mouth does not fit beside the hole; at most "
+                f"{(MAX_MOUTH_SHARE * least - r) / 2.0 / self.diameter:.3g} of its diameter does",
                 "radius-too-large",
             )
 

@@ -47,14 +47,23 @@ class LugOutline:
 
     def __post_init__(self) -> None:
         hole = self.hole / 2.0
-        if self.shape != "square":
-            wall = self.head / 2.0 - abs(self.centre) - hole
-        else:
-            wall = min(self.end, self.width / 2.0) - hole
-        if wall < MIN_WALL * self.hole:
+        least = hole + MIN_WALL * self.hole
+        if self.shape != "ring" and self.end < least:
             raise ArgumentError(
-                "the head leaves no wall about its hole: its outer diameter, width or end is too "
-                "small",
+                f"the end of the head is {self.end / hole:.4g} times the radius of its hole; it "
+                "must be larger",
+                "lug-too-narrow",
+            )
+        if self.shape == "square" and self.width / 2.0 < least:
+            raise ArgumentError(
+                f"the plate is {self.width / self.hole:.4g} times as wide as the hole of its eye; "
+                "it must be wider",
+                "lug-too-narrow",
+            )
+        if self.shape != "square" and self.head / 2.0 - abs(self.centre) < least:
+            raise ArgumentError(
+                "the head leaves no wall about its hole: its outer diameter is too small, or its "
+                "end too far from the bore's centre for that",
                 "lug-too-narrow",
             )
         if self.shape != "ring":

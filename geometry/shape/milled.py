@@ -199,10 +199,13 @@ class Slot(Milled):
                 "beyond-end",
             )
         least, most = radii(pin, self.z0, self.z1)
+        otherwise = "so that it is a flat: give it as one, with its distance from the axis"
+        if self.depth is None:
+            otherwise = "and would cut the pin in two; reduce it"
         require(
             self.width / 2.0 < least - tolerance,
-            f"its width is {self.width / (2.0 * least):.4g} times the pin's diameter there "
-            "and would cut the pin in two; reduce it",
+            f"its width is {self.width / (2.0 * least):.4g} times the pin's diameter there, "
+            f"{otherwise}",
             "slot-too-wide",
         )
         if self.round_ends:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from loads.linkage.linkage import Linkage, LinkageError
-from loads.linkage.parts import Parallel, Slider, Turn
+from loads.linkage.parts import Parallel, Sign, Slider, Turn
 from loads.motion.as_drawn import RANK_TOLERANCE
 from loads.motion.equations import drive_side
 from loads.motion.least_squares import Factors, elimination
@@ -63,7 +63,7 @@ def holding(motion: Motion, hold: Sequence[str] = ()) -> Holding:
     if not hold and not linkage.parallel:
         return Holding(actuators, weights, motion.factors)
     if hold:
-        _require_count(motion.mobility.degrees, hold, len(sets))
+        require_count(motion.mobility.degrees, hold, len(sets))
     # By virtual work, the row of a set is the sum of its actuators' rows, weighted by their forces.
     J = loops.jacobian(motion.pose)
     rows = np.stack([loops.along(a) / loops.unit(a) for a in actuators])
@@ -83,27 +83,40 @@ def locked(linkage: Linkage, hold: Sequence[str]) -> Linkage:
     """
     sets = _sets(linkage, hold)
     freedom = mobility(linkage)
-    _require_count(freedom.degrees, hold, len(sets))
+    require_count(freedom.degrees, hold, len(sets))
     rules = tuple(rule for _, rule in sets if rule is not None)
     held = replace(linkage, driven=tuple(names[0] for names, _ in sets), parallel=rules)
     if mobility(held).free:
-        raise _cannot_hold(hold, mobility(held).loose)
+        raise cannot_hold(hold, mobility(held).loose)
     return held
 
 
 def require_closed(held: Holding, forces: Floats) -> None:
     """Raises: LinkageError when a stop would have to pull. forces: (T, A) N or N m."""
     for k, stop in enumerate(held.actuators):
-        if not isinstance(stop, Turn) or stop.carries == "both":
-            continue
-        opening = -forces[:, k] if stop.carries == "positive" else forces[:, k]
-        if opening.max() > OPENING_FORCE_TOLERANCE * np.abs(forces).max():
-            raise LinkageError(
-                f"stop {stop.name} carries only {stop.carries} couples, but to hold this load it "
-                f"would have to carry {forces[int(opening.argmax()), k]:.4g} N m: it opens; name "
-                "something else in hold",
-                "stop-opens",
-            )
+        if isinstance(stop, Turn):
+            least = OPENING_FORCE_TOLERANCE * float(np.abs(forces).max())
+            require_pressed(stop.name, stop.carries, forces[:, k], least)
+
+
+def require_pressed(
+    stop: str, carries: Sign, force: Floats, least: float, slides: bool = False
+) -> None:
+    """Raises: LinkageError when a stop would have to pull.
+
+    force: (T,) N, or N m where it does not slide. least: of a force that counts.
+    """
+    if carries == "both":
+        return
+    opening = -force if carries == "positive" else force
+    if opening.max() > least:
+        what, unit = ("forces", "N") if slides else ("couples", "N m")
+        raise LinkageError(
+            f"stop {stop} carries only {carries} {what}, but to hold this load it would have to "
+            f"carry {force[int(opening.argmax())]:.4g} {unit}: it opens; name something else in "
+            "hold",
+            "stop-opens",
+        )
 
 
 def _sets(linkage: Linkage, hold: Sequence[str]) -> list[tuple[tuple[str, ...], Parallel | None]]:
@@ -140,7 +153,7 @@ def _weights(motion: Motion, actuators: Sequence[Slider | Turn], rule: Parallel 
     return shares * displacements
 
 
-def _require_count(degrees: int, hold: Sequence[str], count: int) -> None:
+def require_count(degrees: int, hold: Sequence[str], count: int) -> None:
     """Raises: LinkageError unless there are as many sets as degrees of freedom."""
     if count > degrees:
         raise LinkageError(
@@ -162,10 +175,10 @@ def _loose(motion: Motion, J: Floats, names: Sequence[str]) -> LinkageError:
     loops = motion.loops
     _, singular, right = np.linalg.svd(J)
     free = right[singular < RANK_TOLERANCE * singular[0]] / loops.scale
-    return _cannot_hold(names, loops.moving(motion.pose[:1], free))
+    return cannot_hold(names, loops.moving(motion.pose[:1], free))
 
 
-def _cannot_hold(names: Sequence[str], bodies: Sequence[str]) -> LinkageError:
+def cannot_hold(names: Sequence[str], bodies: Sequence[str]) -> LinkageError:
     """The error of actuators that leave bodies free."""
     loose = ", ".join(bodies) or "it"
     return LinkageError(

@@ -8,7 +8,6 @@ from typing import Literal
 import numpy as np
 
 from loads.landing.requirements import GroundRule
-from loads.linkage.parts import Point
 
 Vector = tuple[float, float, float]
 Side = Literal["left", "right", "inboard", "outboard"]
@@ -53,27 +52,28 @@ class WheelForce:
 class GroundedWheel:
     """A wheel on the ground.
 
-    up, aft: unit vectors in the plane of the linkage.
+    up, aft: unit vectors at a right angle, world axes.
     leg: on which side of the aircraft it is: "left", "right" or "nose".
     radius: of the loaded tyre, m; None: all forces act at the axle.
     braked: whether it cannot turn, so that drag acts at the ground contact.
     """
 
-    up: Point
-    aft: Point
+    up: Vector
+    aft: Vector
     leg: str
     radius: float | None = None
     braked: bool = False
 
     def sideways(self, towards: Side) -> Vector:
-        """The unit vector across the linkage towards a side.
+        """The unit vector across the direction of travel towards a side.
 
         The pilot's left is aft x up.
         """
         opposite = {"left": "right", "right": "left"}
         inboard = {"inboard": opposite.get(self.leg, ""), "outboard": self.leg}
-        z = self.aft[0] * self.up[1] - self.aft[1] * self.up[0]
-        return 0.0, 0.0, z if inboard.get(towards, towards) == "left" else -z
+        sign = 1.0 if inboard.get(towards, towards) == "left" else -1.0
+        x, y, z = (sign * np.cross(self.aft, self.up)).tolist()
+        return x, y, z
 
     def forces(self, rule: GroundRule, reference: float, towards: Side) -> tuple[WheelForce, ...]:
         """The components that a rule demands, without those that are zero.
@@ -81,13 +81,10 @@ class GroundedWheel:
         reference: load of which they are parts, N.
         towards: side to which the side load acts.
         """
-        up: Vector = (*self.up, 0.0)
-        drag: Vector = (self.aft[0], self.aft[1], 0.0)
-        if rule.drag < 0.0:
-            drag = (-drag[0], -drag[1], 0.0)
+        up, drag = self.up, self.aft if rule.drag >= 0.0 else _scaled(self.aft, -1.0)
         contact: tuple[str, Vector] = (AXLE, (0.0, 0.0, 0.0))
         if self.radius is not None:
-            contact = CONTACT, (-self.radius * up[0], -self.radius * up[1], 0.0)
+            contact = CONTACT, _scaled(up, -self.radius)
         of_drag = contact if self.braked else (AXLE, (0.0, 0.0, 0.0))
         forces = (
             WheelForce("vertical", rule.vertical, reference, "up", up, *contact),
@@ -96,3 +93,8 @@ class GroundedWheel:
             WheelForce("side", rule.side, reference, towards, self.sideways(towards), *contact),
         )  # fmt: skip
         return tuple(force for force in forces if force.factor)
+
+
+def _scaled(vector: Vector, factor: float) -> Vector:
+    x, y, z = vector
+    return factor * x, factor * y, factor * z

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 Point = tuple[float, float]
+Sign = Literal["both", "positive", "negative"]
 GROUND = "ground"
 
 
@@ -104,7 +105,7 @@ class Turn:
     body: str
     drawn: float
     base: str = GROUND
-    carries: Literal["both", "positive", "negative"] = "both"
+    carries: Sign = "both"
 
 
 @dataclass(frozen=True)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from loads.linkage.linkage import Linkage, LinkageError
+from loads.linkage.parts import Sharing
 from loads.motion.as_drawn import moves_nearby, rank, singular_as_drawn
 from loads.motion.equations import Equations
 from loads.motion.planar_equations import PlanarEquations
@@ -69,7 +71,8 @@ def require_determined(linkage: Linkage) -> Mobility:
     drives; and for sharing rules without effect.
     """
     freedom = require_driven(PlanarEquations(linkage))
-    if errors := list(_idle_sharing(linkage, freedom)):
+    undriven = partial(_undriven, linkage)
+    if errors := list(idle_sharing(linkage.sharing, freedom, undriven)):
         raise LinkageError.all(errors)
     return freedom
 
@@ -136,16 +139,23 @@ def _undriven_error(equations: Equations, freedom: Mobility, loose: str) -> Link
     )
 
 
-def _idle_sharing(linkage: Linkage, freedom: Mobility) -> Iterator[LinkageError]:
-    """The errors of sharing rules none of whose connections is statically indeterminate."""
-    for share in linkage.sharing:
+def idle_sharing(
+    rules: Sequence[Sharing],
+    freedom: Mobility,
+    advice: Callable[[tuple[str, ...]], str] = lambda idle: "",
+) -> Iterator[LinkageError]:
+    """The errors of sharing rules none of whose connections is statically indeterminate.
+
+    advice: on connections that share nothing.
+    """
+    for share in rules:
         if set(share.connections) & set(freedom.shared):
             continue
         shared = ", ".join(freedom.shared)
         remedy = f"name some of {shared} instead" if shared else "remove it"
         yield LinkageError(
             f"sharing over {', '.join(share.connections)} has no effect: rigid-body statics "
-            f"determines the forces there; {remedy}{_undriven(linkage, share.connections)}",
+            f"determines the forces there; {remedy}{advice(share.connections)}",
             "sharing-idle",
             ("sharing",),
         )

@@ -18,6 +18,7 @@ from pinbase.arrays import Floats
 PANEL_DEGREE = 8
 INTERPOLATION_TOLERANCE = 1e-6  # of the largest magnitude of a quantity, or of those in its group
 MIN_PANELS = 16  # over the whole time, before any is halved
+SAMPLE_BLOCK = 8192  # samples whose errors are in memory together
 # Of a span: it is evaluated this far inside its corners, to see only one side of a jump.
 CORNER_INSET = 1e-6
 # Of the whole time: corners this close are one. Of a maximum: so is a value this close at an end.
@@ -228,7 +229,8 @@ def resolved(
     solved = [(samples, values), (first, at(first))]
     largest = np.zeros(values.shape[1])
     for _, known_values in solved:
-        largest = np.maximum(largest, np.abs(known_values).max(axis=0, initial=0.0))
+        highest, lowest = (f(known_values, axis=0, initial=0.0) for f in (np.max, np.min))
+        largest = np.maximum(largest, np.maximum(highest, -lowest))
     active = _Panels(
         low,
         high,
@@ -314,11 +316,15 @@ def _sample_errors(
     """Panel and error of its polynomial, over the scale, at every sample inside a panel."""
     which = np.searchsorted(panels.low, times, side="right") - 1
     inside = (which >= 0) & (times < panels.high[which])
-    which = which[inside]
-    error = panels.at(which, times[inside])
-    error -= values[inside]
-    error /= scale
-    return which, np.abs(error, out=error).max(axis=1, initial=0.0)
+    which, rows = which[inside], np.flatnonzero(inside)
+    out = np.empty(len(rows))
+    for k in range(0, len(rows), SAMPLE_BLOCK):
+        part = slice(k, k + SAMPLE_BLOCK)
+        error = panels.at(which[part], times[rows[part]])
+        error -= values[rows[part]]
+        error /= scale
+        out[part] = np.abs(error, out=error).max(axis=1, initial=0.0)
+    return which, out
 
 
 def _gathered(

@@ -20,12 +20,10 @@ from loads.space.conditions import axes_of
 from loads.space.linkage import SpaceLinkage
 from loads.space.motion import SpaceMotion
 from loads.space.sharing import (
-    STIFFNESS_RATIO,
     RedundantSets,
+    others,
     redundant_sets,
-    scaled,
     shared,
-    unstated,
 )
 from loads.space.teeth import pitch_points, tooth_forces
 from pinbase.arrays import Complex, Floats
@@ -43,8 +41,9 @@ class SpaceDynamics:
     friction: (T, J) N m, couple of the base on the moving body about the axis.
     loads: what acts besides gravity.
     shared: joints whose wrenches follow from sharing rules or stiffness.
-    range: the reactions with each of the links whose stiffness is not stated a tenth and ten times
-    as stiff, by link and factor; empty where that does not matter.
+    range: the reactions with other stiffness of links of which none is stated, by what is
+    different; empty where that does not matter.
+    weakest: (T,) smallest over largest pivot of the equations, which is tiny near a dead point.
     """
 
     reactions: Reactions
@@ -53,19 +52,33 @@ class SpaceDynamics:
     motion: SpaceMotion
     loads: tuple[SpaceLoad, ...]
     shared: tuple[str, ...]
-    range: dict[tuple[str, float], Reactions]
+    range: dict[str, Reactions]
+    weakest: Floats
 
     @property
     def power(self) -> Floats:
         """Power of every drive, (T, D) W."""
         return self.drive * self.motion.speeds
 
+    @property
+    def condition(self) -> tuple[float, float]:
+        """Condition number of the equations where they are weakest, and the time of that, s."""
+        k = int(self.weakest.argmin())
+        at = self.motion[k : k + 1]
+        J = at.equations.jacobian(at.pose)[0]
+        return float(np.linalg.cond(J)), float(at.times[0])
+
     @cached_property
     def imbalance(self) -> Floats:
         """Power of drives, loads and gravity less the rate of the kinetic energy and less what
         friction takes, (T,) W; zero but for round-off.
         """
-        motion = self.motion
+        slices = self.motion.equations.parts(len(self.motion))
+        parts = zip(self.motion.parts, slices, strict=True)
+        return np.concatenate([self._imbalance(motion, part) for motion, part in parts])
+
+    def _imbalance(self, motion: SpaceMotion, part: slice) -> Floats:
+        """The same of the instants of a part, which are those of `motion`."""
         linkage, velocities = motion.linkage, motion.velocities
         v, a = velocities.velocity[:, :-1], motion.accelerations.velocity[:, :-1]
         w, rate = velocities.spin[:, :-1], motion.accelerations.spin[:, :-1]
@@ -77,8 +90,8 @@ class SpaceDynamics:
         rubbing = np.zeros(len(motion))
         for k, joint in enumerate(linkage.joints):
             if joint.friction:
-                rubbing += self.friction[:, k] * _turning_speed(motion, k)
-        given = self.power.sum(axis=1) + power(motion, self.loads) + weight + rubbing
+                rubbing += self.friction[part, k] * turning_speed(motion, k)
+        given = self.power[part].sum(axis=1) + power(motion, self.loads) + weight + rubbing
         return np.asarray(given - kinetic)
 
 
@@ -87,16 +100,22 @@ def space_reactions(
     motion: SpaceMotion,
     loads: Sequence[SpaceLoad] = (),
     timed: bool = True,
+    friction: bool = True,
+    variants: bool = True,
 ) -> SpaceDynamics:
     """Wrenches in a driven motion under gravity, loads and friction.
 
     case: name, for messages.
     timed: whether the instants follow each other in time.
+    friction: whether joints have theirs.
+    variants: whether with the reactions for other stiffness of links.
 
     Raises: JammingError.
     """
     parts = [  # without their own motions, whose matrices would otherwise stay in memory
-        replace(_Balance(part, tuple(loads)).dynamics(case, timed), motion=motion)
+        replace(
+            _Balance(part, tuple(loads), friction).dynamics(case, timed, variants), motion=motion
+        )
         for part in motion.parts
     ]
     whole: SpaceDynamics = joined(parts)
@@ -123,24 +142,31 @@ class _Source:
 class _Balance:
     """The balance of forces of one batch of instants."""
 
-    def __init__(self, motion: SpaceMotion, loads: tuple[SpaceLoad, ...]) -> None:
+    def __init__(self, motion: SpaceMotion, loads: tuple[SpaceLoad, ...], friction: bool) -> None:
         self.motion, self.loads = motion, loads
         self.equations, self.linkage = motion.equations, motion.linkage
-        self.sources = [*self._teeth(), *self._rubbing()]
+        self.sources = [*self._teeth(), *(self._rubbing() if friction else ())]
         self.shared = motion.mobility.shared
 
-    def dynamics(self, case: str, timed: bool) -> SpaceDynamics:
-        """Wrenches and drive forces; `case` and `timed` as of `space_reactions`."""
+    def dynamics(self, case: str, timed: bool, variants: bool) -> SpaceDynamics:
+        """Wrenches and drive forces; arguments as of `space_reactions`."""
         required = self._required()
         f = self.motion.force_factors.solve_transposed(required)
         reactions, drive, friction = self._solved(self.linkage, f, case, timed)
-        variants = {}
-        for body in unstated(self.linkage, self.shared) if self.motion.force_factors.spare else ():
-            for factor in (1.0 / STIFFNESS_RATIO, STIFFNESS_RATIO):
-                other = scaled(self.linkage, body, factor)
-                variants[body, factor] = self._solved(other, f, case, timed)[0]
+        spare = variants and self.motion.force_factors.spare
+        range_ = {
+            text: self._solved(other, f, case, timed)[0]
+            for text, other in (others(self.linkage, self.shared) if spare else {}).items()
+        }
         return SpaceDynamics(
-            reactions, drive, friction, self.motion, self.loads, self.shared, variants
+            reactions,
+            drive,
+            friction,
+            self.motion,
+            self.loads,
+            self.shared,
+            range_,
+            self.motion.force_factors.weakest,
         )
 
     def _solved(
@@ -208,7 +234,7 @@ class _Balance:
             for body, sign in ((joint.moving, -1.0), (joint.base, 1.0)):
                 if (b := linkage.index[body]) < len(linkage.bodies):
                     couples[:, b] += sign * axis
-            speed = _turning_speed(motion, k) * linkage.length_scale
+            speed = turning_speed(motion, k) * linkage.length_scale
             against = np.where(np.abs(speed) > MIN_TURNING_SPEED * motion.pace, -np.sign(speed), 0)
             required = self.equations.generalised(motion.pose, forces, couples)
             yield _Source(f"joint {joint.name}", True, k, joint.friction * against, required)
@@ -300,7 +326,7 @@ class _Balance:
         )
 
 
-def _turning_speed(motion: SpaceMotion, k: int) -> Floats:
+def turning_speed(motion: SpaceMotion, k: int) -> Floats:
     """Angular velocity of the moving body of joint k against its base about the axis, (T,)."""
     joint = motion.linkage.joints[k]
     axis = motion.rotation(joint.base) @ axes_of(joint)["w"]

@@ -68,6 +68,11 @@ class SpaceMotion(Instants[SpaceEquations]):
         """Angular acceleration of a body, world axes, (T, 3) rad/s^2."""
         return np.asarray(self.accelerations.spin[:, self.linkage.index[body]])
 
+    def place(self, body: str, drawn: Vector) -> Floats:
+        """Position (T, 3) m of a body's point, as drawn (m)."""
+        k = self.linkage.index[body]
+        return np.asarray(self.pose.centre[:, k] + self.pose.arm(k, drawn))
+
     def point(self, body: str, drawn: Vector) -> SpacePoint:
         """Position (m), velocity and acceleration, (T, 3) each, of a body's point, as drawn (m)."""
         k = self.linkage.index[body]
@@ -102,9 +107,13 @@ class SpaceMotion(Instants[SpaceEquations]):
     @cached_property
     def kinetic_energy(self) -> Floats:
         """Kinetic energy, (T,) J."""
-        v, w = self.velocities.velocity[:, :-1], self.velocities.spin[:, :-1]
-        turning = np.einsum("tbi,tbij,tbj->t", w, self.inertias, w)
-        return np.asarray(0.5 * (np.einsum("b,tbi,tbi->t", self.masses, v, v) + turning))
+        return np.concatenate([_kinetic_energy(part) for part in self.parts])
+
+
+def _kinetic_energy(part: SpaceMotion) -> Floats:
+    v, w = part.velocities.velocity[:, :-1], part.velocities.spin[:, :-1]
+    turning = np.einsum("tbi,tbij,tbj->t", w, part.inertias, w)
+    return np.asarray(0.5 * (np.einsum("b,tbi,tbi->t", part.masses, v, v) + turning))
 
 
 class SpaceCourse(Followed[SpaceMotion]):

@@ -28,6 +28,7 @@ from loads.linkage.parts import GROUND, Slider
 from loads.motion.complex_points import number
 from loads.motion.joint_forces import connection_members, slider_members
 from loads.space.stiffness import LinkStiffness, cantilever, complete
+from loads.space.stiffness import variations as other_links
 from pinbase.arrays import Complex, Floats
 
 # Of the largest flexibility: below it nothing in a loop yields, and statics cannot be completed.
@@ -283,15 +284,7 @@ def variations(linkage: Linkage, links: Links, ratio: float) -> dict[str, Links]
     """
     known = stiffness_of(linkage, links)
     loose = [name for name in known if name not in links.stated]
-    out: dict[str, Links] = {}
-    for times, text in ((ratio, "stiffer"), (1.0 / ratio, "more flexible")):
-        for name in loose:
-            stated = dict(known, **{name: known[name].times(times)})
-            out[f"{name} {ratio:g} times {text}"] = Links(stated)
-        if loose:
-            stated = dict(known, **{name: known[name].with_torsion(times) for name in loose})
-            out[f"all links {ratio:g} times {text} in torsion"] = Links(stated)
-    return out
+    return {text: Links(each) for text, each in other_links(known, loose, ratio).items()}
 
 
 def _raised(force: Complex, z: Floats | float) -> Floats:

@@ -78,10 +78,12 @@ def space_over_time(
     wrenches = 2 * len(samples.reactions.connections)
     each = wrenches + np.arange(2 * len(effort))
     groups = np.concatenate([np.repeat(np.arange(wrenches), 3), each])
-    times, once = np.unique(
-        np.concatenate([s.dynamics.motion.times for s in first]), return_index=True
-    )
-    known = np.concatenate([columns(s) for s in first])[once]
+    every = np.concatenate([s.dynamics.motion.times for s in first])
+    times, place = np.unique(every, return_inverse=True)
+    known, start = np.empty((len(times), len(groups))), len(every)
+    for solved in reversed(first):  # one after the other: of long motions they are large
+        start -= len(solved.dynamics.motion)
+        known[place[start : start + len(solved.dynamics.motion)]] = columns(solved)
     history = resolved(
         times, lambda t: columns(solve(t)), corners, groups=groups.tolist(), known=known
     )

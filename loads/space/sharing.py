@@ -3,8 +3,8 @@
 With more conditions than freedoms some sets of wrenches are in equilibrium by themselves. Of these
 the amounts follow in two steps: the linkage's rules, by which named joints share like springs; then
 least complementary energy of the links, each a beam from its centre of mass to each of its joints.
-Of links whose stiffness is not stated all have the same section, and the result is one of several:
-each link is also taken a tenth and ten times as stiff.
+Links whose stiffness is not stated are as stiff as the mean of the others, and the result is one of
+several: each of them is also taken a tenth and ten times as stiff, then all in torsion.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from loads.linkage.parts import GROUND
 from loads.space.equations import SpaceEquations
 from loads.space.linkage import SpaceLinkage
 from loads.space.pose import SpacePose
-from loads.space.stiffness import LinkStiffness, cantilever, complete
+from loads.space.stiffness import LinkStiffness, cantilever, complete, variations
 from pinbase.arrays import Floats
 
 STIFFNESS_RATIO = 10.0  # of a link whose stiffness is not stated, up and down
@@ -48,10 +48,14 @@ def unstated(linkage: SpaceLinkage, stressed: tuple[str, ...]) -> tuple[str, ...
     return tuple(dict.fromkeys(b for b in ends if b not in stated))
 
 
-def scaled(linkage: SpaceLinkage, body: str, factor: float) -> SpaceLinkage:
-    """The same linkage with one body stiffer by a factor."""
-    stiffness = stiffness_of(linkage)
-    return replace(linkage, stiffness={**stiffness, body: stiffness[body].times(factor)})
+def others(linkage: SpaceLinkage, stressed: tuple[str, ...]) -> dict[str, SpaceLinkage]:
+    """The same linkage with other stiffness that is as possible, by what is different.
+
+    stressed: joints that carry sets in equilibrium by themselves.
+    """
+    loose = unstated(linkage, stressed)
+    each = variations(stiffness_of(linkage), loose, STIFFNESS_RATIO)
+    return {text: replace(linkage, stiffness=stiffness) for text, stiffness in each.items()}
 
 
 def stiffness_of(linkage: SpaceLinkage) -> dict[str, LinkStiffness]:
@@ -106,8 +110,8 @@ def shared(
         names = (name for (name, _), s in named if s > 1e-6 * size.max())
         raise LinkageError(
             f"rigid-body statics does not determine the forces at {', '.join(names)}, nor does the "
-            "stiffness of the links, since these joints lie at their centres of mass or on the "
-            "ground; state how they share the load: [[mechanism.sharing]]",
+            "stiffness of the links, since these joints lie at their centres of mass, on the "
+            "ground or on rigid links; state how they share the load: [[mechanism.sharing]]",
             "sharing-incomplete",
             ("sharing",),
         )

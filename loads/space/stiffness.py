@@ -18,6 +18,7 @@ from pinbase.arrays import Floats
 POISSON_RATIO = 0.3  # of the bars, for torsion against bending
 NOMINAL_SLENDERNESS = 10.0  # length over diameter of links of which no stiffness is stated
 MIN_ARM = 1e-12  # m: a joint this close to the centre has no cantilever
+MIN_SQUARE = 1e-2  # part of a unit vector across a cantilever: with less it says no depth
 
 
 @dataclass(frozen=True)
@@ -25,19 +26,25 @@ class LinkStiffness:
     """The stiffness of a link's section, in any units that all links share.
 
     axial: EA, N.
-    bending, across: EI against bending in the plane of the drawing, and out of it, N m^2.
+    bending, across: EI against bending along the depth of the section, and across it, N m^2.
     torsion: GJ, N m^2.
+    depth: direction of the depth as drawn; None: in the plane of the drawing, across the link.
     """
 
     axial: float
     bending: float
     across: float
     torsion: float
+    depth: tuple[float, float, float] | None = None
 
     def times(self, factor: float) -> LinkStiffness:
         """The same link, stiffer by a factor in everything."""
-        return LinkStiffness(
-            self.axial * factor, self.bending * factor, self.across * factor, self.torsion * factor
+        return replace(
+            self,
+            axial=self.axial * factor,
+            bending=self.bending * factor,
+            across=self.across * factor,
+            torsion=self.torsion * factor,
         )
 
     def with_torsion(self, factor: float) -> LinkStiffness:
@@ -94,12 +101,9 @@ def cantilever(arm: Floats, link: LinkStiffness) -> Floats:
     if length <= MIN_ARM:
         return out
     along = arm / length
-    # `across` bends towards z; for a cantilever along z any normal will do.
-    up = np.array([0.0, 0.0, 1.0]) if abs(along[2]) < 1.0 - 1e-9 else np.array([1.0, 0.0, 0.0])
-    side = np.cross(up, along)
-    side /= np.linalg.norm(side)
+    side = _depth(along, link)
     normal = np.cross(along, side)
-    axes = np.stack([along, side, normal])  # rows: local x, y (in the plane), z (across it)
+    axes = np.stack([along, side, normal])  # rows: local x, y (along the depth), z (across it)
     plane, across = link.bending, link.across
     local = np.zeros((6, 6))
     local[0, 0] = length / link.axial
@@ -110,3 +114,34 @@ def cantilever(arm: Floats, link: LinkStiffness) -> Floats:
     local[4, 4], local[5, 5] = length / across, length / plane
     turn = np.kron(np.eye(2), axes)
     return np.asarray(turn.T @ local @ turn)
+
+
+def _depth(along: Floats, link: LinkStiffness) -> Floats:
+    """The direction of the depth of a link's section, square to a cantilever `along` (3,)."""
+    if link.depth is not None:
+        depth = np.array(link.depth) / np.linalg.norm(link.depth)
+        depth -= (depth @ along) * along
+        if (size := float(np.linalg.norm(depth))) > MIN_SQUARE:
+            return np.asarray(depth / size)
+    # In the plane, so that `across` bends towards z; for a cantilever along z any one will do.
+    up = np.array([0.0, 0.0, 1.0]) if abs(along[2]) < 1.0 - 1e-9 else np.array([1.0, 0.0, 0.0])
+    side = np.cross(up, along)
+    return np.asarray(side / np.linalg.norm(side))
+
+
+def variations(
+    known: Mapping[str, LinkStiffness], loose: Sequence[str], ratio: float
+) -> dict[str, dict[str, LinkStiffness]]:
+    """Other stiffnesses of all bodies that are as possible, by what is different.
+
+    Each of the `loose` ones, of which nothing is stated, is `ratio` times as stiff and as flexible;
+    then all of them in torsion.
+    """
+    out: dict[str, dict[str, LinkStiffness]] = {}
+    for times, text in ((ratio, "stiffer"), (1.0 / ratio, "more flexible")):
+        for name in loose:
+            out[f"{name} {ratio:g} times {text}"] = {**known, name: known[name].times(times)}
+        if loose:
+            twisted = {name: known[name].with_torsion(times) for name in loose}
+            out[f"all links {ratio:g} times {text} in torsion"] = {**known, **twisted}
+    return out

@@ -11,8 +11,6 @@ from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.core.solution import Picture, StressField
 from fea.core.voigt import von_mises
-from fea.section.balance import balanced
-from fea.section.section_stress import SectionField
 from fea.support.cell_pressure import CellPressure
 from fea.support.support import Solution
 from pinbase.arrays import Floats
@@ -90,6 +88,10 @@ def _volume(
     held = solution.held if solution.pressure is not None else None
     profile = (held.pin if held else task.pin).profile
     if profile is not None:
+        # Here, for what is read from the cache loads no solver.
+        from fea.section.balance import balanced
+        from fea.section.section_stress import SectionField
+
         clamps = () if task.lugs else tuple(task.pin.surface(name) for name in task.clamps)
         loads = solution.loads.on_rings
         sections = SectionField(profile, task.material, clamps, (loads,))

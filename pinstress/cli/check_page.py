@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,9 @@ from pinstress.study.model.balance import given_warnings
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
+from pinstress.study.schema.landing import DropCase, GroundCase
 from reports.data.check import CheckedPin, CheckedStudy, PlannedRow
+from reports.format.numbers import DASH
 from reports.page.check import write_check
 
 HTML_HEAD = b"<!doctype html"
@@ -74,13 +77,22 @@ def write_check_page(study: Study, examination: Examination, path: Path) -> None
         rows=tuple(
             _row(study, task, k) for task in examination.tasks for k in range(len(task.loads))
         ),
+        by_run=frozenset(filter(partial(_by_run, study), examination.loads)),
     )
     write_check(in_units(in_si, study.system.factor), path)
+
+
+def _by_run(study: Study, name: str) -> bool:
+    """Return whether only a run finds the forces of a case: a check does not follow a drop."""
+    case = study.table.case[name]
+    return isinstance(case, DropCase) or (isinstance(case, GroundCase) and case.drop is not None)
 
 
 def _row(study: Study, task: Task, k: int) -> PlannedRow:
     """Return the row of a task's case number k."""
     loads = task.loads[k]
+    case = study.table.case[loads.case]
+    by_run = _by_run(study, loads.case)
     sizes = np.linalg.norm(loads.forces, axis=2)
     at = int(sizes.max(axis=0).argmax())
     return PlannedRow(
@@ -88,9 +100,9 @@ def _row(study: Study, task: Task, k: int) -> PlannedRow:
         loads.case,
         support_of(study, task.pin, task.clamps),
         _model(study, task),
-        len(loads),
-        float(sizes.max()),
-        loads.surfaces[at],
+        case.samples if isinstance(case, DropCase) else len(loads),
+        None if by_run else float(sizes.max()),
+        DASH if by_run else loads.surfaces[at],
     )
 
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import closing
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import click
@@ -14,6 +16,7 @@ from pinbase.keys import key_part
 from pinbase.processes.pool import processes
 from pinstress.cli.new_file import write_new
 from pinstress.cli.run import console, progress_bar
+from pinstress.cli.shared import resumable
 from pinstress.cli.size import OTHER_FILE_REMEDY, close, target_of
 from pinstress.cli.streams import unneeded
 from pinstress.explore.size.at_probability import lighten_at
@@ -22,7 +25,9 @@ from pinstress.explore.size.least_weight import LightStudy, lighten
 from pinstress.explore.size.lightest_pin import Lightest
 from pinstress.explore.size.pin_shape import DIMENSION_KINDS, Proportions
 from pinstress.explore.size.scaled_study import moved
+from pinstress.explore.size.search_log import FinishedSearch, SearchLog
 from pinstress.explore.size.size_pin import SizingGoal
+from pinstress.explore.size.size_state import FinishedSearches, SizeState, identity
 from pinstress.explore.size.weight_search import WeightGoal
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.pins import weight
@@ -87,6 +92,7 @@ def lighten_and_write(
     quiet: bool = False,
     jobs: int | None = None,
     probability: float | None = None,
+    resume: bool = False,
 ) -> int:
     """Find the lightest pins and write the new study.
 
@@ -95,16 +101,47 @@ def lighten_and_write(
     jobs: number of pins in parallel, by default the number of cores.
     probability: largest probability of missing the factor; without it, the factor is that of the
     study as it is.
+    resume: whether to begin with the searches that an interrupted command has kept.
 
     Raises: InputError.
     """
     target = target_of(study, out)
-    with progress_bar(alone=processes(jobs) == 1, quiet=quiet) as progress:
-        design = (
-            lighten(study, aim, pins, processes(jobs), progress)
-            if probability is None
-            else lighten_at(study, aim, probability, pins, processes(jobs), progress)
-        )
+    asked = identity(study, (aim, probability), pins or study.table.pin)
+    with closing(SizeState[FinishedSearch](target, asked, FinishedSearches)) as state:
+        if resume:
+            log = SearchLog(state.read(), state.write)
+        else:
+            state.begin()
+            log = SearchLog((), state.write)
+        with resumable(partial(_kept, state, log)):
+            with progress_bar(alone=processes(jobs) == 1, quiet=quiet) as progress:
+                design = (
+                    lighten(study, aim, pins, processes(jobs), progress, log)
+                    if probability is None
+                    else lighten_at(study, aim, probability, pins, processes(jobs), progress, log)
+                )
+            status = _write(study, design, aim, target, quiet, probability)
+        state.end()
+    return status
+
+
+def _kept(state: SizeState[FinishedSearch], log: SearchLog) -> str:
+    """Return what is finished, as of `resumable`; where nothing is, nothing is left."""
+    if not len(log):
+        state.end()
+        return ""
+    return "1 search is" if len(log) == 1 else f"{len(log)} searches are"
+
+
+def _write(
+    study: Study,
+    design: LightStudy,
+    aim: WeightGoal,
+    target: Path,
+    quiet: bool,
+    probability: float | None,
+) -> int:
+    """Write and print the new study, and return the exit status."""
     heavy = all(study.material_of(lightest.pin).density for lightest in design.pins)
     rows = [_row(study, design, lightest, aim, heavy) for lightest in design.pins]
     if changed := design.study.text != study.text and any(x.values or x.scale for x in design.pins):

@@ -119,11 +119,9 @@ def import_(file: Path, pin: str | None, material: str, unit: str, out: Path | N
 def schema() -> None:
     import json
 
-    from pinstress.study.schema.tables import StudyTable
+    from pinstress.study.schema.json_schema import editor_schema
 
-    json_schema = StudyTable.model_json_schema()
-    json_schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
-    click.echo(json.dumps(json_schema, indent=2))
+    click.echo(json.dumps(editor_schema(), indent=1))
 
 
 @click.command(
@@ -299,14 +297,11 @@ def size(
     wished = Wishes(**{field.name: options.pop(field.name) for field in fields(Wishes)})
     if wished.given and not least_weight:
         raise InputError(f"{wished.given[0]} needs --least-weight", code="needs-least-weight")
-    if least_weight and options["resume"]:
-        raise InputError("--resume is not for --least-weight", code="contradiction")
     if least_weight and connection is not None:
         raise InputError("--scheduler is not for --least-weight", code="contradiction")
     goal = require_wish(loaded, fos, metres)
     if least_weight:
         aim = require_aim(goal, wished, metres)
-        del options["resume"]
         return lighten_and_write(loaded, aim, probability=wished.probability, **options)
     return size_and_write(loaded, goal, SizeOptions(connection=connection, **options))
 

@@ -21,7 +21,7 @@ from pinstress.cli.streams import unneeded
 from pinstress.explore.size.scaled_study import moved
 from pinstress.explore.size.size_pin import SizingGoal, SizingResult
 from pinstress.explore.size.size_pins import new_study, size_pins
-from pinstress.explore.size.size_state import SizeState, identity, replace_file
+from pinstress.explore.size.size_state import FinishedPins, SizeState, identity, replace_file
 from pinstress.explore.size.standard_diameters import standard_diameters
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.pins import slenderness, weight
@@ -67,7 +67,8 @@ def size_and_write(study: Study, goal: SizingGoal, options: SizeOptions) -> int:
     target = target_of(study, options.out, new=False)
     plan = prepare(study, pins=options.pins)
     task_pins = {task.pin.name for task in plan.tasks}
-    with closing(SizeState(target, identity(study, goal, task_pins))) as state:
+    asked = identity(study, goal, task_pins)
+    with closing(SizeState[SizingResult](target, asked, FinishedPins)) as state:
         sizing = _Sizing(study, goal, target, state)
         sized, new = _size(plan, sizing, options)
     rows = [_row(study, new, result) for result in sized]
@@ -107,7 +108,9 @@ def _size(plan: Plan, sizing: _Sizing, options: SizeOptions) -> tuple[list[Sizin
 class _Sizing:
     """A size that is going on: finished pins in the new study and in its state."""
 
-    def __init__(self, study: Study, goal: SizingGoal, target: Path, state: SizeState) -> None:
+    def __init__(
+        self, study: Study, goal: SizingGoal, target: Path, state: SizeState[SizingResult]
+    ) -> None:
         self.goal = goal
         self._study, self._target, self._state = study, target, state
         self._pins: dict[str, SizingResult] = {}

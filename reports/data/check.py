@@ -23,7 +23,8 @@ class CheckedPin:
 class PlannedRow:
     """A row that a run would have.
 
-    instants: of the case. largest: force of a link on the pin. at: its connection.
+    instants: of the case. largest: force of a link on the pin, None where only a run finds it, as
+    after a drop. at: its connection.
     """
 
     pin: str
@@ -31,7 +32,7 @@ class PlannedRow:
     support: str
     model: str
     instants: int
-    largest: Force
+    largest: Force | None
     at: str
 
 
@@ -42,6 +43,7 @@ class CheckedStudy:
     summary: sentences on the study, its mechanism and its cases. problems: what a run would not
     solve, and what may be wrong.
     motions, space: of the linkage, by case, in the plane and in space.
+    by_run: cases whose forces only a run finds.
     """
 
     title: str
@@ -53,6 +55,7 @@ class CheckedStudy:
     pins: tuple[CheckedPin, ...]
     rows: tuple[PlannedRow, ...]
     space: tuple[Skeleton, ...] = ()
+    by_run: frozenset[str] = frozenset()
 
     @property
     def skeletons(self) -> tuple[Skeleton, ...]:

@@ -263,21 +263,33 @@ def _of_stress(stress: float, error: float | None, strength: float) -> tuple[flo
 
 
 def _merged(steps: Iterable[LettingGo]) -> list[LettingGo]:
-    """Return steps in which places that let go of the same at the same load share one."""
+    """Return steps in which places that let go of the same at the same load share one, with the
+    ends of all.
+    """
     merged: list[LettingGo] = []
     for step in steps:
         for k, other in enumerate(merged):
             if _alike(step, other):
-                at = dict.fromkeys([*other.at.split(", "), step.at])
-                merged[k] = replace(other, at=", ".join(at))
+                at = ", ".join(dict.fromkeys([*other.at.split(", "), step.at]))
+                merged[k] = replace(_outer(other, step), at=at)
                 break
         else:
             merged.append(step)
     return merged
 
 
+def _outer(a: LettingGo, b: LettingGo) -> LettingGo:
+    """Return the earlier of two steps, with the ends of both."""
+    first = min(a, b, key=lambda step: inf if step.load_factor is None else step.load_factor)
+    lows, highs = (
+        [x for x in ends if x is not None] for ends in ((a.low, b.low), (a.high, b.high))
+    )
+    return replace(first, low=min(lows, default=None), high=max(highs, default=None))
+
+
 def _alike(a: LettingGo, b: LettingGo) -> bool:
-    if (a.what, a.effect, a.needs) != (b.what, b.effect, b.needs) or not (a.at and b.at):
+    kinds = ((x.what, x.effect, x.needs, x.required, x.in_proportion) for x in (a, b))
+    if next(kinds) != next(kinds) or not (a.at and b.at):
         return False
     x, y = a.load_factor, b.load_factor
     return x is y is None or (None not in (x, y) and isclose(x, y, rel_tol=SAME_FACTOR))  # type: ignore[arg-type]

@@ -23,16 +23,16 @@ LUG_MODES: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "shear-out and bearing": ("AFFDL lug bearing", "Melcon-Hoblit shear-bearing"),
         BEARING: (
             "lug, bearing", "BTH-1 plate, bearing", "AISC bearing", "EN 1993 bearing",
-            "EN 1993 contact",
+            "EN 1993 contact", "special factor in bearing",
         ),
         "yield": ("Melcon-Hoblit yield",),
         "across the shank": ("Melcon-Hoblit transverse", "Ekvall transverse"),
         "out of its plane": ("lug, bending out of its plane",),
         "oblique": ("Melcon-Hoblit oblique",),
-        "bushing": ("AFFDL bushing",),
+        "bushing": ("AFFDL bushing", "Melcon-Hoblit bushing"),
         "press fit": (PRESS_FIT_METHOD,),
         PIN_AND_LUGS: ("AFFDL joint in double shear",),
-        "collapse": ("lug, limit load",),
+        "collapse": ("lug, limit load", "lug, ultimate load"),
     }
 )  # fmt: skip
 

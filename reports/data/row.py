@@ -113,7 +113,7 @@ class LandingRange:
 
 @dataclass(frozen=True)
 class SharingRange:
-    """The range of a maximum over the stiffness of links that share loads out of the plane.
+    """The range of a maximum over the stiffness of links that share what statics leaves open.
 
     max_von_mises: its ends. lowest, highest: what is different there; empty where it is the row's.
     largest_load: the largest ratio of a demand to that in the case, as of a landing's range.
@@ -134,7 +134,7 @@ class PinResult:
     joint: contact with the lugs at the governing instant, if lugs support the pin.
     limit_load: past yield, if requested; lug_collapses: of lugs, if requested.
     landing: the results over the ranges of a landing's impulse, if it has any.
-    sharing: the range over the stiffness of links, where they share loads out of the plane.
+    sharing: the range over the stiffness of links, where they share what statics leaves open.
     strength_range: between which the yield strength may lie, where the study states it.
     margins: of every check at every place and level; worst: the worst place of each that counts.
     arms: of the bending moment, None where the formulas do not apply.

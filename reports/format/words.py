@@ -31,8 +31,8 @@ RESULT_ROWS_NOTE = (
 )
 SHARING_NOTE = (
     "Links is the range of the maximum over the stiffness of links of which none is stated, each a "
-    "tenth and ten times as stiff as the others, then all in torsion: parallel pins share loads "
-    "out of the plane by it. It is not part of the ±; [mechanism.link_stiffness] closes it."
+    "tenth and ten times as stiff as the others, then all in torsion: by it redundant joints share "
+    "what statics leaves open. It is not part of the ±; [mechanism.link_stiffness] closes it."
 )
 JOINT_RANGE_NOTE = (
     "Joint is the range of the maximum over properties of the joint that are seldom known: other "

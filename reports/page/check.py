@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from reports.data.check import CheckedStudy, PlannedRow
 from reports.data.results import PinShape
 from reports.data.row import Units
 from reports.data.skeleton import Skeleton
+from reports.folder.inside import write_inside
 from reports.format.numbers import drawn
 from reports.format.template import rendered
 from reports.page.linkage_drawing import draw_linkage
@@ -32,8 +34,12 @@ ROW_COLUMNS: list[Column[PlannedRow]] = [
 
 
 def write_check(study: CheckedStudy, path: Path) -> None:
-    """Write the page."""
-    path.write_text(render(study), encoding="utf-8", newline="\n")
+    """Write the page so that its file is complete or unchanged.
+
+    Raises: OSError.
+    """
+    there = Path(os.path.realpath(path))  # the user may give a link
+    write_inside(there.parent, there.name, render(study).encode())
 
 
 def render(study: CheckedStudy) -> str:
@@ -46,7 +52,10 @@ def render(study: CheckedStudy) -> str:
         study=study,
         units=units,
         linkages=[
-            (skeleton.case, Markup(_loaded(skeleton, units)))
+            (
+                skeleton.case + ": a run finds its forces" * (skeleton.case in study.by_run),
+                Markup(_loaded(skeleton, units)),
+            )
             for skeleton in study.skeletons[:MAX_DRAWN_CASES]
         ],
         pins=[

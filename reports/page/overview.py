@@ -42,9 +42,10 @@ from reports.text.overview import actions, decisions, why
 from reports.text.summary import ALL_CONVERGED, caveats
 
 MAX_PEAKS = 5  # pins whose largest stress the page tells
-MAX_UNKNOWNS = 6  # rows of the table of what is open
+MAX_NAMED_CASES = 6  # in the line on the study; of more cases it says the number
 LABEL_AT_END = 12.0  # per cent of the axis: nearer to its left end, the label begins at its line
-LABEL_WIDTH = 20.0  # of "1.5 required", per cent of the axis: no tick is written so near to it
+LAST_AT_END = 92.0  # beyond it, the number at a tick ends there
+AXIS_CHARACTERS = 20.0  # that fit above the axis where it is as narrow as the page makes it
 MAX_CHECKS = 1  # with one need, of a row of the matrix, by name
 MAX_MATRIX_PINS = 14  # columns of the matrix of requirements; of more pins the best share the last
 LONG_NAME = 16  # characters: longer names wrap, or stand upright above a column
@@ -98,7 +99,7 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "command": steps.command,
         "curve": draw_factor_curve(lines[0], results.units.length) if lines else None,
         "accuracy": [*_accurate(lines, results), *certainty(lines), *measure_first(unknown, lines)],
-        "unknowns": [_unknown(x, results, lines) for x in unknown[:MAX_UNKNOWNS]],
+        "unknowns": [_unknown(x, results, lines) for x in unknown],
         "caveats": _caveats(results, lines, formulas=not matrix),
     }
 
@@ -153,7 +154,7 @@ def _about(results: Results, pins: Sequence[str]) -> str:
         if strength:
             text += f", yield strength {engineering(strength)} {results.units.stress}"
         parts.append(text)
-    few = len(cases) <= MAX_UNKNOWNS
+    few = len(cases) <= MAX_NAMED_CASES
     named = f"case{'s' * (len(cases) != 1)} {', '.join(cases)}" if few else f"{len(cases)} cases"
     parts.append(named)
     if (required := common_factor(results.pins)) is not None:
@@ -181,17 +182,28 @@ def _css(outcome: str) -> str:
 
 
 def _ticks(axis: FactorAxis) -> dict[str, Any]:
-    ticks = [(short(tick), 100.0 * axis.at(tick)) for tick in axis.ticks]
-    if axis.required is None:
-        return {"required": None, "label": "", "ticks": ticks}
-    required = 100.0 * axis.at(axis.required)
-    # At the left end the label is written to the right of its line, else around it.
-    beside = 2.0 * LABEL_WIDTH if required < LABEL_AT_END else LABEL_WIDTH
-    return {
-        "required": required,
-        "label": _required(axis),
-        "ticks": [(text, at) for text, at in ticks if abs(at - required) > beside],
-    }
+    """Return the numbers above an axis that do not touch the required factor, or each other."""
+    required = None if axis.required is None else 100.0 * axis.at(axis.required)
+    label = "" if required is None else _required(axis)
+    taken = [] if required is None else [_written(label, required, LABEL_AT_END)]
+    ticks = []
+    for tick in axis.ticks:
+        text, at = short(tick), 100.0 * axis.at(tick)
+        low, high = _written(text, at)
+        if all(high < other_low or low > other_high for other_low, other_high in taken):
+            taken.append((low, high))
+            ticks.append((text, at))
+    return {"required": required, "label": label, "ticks": ticks}
+
+
+def _written(text: str, at: float, first: float = 0.0) -> tuple[float, float]:
+    """Return both ends, in per cent of the axis, of a text above it and half a space beside it.
+
+    It is in the middle of its place, or begins there before `first`, or ends there near the end.
+    """
+    width = 100.0 * (len(text) + 1) / AXIS_CHARACTERS
+    low = at if at < first else at - width if at > LAST_AT_END else at - width / 2.0
+    return low, low + width
 
 
 def _required(axis: FactorAxis) -> str:

@@ -13,7 +13,8 @@ MAX_PLOT_ROWS = 40  # rows
 def comparison_plot(comparison: RunComparison) -> Plot | None:
     """Return points with ranges on a logarithmic axis; None without two numbers to compare."""
     data: list[Spec] = []
-    pairs = changed_rows(comparison)[:MAX_PLOT_ROWS]
+    changed = changed_rows(comparison)
+    pairs = changed[:MAX_PLOT_ROWS]
     pins, cases = labels(x.pin for x in pairs), labels(x.case for x in pairs)
     for pair in pairs:
         for run, side in zip("AB", (pair.first, pair.second), strict=True):
@@ -43,4 +44,7 @@ def comparison_plot(comparison: RunComparison) -> Plot | None:
              "encoding": {"x": {**x, "field": "x"}, "shape": colour, **common}},
         ],
     }  # fmt: skip
-    return Plot(COMPARISON_PLOT_NAME, "Maxima of both runs with their errors.", spec)
+    caption = "Maxima of both runs with their errors"
+    if len(changed) > len(pairs):
+        caption += f": the first {len(pairs)} of the {len(changed):,} rows above"
+    return Plot(COMPARISON_PLOT_NAME, f"{caption}.", spec)

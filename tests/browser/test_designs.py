@@ -379,3 +379,12 @@ def test_ticks_close_together_have_different_labels(page: Any) -> None:
     labels = page.execute_script(f"{at} return s.ticks.map(([, text]) => text);")
     assert len(set(labels)) == len(labels) > 2
     assert all(len(label) <= len("0.30105") for label in labels)
+
+
+def test_a_factor_that_is_missed_is_not_rounded_to_it(page: Any) -> None:
+    """It was 1.5 with the required 1.5, and in the selection below that."""
+    worded = """
+    return [1.49999, 1.5, 1.4, 1 / 0, NaN].map((x) => worded(page.model.byKey.safety_factor, x));
+    """
+    assert REQUIRED == 1.5
+    assert page.execute_script(worded) == ["1.49999", "1.5", "1.4", "∞", "–"]

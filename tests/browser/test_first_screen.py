@@ -69,6 +69,14 @@ for (const tr of document.querySelectorAll("table.lines tbody tr")) {
 return faults;
 """
 
+# Numbers above the axis of factors that touch another one.
+ON_AXIS = """
+const spans = [...document.querySelectorAll("th.axis span[aria-hidden]")];
+const boxes = spans.map((e) => e.getBoundingClientRect());
+return boxes.length && boxes.some((a, i) => boxes.slice(i + 1).some(
+  (b) => a.left < b.right + 2 && b.left < a.right + 2));
+"""
+
 
 @pytest.fixture
 def page(browser: Any, shipped: Callable[[str], Path]) -> Any:
@@ -132,6 +140,13 @@ def test_bars_stand_on_their_side_of_the_requirement(page: Any, width: int) -> N
     if width == 390:
         assert rows[0]["bottom"] < FIRST_SCREEN
     assert errors(page) == []
+
+
+@pytest.mark.parametrize("width", [1400, 1300, 1050])
+def test_numbers_above_the_axis_do_not_touch(page: Any, width: int) -> None:
+    """Where the columns beside it leave the axis as narrow as it may be."""
+    with screen(page, width):
+        assert page.execute_script(ON_AXIS) is False
 
 
 def test_numbers_on_a_phone_say_what_they_are(page: Any) -> None:

@@ -6,12 +6,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from geometry import Bottom, Cut, CutPin, Flat, GeometryError, Hole, Passage, Pin, Segment, Slot
+from geometry.mesh import cut_pin
 from geometry.mesh.gmsh_session import MeshError
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from pinbase.arrays import Floats
@@ -138,12 +141,56 @@ def test_the_volume_of_a_cut(name: str) -> None:
     assert BAR.volume - made(cut).volume == pytest.approx(expected, rel=2e-5, abs=aslant)
 
 
-def test_mouths_that_gmsh_cannot_round_are_named() -> None:
+@each(
+    ("size", "radius"),
+    [(0.1, 0.05), (0.2, 0.38), (0.35, 0.15), (0.35, 0.31)],
+)
+def test_mouths_of_any_radius_that_fits_are_rounded(size: float, radius: float) -> None:
+    """In metres OpenCASCADE failed at every third, and faces of wide holes "match no surface"."""
+    d = 0.02 * size
+    hole = Hole(0.02, d, 0.3, mouth_radius=radius * d)
+    pin = CutPin.of(Pin("B", (Segment(0.04, 0.02),)), (hole,))
+    sharp = CutPin.of(Pin("B", (Segment(0.04, 0.02),)), (replace(hole, mouth_radius=0.0),))
+    taken = beside_balls(0.01, d / 2.0, radius * d)  # 2 % by its sample
+    assert sharp.volume - pin.volume == pytest.approx(taken, rel=0.06)
+
+
+def beside_balls(outer: float, a: float, rho: float) -> float:
+    """The volume at both mouths of a hole of radius a that no ball of radius rho within the pin
+    fills, from points at random. Their centres have r <= outer - rho, and s >= a + rho from the
+    hole's axis.
+    """
+    rng, wide = np.random.default_rng(1), 2.0 * (a + 3.0 * rho)
+    low = math.sqrt((outer - rho) ** 2 - (a + rho) ** 2) - 2.0 * rho
+    x = rng.random((300_000, 3)) * [outer - low, wide, wide] + [low, -wide / 2.0, -wide / 2.0]
+    r, s = np.hypot(x[:, 0], x[:, 1]), np.hypot(x[:, 1], x[:, 2])
+    x = x[(r < outer) & (s > a)]
+    r, s = np.hypot(x[:, 0], x[:, 1]), np.hypot(x[:, 1], x[:, 2])
+    inward, outward = x.copy(), x.copy()  # to the nearest centre, as far as there is one
+    inward[:, :2] *= np.minimum(1.0, (outer - rho) / r)[:, None]
+    outward[:, 1:] *= np.maximum(1.0, (a + rho) / s)[:, None]
+    filled = np.hypot(inward[:, 1], inward[:, 2]) >= a + rho
+    filled |= (np.hypot(outward[:, 0], outward[:, 1]) <= outer - rho) & (s > a)
+    turn = np.linspace(0.0, 2.0 * math.pi, 4001)
+    y, z = (a + rho) * np.sin(turn), (a + rho) * np.cos(turn)
+    along = np.stack([np.sqrt((outer - rho) ** 2 - y**2), y, z], axis=1)
+    left = cKDTree(along).query(x[~filled])[0] > rho
+    return 2.0 * (outer - low) * wide**2 * float(np.count_nonzero(left)) / 300_000
+
+
+def test_a_mouth_that_does_not_fit_is_refused_with_the_largest_that_does() -> None:
+    shaft = Pin("B", (Segment(0.08, 0.02),))
+    with raises(GeometryError, "radius-too-large", "at most 0.893 of its diameter"):
+        CutPin.of(shaft, (Hole(0.02, 0.0035, mouth_radius=0.0037),))
+
+
+def test_mouths_that_gmsh_cannot_round_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     """It said "a dimension that is very small compared with its neighbours"."""
+    monkeypatch.setattr(cut_pin, "unit_of_solid", lambda *_: 1.0)  # as OpenCASCADE cannot
     shaft = Pin("B", (Segment(0.08, 0.02),))
     pin = CutPin.of(shaft, (Hole(0.02, 0.004, math.pi / 2.0, mouth_radius=0.0015),))
     with raises(MeshError, "mouth-not-rounded", "to 0.38 of its diameter", "or a chamfer"):
-        solid_mesh(pin, MeshSize(2.0))
+        assert pin.volume
 
 
 def test_a_rounded_mouth_takes_what_lies_outside_of_its_circles() -> None:

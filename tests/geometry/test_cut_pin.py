@@ -10,7 +10,7 @@ import pytest
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import Patch, surface
 from fea.solid.sharp_edges import sharp_edges
-from geometry import CutPin, Flat, GeometryError, Hole, Pin, Segment
+from geometry import CutPin, Flat, GeometryError, Hole, Pin, Segment, Slot
 from geometry.imported.meshing import solid_mesh
 from geometry.mesh.solid_mesh import MeshSize
 from tests.support.each import each
@@ -51,6 +51,18 @@ def test_a_drilled_bar(angle: float) -> None:
     assert Patch(space, boundary, "B").area == pytest.approx(outside, rel=3e-4)
     assert set(space.mesh.boundaries) == {"start", "B", "end", "hole 1"}
     assert not len(sharp_edges(space, boundary, ()).corner)
+
+
+@each(("radius", "sharp"), [(0.04, False), (0.0, True)])
+def test_the_rounded_bottom_of_a_keyway_is_no_sharp_corner(radius: float, sharp: bool) -> None:
+    """With two facets across it was one on all meshes of a whole solid. The keyway ends beyond the
+    shaft, within a band, where local solids do not apply.
+    """
+    d = 2.0 * R
+    keyway = Slot(-0.25 * d, 0.6 * d, 0.3 * d, 0.125 * d, radius=radius * d)
+    pin = CutPin.of(Pin("P", (Segment(d, d, connection="A"), Segment(0.5 * d, d))), (keyway,))
+    space = Discretisation(solid_mesh(pin, MeshSize()).mesh)
+    assert bool(len(sharp_edges(space, surface(space), ()).corner)) == sharp
 
 
 def test_a_flat() -> None:

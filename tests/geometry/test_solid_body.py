@@ -299,7 +299,7 @@ def test_a_file_that_gives_slivers_is_tried_thrice(
     tried: list[float] = []
     found = iter([0.05, 0.5])
 
-    def meshed(_: BodyFile, size: MeshSize) -> SolidMesh:
+    def meshed(_: BodyFile, size: MeshSize, most: float) -> SolidMesh:
         tried.append(size.across / MeshSize().across)
         return SolidMesh(solid_mesh(IN_METRES, MeshSize(across=2.0)).mesh, next(found), 0)
 

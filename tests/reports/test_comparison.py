@@ -205,3 +205,15 @@ def test_pages_escape_what_studies_say(run: dict[str, Any], tmp_path: Path) -> N
     assert "\\|pin\\*" in (tmp_path / "page.md").read_text()
     assert headline(found) in page
     assert len(rows_table(found)) == 2
+
+
+@each(("rows", "words"), [(40, "errors."), (41, "errors: the first 40 of the 41 rows above.")])
+def test_a_plot_that_leaves_rows_out_says_so(run: dict[str, Any], rows: int, words: str) -> None:
+    (row, *_) = run["pins"]
+    both = [
+        {**run, "pins": [{**row, "pin": f"P{k}", "max_von_mises": x} for k in range(rows)]}
+        for x in (100.0, 200.0)
+    ]
+    plot = comparison_plot(compare(*both))
+    assert plot is not None
+    assert plot.caption.endswith(words)

@@ -149,6 +149,18 @@ def test_steps_of_a_pin_and_its_lug() -> None:
     assert [step.missed for step in known[:4]] == [False, False, True, False]
 
 
+def test_lugs_that_let_go_together_have_the_ends_of_both() -> None:
+    """They had those of the first, so that a lug which may let go too early was not seen."""
+    right = replace(FREE, connection="right", error_estimate=100.0)
+    joint = replace(make_joint(), lugs=(FREE, right))
+    results = in_lugs(make_results(), joint, required=1.2)
+    row = replace(results.pins[0], margins=(), worst=())
+    (step,) = (x for x in steps(row, None) if x.what == "bore of the lug, free side")
+    assert step.at == "left, right"
+    assert (step.low, step.high) == pytest.approx((700.0 / 600.0, 700.0 / 400.0))
+    assert step.missed
+
+
 def test_contact_with_clearance_is_not_in_proportion() -> None:
     assert not any(step.in_proportion for step in made_up(LOOSE) if step.load_factor)
     tight = replace(LOOSE, clearance=0.0, edge_radius=0.0)

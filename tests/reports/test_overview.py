@@ -14,6 +14,7 @@ from assess.diameter_law import BEARING_EXPONENT, DiameterLaw, disc_factor
 from assess.margin import Margin, PinMargin
 from assess.strength.model_stress import YIELD_METHOD
 from fea.core.places import ContactPlace, Places, SurfacePlace
+from fea.support.records import JointRange, Variation
 from reports.data.changes import Remedy
 from reports.data.overview import diameter_law, pin_lines, quiet_cases
 from reports.data.requirement_matrix import MatrixRow, matrix_rows, worst_cell
@@ -422,3 +423,13 @@ def test_columns_without_any_content_are_left_out(few: Results) -> None:
     assert screen["diameters"]
     assert not screen["spreads"]
     assert not screen["whatever"]
+
+
+def test_every_value_that_is_open_has_a_row(few: Results) -> None:
+    """Of nine values (joint, landing, links and strength) the last three had none."""
+    stress = few.pins[0].max_von_mises or 0.0
+    whats = [f"value {k}" for k in range(9)]
+    over = JointRange((stress, stress), tuple(Variation(x, "free", stress) for x in whats))
+    row = replace(few.pins[0], joint=replace(make_joint(), range=over))
+    rows = overview_part(replace(few, pins=(row, *few.pins[1:])), {}, "")["unknowns"]
+    assert sorted(x["what"] for x in rows) == whats

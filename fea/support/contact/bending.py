@@ -67,7 +67,20 @@ class LoadedJoint:
             np.linalg.norm(x, axis=2) for x in (self.shear_force(z), self.bending_moment(z))
         )
         names = tuple(lug.connection for lug in self.lugs)
-        return JointForces(z, self.loads.times, shear, moment, names, np.stack(forces, axis=1))
+        pull, torque = map(np.abs, self.along(z))
+        return JointForces(
+            z, self.loads.times, shear, moment, names, np.stack(forces, axis=1), pull, torque
+        )
+
+    def along(self, z: Floats) -> tuple[Floats, Floats]:
+        """The axial force (T, Z) N and the torque (T, Z) N m before z (Z,) m."""
+        on = [self.pin.band(name) for name in self.loads.surfaces]
+        middle, length = np.array([(band.middle, band.length) for band in on]).T
+        part = np.clip((z[:, None] - middle) / length + 0.5, 0.0, 1.0)
+        ends = np.array(self.pin.stations)
+        mass = np.clip(z[:, None] - ends[:-1], 0.0, np.diff(ends)) @ self.mass
+        pull = self.loads.forces[:, :, 2] @ part.T + np.outer(self.loads.body[:, 2], mass)
+        return pull, self.loads.moments[:, :, 2] @ part.T
 
     def largest_across(self) -> Floats:
         """The largest shear force, N, and bending moment, N m, at any instant, (2,)."""

@@ -83,16 +83,6 @@ class JointFoundation(LoadedJoint):
     force the other side of the bore carries.
     """
 
-    def along(self, z: Floats) -> tuple[Floats, Floats]:
-        """The axial force (T, Z) N and the torque (T, Z) N m before z (Z,) m."""
-        on = [self.pin.band(name) for name in self.loads.surfaces]
-        middle, length = np.array([(band.middle, band.length) for band in on]).T
-        part = np.clip((z[:, None] - middle) / length + 0.5, 0.0, 1.0)
-        ends = np.array(self.pin.stations)
-        mass = np.clip(z[:, None] - ends[:-1], 0.0, np.diff(ends)) @ self.mass
-        pull = self.loads.forces[:, :, 2] @ part.T + np.outer(self.loads.body[:, 2], mass)
-        return pull, self.loads.moments[:, :, 2] @ part.T
-
 
 class FoundationModel:
     """A pin in its lugs as a beam, factorised for all cases.

@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 
 from assess.checks import margins_of
-from assess.codes import DEFAULT_CODES, FITTING_FACTORS
+from assess.codes import DEFAULT_CODES, FITTING_FACTORS, PartialFactors
 from assess.judgement import against_yield
 from assess.lug_factors import LugFactors
 from assess.margin import (
@@ -204,6 +204,8 @@ def _situation(
         profile, task.material, loads, task.clamps, task.given, load_factors(study),
         table.replaceable, even_governs=even, sized=sized, codes=codes,
         design_factor=study.table.analysis.design_factor, bending_factor=table.bending_factor,
+        partial=PartialFactors(**dict(study.table.analysis.partial_factors)),
+        aisc=study.table.analysis.aisc,
         lug_factors={name: LugFactors(**dict(lug.factors)) for name, lug in table.lug.items()},
         lug_stresses=joint.lugs if joint else (), shank_angles=task.shanks.get(loads.case, {}),
     )  # fmt: skip

@@ -29,6 +29,7 @@ from pinstress.analysis.mechanics.gather_wear import wear
 from pinstress.analysis.published_quantities import published_values
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.mechanism.drives import drive_tables, mechanism_of
+from pinstress.study.model.mechanism.space import place, space_mechanism
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.published_tables import Published
 from pinstress.study.schema.landing import GroundCase
@@ -117,10 +118,16 @@ def _reactions(study: Study, name: str, case: CaseLoads, published: Published) -
 def _wheel_loads(study: Study, name: str, case: CaseLoads) -> tuple[WheelLoad, ...]:
     """Return the sums behind the forces of the ground, at the axle as it is in the case."""
     of = study.table.case[name]
-    if case.ground is None or case.dynamics is None or not isinstance(of, GroundCase):
+    if case.ground is None or not isinstance(of, GroundCase):
         return ()
-    x, y = case.dynamics.motion.joint(of.at)[0][0].tolist()
-    z = mechanism_of(study).joint[of.at].z or 0.0
+    if case.space is not None:
+        drawn = place(space_mechanism(study), of.at)
+        x, y, z = case.space.dynamics.motion.place(of.body, drawn)[0].tolist()
+    elif case.dynamics is not None:
+        x, y = case.dynamics.motion.joint(of.joint)[0][0].tolist()
+        z = mechanism_of(study).joint[of.joint].z or 0.0
+    else:
+        return ()
     return tuple(
         WheelLoad(
             force.component,

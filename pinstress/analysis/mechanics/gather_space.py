@@ -18,6 +18,7 @@ from pinstress.study.schema.drives import drive_name
 from reports.data.mechanics import DriveEffort, DriveTable
 from reports.data.motion import BodyMotion
 from reports.data.skeleton import Skeleton
+from reports.format.numbers import engineering
 
 NEGLIGIBLE_RANGE = 1e-3  # of the largest force of the case: a smaller range is not reported
 ROUND_OFF = 1e-12  # of the largest of all drives
@@ -90,14 +91,16 @@ def _without_round_off(values: Floats) -> Floats:
     return np.where(np.abs(values) > least, values, 0.0)
 
 
-def _names(study: Study) -> list[tuple[str, bool]]:
-    """Return the name of every drive in space, and whether it slides."""
+def _names(study: Study, solved: InSpace) -> list[tuple[str, bool]]:
+    """Return the name of all that drives or holds the linkage, and whether it slides."""
+    if solved.held is not None:
+        return [*solved.held]
     return [(drive_name(drive), drive.slides) for drive in drive_tables(study)]
 
 
 def positions_in_space(study: Study, solved: InSpace) -> Floats:
     """Return the displayed positions (T, D)."""
-    return shown_positions(study, solved.dynamics.motion.drives, _names(study))
+    return shown_positions(study, solved.dynamics.motion.drives, _names(study, solved))
 
 
 def drives_in_space(study: Study, case: str, solved: InSpace) -> list[DriveTable]:
@@ -105,8 +108,9 @@ def drives_in_space(study: Study, case: str, solved: InSpace) -> list[DriveTable
     dynamics = solved.dynamics
     motion, exerted = dynamics.motion, (dynamics.drive, dynamics.power)
     course = (positions_in_space(study, solved), motion.speeds, motion.rates)
-    times, moved = dynamics.reactions.times, _names(study)
-    return drives(case, moved, times, course, exerted, solved.energies, solved.efforts)
+    times, moved, smooth = dynamics.reactions.times, _names(study, solved), solved.frictionless
+    free = smooth.drives if smooth else None
+    return drives(case, moved, times, course, exerted, solved.energies, solved.efforts, free)
 
 
 def bodies_in_space(study: Study, case: str, solved: InSpace) -> list[BodyMotion]:
@@ -157,8 +161,20 @@ def skeleton_in_space(study: Study, case: str, solved: InSpace) -> Skeleton:
 
 def note_in_space(study: Study, solved: InSpace) -> str:
     """Return the note of a case: its impulses, what its forces depend on, and what is left out."""
-    parts = solved.note, _range(study, solved), NO_TABLES, _no_bodies(study, solved)
-    return " ".join(filter(None, parts))
+    told = solved.note, _range(study, solved), _posture(solved)
+    return " ".join(filter(None, (*told, NO_TABLES, _no_bodies(study, solved))))
+
+
+def _posture(solved: InSpace) -> str:
+    """Return sentences on how near the linkage comes to a dead point, and on the power balance."""
+    condition, at = solved.dynamics.condition
+    number = engineering(condition, 3)
+    if solved.violation is None:
+        return f"Condition number {number}."
+    return (
+        f"Maximum condition number {number} at {engineering(at)} s; power balance error "
+        f"{solved.violation:.1e}."
+    )
 
 
 def _range(study: Study, solved: InSpace) -> str:

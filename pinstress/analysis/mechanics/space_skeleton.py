@@ -83,7 +83,7 @@ def space_skeleton(
 def _ends(motion: SpaceMotion, between: PointDistance) -> Floats:
     """Return the places (T, 2, 3) of two points, m."""
     both = zip(between.bodies, between.ends, strict=True)
-    return np.stack([motion.point(body, end)[0] for body, end in both], axis=1)
+    return np.stack([motion.place(body, end) for body, end in both], axis=1)
 
 
 def _axis(motion: SpaceMotion, body: str, axis: Floats | None) -> Floats:
@@ -112,7 +112,7 @@ def _links(drawn: list[SpaceJoint], pins: Mapping[str, str]) -> dict[str, tuple[
 def _place(motion: SpaceMotion, joint: SpaceJoint) -> Floats:
     """Return the place (T, 3) of a joint: where it slides, that of its moving body."""
     body = joint.base if KINDS[joint.kind].meets else joint.moving
-    return motion.point(body, joint.at)[0]
+    return motion.place(body, joint.at)
 
 
 def _grounded(linkage: SpaceLinkage) -> set[str]:
@@ -128,7 +128,7 @@ def _applied(dynamics: SpaceDynamics, bodies: tuple[str, ...]) -> dict[str, Any]
     """Return the forces and the couples on bodies that are drawn."""
     motion = dynamics.motion
     pushes = [
-        (push, motion.point(push.body, push.at)[0])
+        (push, motion.place(push.body, push.at))
         for load in dynamics.loads
         for push in load.pushes(motion)
         if push.body in bodies

@@ -19,7 +19,7 @@ from scipy.special import ndtri
 from pinbase.keys import key_part
 from pinbase.processes.pool import Progress
 from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE
-from pinstress.explore.reliability.designs import SolvedDesigns, random_numbers
+from pinstress.explore.reliability.designs import SolvedDesigns, for_values, random_numbers
 from pinstress.explore.reliability.form import (
     NOISY_CLOSENESS,
     SMOOTH_CLOSENESS,
@@ -30,6 +30,7 @@ from pinstress.explore.reliability.form import (
 from pinstress.explore.reliability.open_ranges import without_strength_ranges
 from pinstress.explore.size.least_weight import LightStudy, lighten
 from pinstress.explore.size.pin_shape import kind_of
+from pinstress.explore.size.search_log import SearchLog
 from pinstress.explore.size.weight_search import WeightGoal
 from pinstress.explore.sweep.batches import shapes
 from pinstress.explore.sweep.evaluate import Evaluator
@@ -76,7 +77,7 @@ def factors_at(
     """
     parameters, space = random_numbers(study)
     laws = {path for p in parameters for path in p.number.paths}
-    described = without_strength_ranges(study, laws)
+    described = without_strength_ranges(for_values(study), laws)
     out: dict[Row, float] = {}
     for pin in pins:
         progress(f"pin {pin}, factor at {probability:g}", 0.95)
@@ -117,13 +118,17 @@ def lighten_at(
     pins: list[str] | None,
     jobs: int,
     progress: Progress,
+    log: SearchLog | None = None,
 ) -> LightStudy:
     """Find every pin's least weight for a factor that is missed with at most a probability.
+
+    log: as of `lighten`.
 
     Raises: InputError.
     """
     require_laws(study, aim, pins)
-    design = lighten(study, aim, pins, jobs, progress)
+    log = SearchLog() if log is None else log
+    design = lighten(study, aim, pins, jobs, progress, log)
     before = {pin.pin: pin.before for pin in design.pins}
     for _ in range(MAX_ROUNDS):
         names = [pin.pin for pin in design.pins]
@@ -136,7 +141,7 @@ def lighten_at(
             for p in design.results.pins
             if p.safety_factor and np.isfinite(at.get((p.pin, p.case), np.nan))
         }
-        design = lighten(study, replace(aim, likely=likely), pins, jobs, progress)
+        design = lighten(study, replace(aim, likely=likely), pins, jobs, progress, log)
     else:
         at = factors_at(design.study, [pin.pin for pin in design.pins], probability, progress)
         design = replace(design, at=at, settled=design.settled and _reached(design, at, aim))

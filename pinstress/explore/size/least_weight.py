@@ -17,6 +17,7 @@ from pinstress.explore.size.lightest_pin import Lightest, Start, as_it_is, light
 from pinstress.explore.size.other_dimensions import written_study
 from pinstress.explore.size.pin_shape import VariedShape
 from pinstress.explore.size.scaled_study import resized_study
+from pinstress.explore.size.search_log import SearchLog
 from pinstress.explore.size.size_pins import changes_of_load
 from pinstress.explore.size.weight_search import STRESS_MARGIN, WeightGoal
 from pinstress.study.model.cases import CaseLoads
@@ -52,6 +53,7 @@ def lighten(
     pins: list[str] | None = None,
     jobs: int = 1,
     progress: Progress = lambda _, __: None,
+    log: SearchLog | None = None,
 ) -> LightStudy:
     """Find every pin's least weight.
 
@@ -59,8 +61,11 @@ def lighten(
     So a pin is searched again from where it is, under the loads of the new study, until that one's
     run confirms it; where the run has a smaller factor, for as much more.
 
+    log: of searches, in which those that are done are not made again.
+
     Raises: InputError.
     """
+    log = SearchLog() if log is None else log
     plan = prepare(study, pins=pins)
     names = list(dict.fromkeys(task.pin.name for task in plan.tasks))
     lightest: dict[str, Lightest] = {}
@@ -70,7 +75,7 @@ def lighten(
     for _ in range(MAX_PASSES):
         passes += 1
         goal = _raised(aim, raised, plan.loads)
-        for pin in _all(study, plan, todo, goal, lightest, jobs, progress):
+        for pin in _all(study, plan, todo, goal, lightest, jobs, progress, log):
             known = lightest.get(pin.pin, pin)
             lightest[pin.pin] = replace(pin, before=known.before)
             searched[pin.pin] = plan.loads
@@ -98,8 +103,12 @@ def lighten(
 
 
 def _run(study: Study, pins: list[str], jobs: int) -> tuple[Results, dict[str, CaseLoads]]:
-    """Run pins without what only explains their rows; the results and the loads."""
-    plan = replace(prepare(study, pins=pins), explained=False)
+    """Run pins for their factors, without what only explains their rows; the results and the
+    loads.
+    """
+    plan = prepare(study, pins=pins)
+    requirement = replace(plan.requirement, goal="value")
+    plan = replace(plan, requirement=requirement, explained=False)
     return solve(plan, jobs=jobs), plan.loads
 
 
@@ -171,20 +180,27 @@ def _all(
     before: Mapping[str, Lightest],
     jobs: int,
     progress: Progress,
+    log: SearchLog,
 ) -> list[Lightest]:
+    log.begin()
     if jobs > 1:
         preload(*LEAST_WEIGHT_MODULES)
     starts = {x.pin: Start(x.values, x.scale, x.whole, x.decided) for x in before.values()}
     heavy = sorted(names, key=lambda n: -len(study.table.pin[n].profile or ()))  # the longest first
+    todo = [n for n in heavy if log.get(n) is None]
     work = [
-        Job(f"pin {n}", partial(lightest_pin, study, plan, n, aim, starts.get(n))) for n in heavy
+        Job(f"pin {n}", partial(lightest_pin, study, plan, n, aim, starts.get(n))) for n in todo
     ]
-    results = in_parallel(work, jobs, lambda message, part: progress(message, 0.9 * part))
-    by_name = dict(zip(heavy, results, strict=True))
-    return [
-        Lightest(name, why=one.reason) if isinstance(one := by_name[name], ProcessDied) else one
-        for name in names
-    ]
+    died: dict[str, Lightest] = {}
+
+    def done(number: int, one: Lightest | ProcessDied) -> None:
+        if isinstance(one, ProcessDied):
+            died[todo[number]] = Lightest(todo[number], why=one.reason)
+        else:
+            log.add(one)
+
+    in_parallel(work, jobs, lambda message, part: progress(message, 0.9 * part), done=done)
+    return [log.get(name) or died[name] for name in names]
 
 
 def _written(study: Study, aim: WeightGoal, pins: list[Lightest]) -> Study:

@@ -274,6 +274,20 @@ def _write(
     replace_number(table, key, rounded(si / one, None, up), unit)
 
 
+def unit_of_diameter(study: Study, name: str, diameter: float) -> float:
+    """Return the unit, m, in which a pin's diameter (m) is written."""
+    table: Any = tomlkit.parse(study.text)["pin"][name]
+    written = [
+        *((1.0, here[at]) for part in _plain(table.get("profile", []))
+          for here, at in _numbers(part, "diameter")),
+        *((2.0, value_of(corner)[1]) for corner in _plain(table.get("meridian", []))),
+    ]  # fmt: skip
+    for times, old in ((times, value_of(old)) for times, old in written):
+        if math.isclose(times * to_si(old, "length", study.system), diameter, rel_tol=1e-9):
+            return unit_of(old, "length", study.system)[1]
+    return study.system.factor("length")
+
+
 def unit_of(old: Any, dimension: str, system: UnitSystem) -> tuple[str, float]:
     """Return the unit in which a value is written, as text, and its SI value."""
     text = LEADING_NUMBER_PATTERN.sub("", old, count=1) if isinstance(old, str) else ""

@@ -7,13 +7,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from fea.core.peak import Maximum
+from pinbase.rounding import rounded_down, rounded_up
 from pinstress.explore.size.pin_answers import SizedStudy
-from pinstress.explore.size.scaled_study import hole_in_eye, rounded
+from pinstress.explore.size.scaled_study import hole_in_eye, rounded, unit_of_diameter
 from pinstress.explore.size.section_law import PinTrial
 from pinstress.study.model.lugs import EYE_DIAMETER_RATIO
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import Study
-from reports.format.numbers import engineering, short
+from reports.format.numbers import beside_limit, engineering, short
 
 MAX_SHEAR_PLANES = 12  # of an arrangement that is proposed
 MAX_WIDENING = 4.0  # of a lug that is proposed, times its width
@@ -42,7 +43,7 @@ def _limits(sized: SizedStudy) -> Iterator[SizeLimit]:
     largest = max(table.diameters)
     if allowed.largest_diameter is not None:
         text = f"largest_diameter = {_length(study, allowed.largest_diameter)}"
-        yield SizeLimit(_down(sized, allowed.largest_diameter) / largest, text)
+        yield SizeLimit(_down(sized, allowed.largest_diameter, largest) / largest, text)
     if sized.standard is not None and sized.standard.listed:
         yield SizeLimit(sized.standard.listed[-1] / largest, "series, the last of its list")
     for at, band in _bands(study, name).items():
@@ -58,7 +59,7 @@ def _limits(sized: SizedStudy) -> Iterator[SizeLimit]:
         if outer is not None and not allowed.scale_lugs:
             eyes[f"scale_lugs = false, with the eye {at} of {_length(study, outer)}"] = outer
         for text, eye in eyes.items():
-            yield SizeLimit(_down(sized, eye / ratio - ring) / band, text)
+            yield SizeLimit(_down(sized, eye / ratio - ring, band) / band, text)
 
 
 def _bands(study: Study, name: str) -> dict[str, float]:
@@ -68,9 +69,12 @@ def _bands(study: Study, name: str) -> dict[str, float]:
     return {at: 2.0 * shape.band(at).radius for at in names}
 
 
-def _down(sized: SizedStudy, diameter: float) -> float:
-    """Return the largest diameter, m, that can be written and is at most this one; 0 without."""
-    unit = sized.plan.study.system.factor("length")
+def _down(sized: SizedStudy, diameter: float, now: float) -> float:
+    """Return the largest diameter, m, that can be written and is at most this one; 0 without.
+
+    now: the pin's diameter that it replaces, in whose unit it is written, m.
+    """
+    unit = unit_of_diameter(sized.plan.study, sized.pin, now)
     if diameter <= 0.0:
         return 0.0
     if sized.standard is not None:
@@ -92,7 +96,7 @@ def too_small(sized: SizedStudy, limit: SizeLimit, trial: PinTrial, worst: Maxim
     about = "" if trial.accuracy == "full" else "about "
     text = (
         f"[size] {limit.reason} limits it to {_length(study, max(diameters))} across, where its "
-        f"factor is {about}{engineering(trial.factor)} instead of {short(required)}"
+        f"factor is {about}{beside_limit(trial.factor, required, 4)} instead of {short(required)}"
     )
     return f"{text}; instead, one of: {'; '.join(_instead(sized, limit, trial, worst))}"
 
@@ -108,17 +112,17 @@ def _instead(sized: SizedStudy, limit: SizeLimit, trial: PinTrial, worst: Maximu
     more = required / trial.factor
     strength = study.material_of(sized.pin).yield_strength or 0.0
     stress = study.system.factor("stress")
+    needed = engineering(rounded_up(strength * more / stress, 4))
     yield (
-        f"a yield strength of {engineering(strength * more / stress)} {study.system.stress}, "
-        f"not {engineering(strength / stress)}"
+        f"a yield strength of {needed} {study.system.stress}, not {engineering(strength / stress)}"
     )
     tasks = [t for t in sized.plan.tasks if t.pin.name == sized.pin and worst.case in t.impulses]
     if tasks:
         time = tasks[0].impulses[worst.case].time
-        unit = study.system.time
-        yield f"an impulse in {worst.case} of {engineering(time * more)} {unit}, not {short(time)}"
+        needed = f"{engineering(rounded_up(time * more, 4))} {study.system.time}"
+        yield f"an impulse in {worst.case} of {needed}, not {short(time)}"
     else:
-        yield f"{engineering(1.0 / more)} times the loads of {worst.case}"
+        yield f"{engineering(rounded_down(1.0 / more, 4))} times the loads of {worst.case}"
     if arrangement := _arrangement(sized, trial):
         yield arrangement
     if limit.scale != ENDLESS:
@@ -127,7 +131,7 @@ def _instead(sized: SizedStudy, limit: SizeLimit, trial: PinTrial, worst: Maximu
             for x, e in ((trial.row, trial.exponent), (trial.beneath, trial.exponent_at("beneath")))
         )
         largest = larger * max(study.table.pin[sized.pin].diameters)
-        across = engineering(largest / study.system.factor("length"), 2)
+        across = engineering(rounded_up(largest / study.system.factor("length"), 2), 2)
         yield f"limits that allow about {across} {study.system.length} across"
 
 
@@ -148,5 +152,5 @@ def _arrangement(sized: SizedStudy, trial: PinTrial) -> str:
         wider = required / trial.beneath
         if wider > MAX_WIDENING:
             return ""
-        parts.append(f"lugs about {engineering(wider, 2)} times as wide in all")
+        parts.append(f"lugs about {engineering(rounded_up(wider, 2), 2)} times as wide in all")
     return " and ".join(parts)

@@ -27,6 +27,7 @@ from pinstress.analysis.remedies.secant import (
 from pinstress.explore.size.counted import beneath
 from pinstress.explore.size.judged_pin import JudgedPin, judged_pin
 from pinstress.explore.size.pin_answers import PinAnswer, SizedStudy, row_stress
+from pinstress.explore.size.scaled_study import unit_of_diameter
 from pinstress.explore.size.section_law import (
     Accuracy,
     PinTrial,
@@ -328,7 +329,7 @@ def _next_standard(sized: SizedStudy, scale: float) -> float:
     study = sized.plan.study
     least = min(study.table.pin[sized.pin].diameters)
     assert sized.standard is not None
-    unit = study.system.factor("length")
+    unit = unit_of_diameter(study, sized.pin, least)
     return sized.standard.up(scale * least, unit) * (1.0 + NEXT_DIAMETER) / least
 
 

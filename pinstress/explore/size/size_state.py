@@ -1,4 +1,5 @@
-"""The pins that a size has finished, in a folder beside the new study, so that it can be resumed.
+"""What a size has finished, in a folder beside the new study, so that it can be resumed: pins, or
+searches of the lightest ones.
 
 The folder is locked by its writer; the lock is released however the writer ends.
 """
@@ -12,11 +13,13 @@ from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, Generic, TypeVar
 
 from pinbase.processes.folder_lock import Release, lock
 from pinbase.records import pack, unpack
 from pinstress.analysis.cache import program
-from pinstress.explore.size.size_pin import SizingGoal, SizingResult
+from pinstress.explore.size.search_log import FinishedSearch
+from pinstress.explore.size.size_pin import SizingResult
 from pinstress.study.reading.errors import InputError, cannot_write
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.inputs import inputs
@@ -24,6 +27,8 @@ from pinstress.study.reading.inputs import inputs
 STATE_SUFFIX = ".unfinished"
 PINS_FILE = "pins"  # in the folder
 DAMAGED = (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile)
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -34,23 +39,33 @@ class FinishedPins:
     """
 
     identity: str
-    pins: tuple[SizingResult, ...]
+    done: tuple[SizingResult, ...]
 
 
-def identity(study: Study, goal: SizingGoal, pins: Iterable[str]) -> str:
+@dataclass(frozen=True)
+class FinishedSearches:
+    """Finished searches, as FinishedPins."""
+
+    identity: str
+    done: tuple[FinishedSearch, ...]
+
+
+def identity(study: Study, goal: object, pins: Iterable[str]) -> str:
     """Return a hash of all on which the sizes of pins depend."""
     asked = study.text, inputs(study), goal, sorted(pins), program()
     return hashlib.sha256(repr(asked).encode()).hexdigest()
 
 
-class SizeState:
+class SizeState(Generic[T]):
     """The folder of a size that has not ended.
 
     target: the new study.
     identity: of the size.
+    kind: of what it has finished, FinishedPins or FinishedSearches.
     """
 
-    def __init__(self, target: Path, identity: str) -> None:
+    def __init__(self, target: Path, identity: str, kind: type[Any]) -> None:
+        self._kind = kind
         self.path = target.with_name(target.name + STATE_SUFFIX)
         self._pins = self.path / PINS_FILE
         self._target, self._identity = target, identity
@@ -64,7 +79,7 @@ class SizeState:
         return False
 
     def begin(self) -> None:
-        """Create and lock the folder, without a pin.
+        """Create and lock the folder, in which nothing is finished.
 
         Raises: InputError where there is one already, or it cannot be written.
         """
@@ -87,8 +102,8 @@ class SizeState:
             self.end()
             raise
 
-    def read(self) -> tuple[SizingResult, ...]:
-        """Lock the folder and return the finished pins.
+    def read(self) -> tuple[T, ...]:
+        """Lock the folder and return what is finished.
 
         Raises: InputError where there is nothing to resume, another size, or one that is going on.
         """
@@ -99,7 +114,7 @@ class SizeState:
             )
         try:
             self._lock()
-            finished = unpack(FinishedPins, self._pins.read_bytes())
+            finished = unpack(self._kind, self._pins.read_bytes())
         except DAMAGED:
             raise InputError(
                 f"--resume: {self.path} is damaged; delete it and {self._target.name} to start "
@@ -112,7 +127,8 @@ class SizeState:
                 "or of another version of pinstress; resume with those, or choose another file",
                 code="other-size",
             )
-        return finished.pins
+        done: tuple[T, ...] = finished.done
+        return done
 
     def _lock(self) -> None:
         """Lock the folder until `close`.
@@ -130,12 +146,12 @@ class SizeState:
                 code="locked",
             ) from None
 
-    def write(self, pins: tuple[SizingResult, ...]) -> None:
-        """Replace the finished pins; the file is complete at any time.
+    def write(self, done: tuple[T, ...]) -> None:
+        """Replace what is finished; the file is complete at any time.
 
         Raises: InputError where it cannot be written.
         """
-        content = pack(FinishedPins(self._identity, pins))
+        content = pack(self._kind(self._identity, done))
         try:
             _replace(self._pins, content)
         except OSError as error:

@@ -12,6 +12,7 @@ from assess.judgement import FAILS
 from pinbase.counted import counted
 from pinstress.explore.sweep.table import facts
 from reports.format.numbers import DASH, engineering
+from reports.format.ranges import factor_text
 from reports.format.words import not_judged
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ def summary(table: pa.Table, console: Console) -> None:
     short: list[str] = []
     for pin in dict.fromkeys(row["pin"] for row in rows):
         of_pin = [row for row in rows if row["pin"] == pin]
-        grid.add_row(pin, *_range(of_pin))
+        grid.add_row(pin, *_range(of_pin, required))
         if required is not None or any(r["outcome"] == FAILS for r in rows):
             below = {r["design"] for r in of_pin if _below(r, required)}
             lacking = {r["design"] for r in of_pin if r["verdict"] in UNSOLVED_VERDICTS}
@@ -101,7 +102,7 @@ def _reasons(rows: list[dict[str, Any]]) -> list[str]:
     return lines
 
 
-def _range(rows: list[dict[str, Any]]) -> tuple[str, str, str, str]:
+def _range(rows: list[dict[str, Any]], required: float | None) -> tuple[str, str, str, str]:
     """Return a pin's factors, the worst and best design by their worst case, and its maximum."""
     solved = [row for row in rows if row["max_von_mises"]]
     if not solved:
@@ -114,6 +115,8 @@ def _range(rows: list[dict[str, Any]]) -> tuple[str, str, str, str]:
     worst = max(worst_of, key=lambda number: worst_of[number])
     best = min(worst_of, key=lambda number: worst_of[number])
     factors = [-x for x in worst_of.values() if x < 0.0]
-    between = f"{engineering(min(factors))} to {engineering(max(factors))}" if factors else DASH
+    ends = [min(factors), max(factors)] if factors else []
+    told = (engineering(x) if required is None else factor_text(x, required, 4) for x in ends)
+    between = " to ".join(told) or DASH
     most = max(row["max_von_mises"] for row in solved)
     return between, f"{worst}", f"{best}", engineering(most)

@@ -31,10 +31,11 @@ from loads import (
 from loads.landing import Landing, pushes
 from loads.landing import laws as landing_laws
 from loads.space.linkage import SpaceLinkage
+from loads.space.over_time import SpaceOverTime
 from pinbase.arrays import Floats
 from pinbase.keys import key_part
 from pinstress.study.model.given import given_forces
-from pinstress.study.model.ground import Grounded, grounded
+from pinstress.study.model.ground import Grounded, grounded, grounded_in_space
 from pinstress.study.model.impulses import (
     ImpulseLoads,
     ImpulseShare,
@@ -91,7 +92,7 @@ class CaseLoads:
     solve_space: Callable[[Floats], InSpace] | None = None
     peaks: PeakForces | None = None
     over: OverTime | None = None
-    frictionless: OverTime | None = None
+    frictionless: OverTime | SpaceOverTime | None = None
     moving: MovingLoads | None = None
     landing: Landing | None = None
     ground: Grounded | None = None
@@ -146,7 +147,7 @@ def case_loads(
             return CaseLoads(given_forces(study, name, case))
         assert mechanism is not None
         if isinstance(mechanism, SpaceLinkage):
-            assert isinstance(case, MotionCase | StaticCase | InstantCase)
+            assert not isinstance(case, DropCase)
             return _in_space(study, name, case, mechanism, extremes)
         if isinstance(case, MotionCase):
             return _motion(study, name, case, mechanism, extremes)
@@ -290,10 +291,18 @@ def _locked(mechanism: Linkage, hold: Sequence[str]) -> tuple[Linkage, tuple[Law
 def _in_space(
     study: Study,
     name: str,
-    case: MotionCase | StaticCase | InstantCase,
+    case: MotionCase | StaticCase | InstantCase | GroundCase,
     mechanism: SpaceLinkage,
     extremes: bool,
 ) -> CaseLoads:
+    if isinstance(case, GroundCase):
+        states = state(study, name, case, mechanism)
+        ground = grounded_in_space(study, name, case, mechanism)
+        solved = at_rest_in_space(study, name, case, mechanism, states, ground)()
+        shared = _each_in_space(solved)
+        return CaseLoads(
+            solved.reactions, note=solved.note, space=solved, shared=shared, ground=ground
+        )
     if not isinstance(case, MotionCase):
         states = state(study, name, case, mechanism)
         solve = at_rest_in_space(study, name, case, mechanism, states)
@@ -302,6 +311,7 @@ def _in_space(
             solved.reactions,
             note=solved.note,
             space=solved,
+            shared=_each_in_space(solved),
             range=over_range(study, name, case, lambda which, size: solve(which, size).reactions),
             impulse=with_impulse(case, lambda which, size: solve(which, size).reactions),
         )
@@ -317,8 +327,14 @@ def _in_space(
         space=solved,
         solve_space=moved.solve,
         peaks=solved.peaks,
+        frictionless=solved.frictionless,
         moving=moving,
+        shared=_each_in_space(solved),
     )
+
+
+def _each_in_space(solved: InSpace) -> tuple[tuple[str, CaseLoads], ...]:
+    return tuple((what, CaseLoads(r, space=solved)) for what, r in solved.others.items())
 
 
 def _require_drives(mechanism: AnyLinkage) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from loads import Applied, Law, Linkage
 from loads.landing import (
     GROUND_RULES,
@@ -14,12 +16,19 @@ from loads.landing import (
     spin_up_drag,
 )
 from loads.landing.requirements import MAX_TYRE_FRICTION, GroundRule
+from loads.space.acting import SpaceForce
+from loads.space.linkage import SpaceLinkage, Vector
 from loads.space.out_of_plane import SideLoad
+from pinbase.keys import key_part
 from pinstress.study.model.landing import drop, fallen, place, still
 from pinstress.study.model.mechanism.drives import mechanism_of
+from pinstress.study.model.mechanism.space import place as place_in_space
+from pinstress.study.model.mechanism.space import space_mechanism
+from pinstress.study.model.space_forces import vector
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.landing import DropCase, FactorTable, GroundCase, Side, SpinUpTable
 
+MIN_LEVEL = 1e-6  # level part of a direction of travel, over its length
 AS_STATED = (
     "The leg is as drawn, or as its position says: without a drop the deflection of strut and "
     "tyres is not known."
@@ -43,7 +52,7 @@ class Grounded:
 
     def loads(self, study: Study, case: GroundCase, mechanism: Linkage) -> tuple[SideLoad, ...]:
         """Return the forces on the axle, with their moments about it."""
-        at, z = mechanism.joint(case.at).at, mechanism_of(study).joint[case.at].z
+        at, z = mechanism.joint(case.joint).at, mechanism_of(study).joint[case.joint].z
         return tuple(
             SideLoad(
                 Applied(case.body, at, force.force[:2], force.couple[2]),
@@ -53,6 +62,11 @@ class Grounded:
             )
             for force in self.forces
         )
+
+    def loads_in_space(self, study: Study, case: GroundCase) -> tuple[SpaceForce, ...]:
+        """Return the same on a linkage in space."""
+        at = place_in_space(space_mechanism(study), case.at)
+        return tuple(SpaceForce(case.body, at, force.force, force.couple) for force in self.forces)
 
     def note(self, study: Study) -> str:
         """Return the clause and the sum of every component."""
@@ -98,12 +112,53 @@ def grounded(
         peak = landing.peaks["vertical"]
         reference, spin_up = peak.value, spin_up or _spin_up(landing)
         drives = at_deflection(landing, touchdown, peak.time, rule.deflection)
+    up, aft = (*where.up, 0.0), (*where.aft, 0.0)
+    forces, notes = _forces(study, case, rule, (reference, spin_up, by_drop), (up, aft))
+    return Grounded(rule.clause, forces, notes, drives)
+
+
+def grounded_in_space(
+    study: Study, name: str, case: GroundCase, mechanism: SpaceLinkage
+) -> Grounded:
+    """Return the forces of the ground in a case of a linkage in space.
+
+    Raises: InputError where nothing says where up and forward are.
+    """
+    rule, row = _rule(case), case.factors[0] if case.factors else None
+    reference, up = _own_reference(case, row), -np.array(mechanism.gravity)
+    assert reference is not None
+    ahead = np.array(case.forward, dtype=float)
+    if not (size := float(np.linalg.norm(up))):
+        text = "gravity says where up is: give mechanism.gravity"
+        raise study.error(f"case.{key_part(name)}: {text}", code="no-gravity")
+    up /= size
+    level = ahead - (ahead @ up) * up
+    if np.linalg.norm(level) <= MIN_LEVEL * np.linalg.norm(ahead):
+        text = "is vertical, along gravity; give the direction of travel"
+        raise study.error(f"case.{key_part(name)}.forward: {text}", code="no-direction")
+    axes = vector(up.tolist()), vector((-level / np.linalg.norm(level)).tolist())
+    forces, notes = _forces(study, case, rule, (reference, case.spin_up, False), axes)
+    return Grounded(rule.clause, forces, notes, ())
+
+
+def _forces(
+    study: Study,
+    case: GroundCase,
+    rule: GroundRule,
+    known: tuple[float, SpinUpTable | None, bool],
+    axes: tuple[Vector, Vector],
+) -> tuple[tuple[WheelForce, ...], tuple[str, ...]]:
+    """Return the forces of a rule, and notes.
+
+    known: the reference, N, what makes the wheel spin, and whether both are of a drop.
+    axes: up and aft.
+    """
+    (reference, spin_up, by_drop), row = known, case.factors[0] if case.factors else None
     rule, spin = _with_spin(study, rule, spin_up, reference)
     notes = (spin,) if rule.deflection == 1.0 or by_drop else (spin, AS_STATED)
     braked = row is not None and row.braked
-    wheel = GroundedWheel(where.up, where.aft, case.stands, case.radius, braked)
-    forces = wheel.forces(rule, reference, _side(case, row))
-    return Grounded(rule.clause, forces, notes, drives)
+    wheel = GroundedWheel(*axes, case.stands, case.radius, braked)
+    return wheel.forces(rule, reference, _side(case, row)), notes
 
 
 def _rule(case: GroundCase) -> GroundRule:

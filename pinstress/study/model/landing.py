@@ -43,13 +43,14 @@ def place(study: Study, name: str, case: AtWheel, mechanism: Linkage) -> Touchdo
     Raises: InputError.
     """
     try:
+        assert isinstance(case.forward, str)
         up, aft = axes(mechanism, case.forward)
     except ArgumentError as error:
         raise study.error(f"case.{key_part(name)}: {error}", code=error.code) from None
     strut = getattr(case, "strut", None)
     number = None if strut is None else mechanism.driven.index(strut.drive)
     extended = tuple(value for value, _, _ in state(study, name, case, mechanism))
-    return Touchdown(case.body, case.at, up, aft, number, extended)
+    return Touchdown(case.body, case.joint, up, aft, number, extended)
 
 
 def drop(study: Study, name: str, case: DropCase, mechanism: Linkage) -> tuple[Drop, Touchdown]:

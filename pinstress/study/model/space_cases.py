@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import chain
 
 import numpy as np
 
 from loads import Effort, Law, PeakForces, Reactions, StateDrive
-from loads.space.acting import MeasuredFactor, SpaceForce, SpaceLoad
+from loads.forces.holding import OPENING_FORCE_TOLERANCE, require_pressed
+from loads.space.acting import SpaceLoad
+from loads.space.corners import corners_of
 from loads.space.dynamics import SpaceDynamics, space_reactions
 from loads.space.ground import BodyMomenta, GroundInertia, body_momenta
+from loads.space.holding import held, held_as_drawn
 from loads.space.linkage import SpaceLinkage
 from loads.space.motion import SpaceCourse, space_move
-from loads.space.over_time import space_over_time
+from loads.space.over_time import SpaceOverTime, space_over_time
 from pinbase.arrays import Floats
+from pinstress.study.model.ground import Grounded
 from pinstress.study.model.impulses import impulse_notes
-from pinstress.study.model.mechanism.space import SpacePin, pins_in_space
+from pinstress.study.model.mechanism.space import SpacePin, pins_in_space, space_mechanism
 from pinstress.study.model.moving_loads import Acting, MovingLoads
 from pinstress.study.model.space_forces import (
     applied_in_space,
@@ -27,6 +32,7 @@ from pinstress.study.model.space_forces import (
 )
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import InstantCase, MotionCase, StaticCase
+from pinstress.study.schema.landing import GroundCase
 
 POWER_BALANCE = 1e-6  # of the largest power of a drive: a larger violation is noted
 
@@ -40,6 +46,10 @@ class InSpace:
     ground: inertia by the motion of the ground, if that moves.
     note: how the loads came about.
     peaks, efforts: over the whole motion, with every drive's work at the instants.
+    frictionless: the same without friction, where there is any.
+    others: the reactions with other stiffness of links, by what is different.
+    held: by what it is held, and whether that slides; None: by its drives.
+    violation: of the power balance over the whole motion, of the largest power of a drive.
     """
 
     dynamics: SpaceDynamics
@@ -49,6 +59,10 @@ class InSpace:
     note: str = ""
     peaks: PeakForces | None = None
     efforts: tuple[Effort, ...] | None = None
+    frictionless: SpaceOverTime | None = None
+    others: Mapping[str, Reactions] = field(default_factory=dict)
+    held: tuple[tuple[str, bool], ...] | None = None
+    violation: float | None = None
 
     @property
     def gravity(self) -> Floats:
@@ -84,19 +98,21 @@ def _at_pins(
     dynamics: SpaceDynamics, pins: dict[str, SpacePin], ground: GroundInertia | None, note: str
 ) -> InSpace:
     """Return the reactions of the connections, with the axes of their pins."""
-    r, motion = dynamics.reactions, dynamics.motion
     which = [pin.joint for pin in pins.values()]
-    turns = [motion.rotation(pin.carrier) @ pin.axes for pin in pins.values()]
-    reactions = Reactions(
-        r.case,
-        r.times,
-        tuple(pins),
-        tuple(r.bodies[k] for k in which),
-        r.forces[:, which],
-        r.moments[:, which],
-        np.stack(turns, axis=1),
-    )
-    return InSpace(dynamics, pins, reactions, ground, note)
+    # In batches, so that the pose of all instants does not stay in memory.
+    turns = [
+        np.stack([part.rotation(pin.carrier) @ pin.axes for pin in pins.values()], axis=1)
+        for part in dynamics.motion.parts
+    ]
+    turn = np.concatenate(turns)
+
+    def of_pins(r: Reactions) -> Reactions:
+        bodies, every = tuple(r.bodies[k] for k in which), which == [*range(len(r.bodies))]
+        forces, moments = (x if every else x[:, which] for x in (r.forces, r.moments))
+        return Reactions(r.case, r.times, tuple(pins), bodies, forces, moments, turn)
+
+    others = {text: of_pins(r) for text, r in dynamics.range.items()}
+    return InSpace(dynamics, pins, of_pins(dynamics.reactions), ground, note, others=others)
 
 
 @dataclass(frozen=True)
@@ -112,11 +128,16 @@ class MovedInSpace:
     pins: dict[str, SpacePin]
     ground: GroundInertia | None
     note: str
+    friction: bool = True
 
-    def solve(self, times: Floats) -> InSpace:
-        """Return the case at times (T,) s."""
+    def solve(self, times: Floats, variants: bool = False) -> InSpace:
+        """Return the case at times (T,) s.
+
+        variants: whether with the reactions for other stiffness of links.
+        """
         loads = (*self.loads, *((self.ground,) if self.ground else ()))
-        dynamics = space_reactions(self.name, self.course.at(times), loads)
+        at = self.course.at(times)
+        dynamics = space_reactions(self.name, at, loads, friction=self.friction, variants=variants)
         return _at_pins(dynamics, self.pins, self.ground, self.note)
 
     def acting(self, times: Floats) -> Acting:
@@ -124,28 +145,37 @@ class MovedInSpace:
         solved = self.solve(times)
         return solved.reactions, solved.accelerations
 
-    @property
+    @cached_property
     def corners(self) -> Floats:
         """Times at which a force may jump or has a kink, s."""
-        course, out = self.course, [*self.course.corners]
-        for load in self.loads:
-            if isinstance(load, SpaceForce):
-                out += [load.begin, load.end]
-                if isinstance(load.times, MeasuredFactor) and load.times.measured is None:
-                    out += load.times.table.x
-        return np.unique([t for t in out if course.first < t < course.last])
+        return corners_of(self.course, self.loads)
 
     def solved(self, samples: int, extremes: bool) -> InSpace:
         """Return the case at equally spaced instants; where asked, with its extremes."""
-        solved = self.solve(np.linspace(self.course.first, self.course.last, samples))
+        instants = np.linspace(self.course.first, self.course.last, samples)
+        solved = self.solve(instants, variants=True)
         if not extremes:
             self.solve(self.course.path.nodes)
             return solved
-        over = space_over_time(self.course, self.solve, solved, self.corners)
+        over = self._over(solved)
+        free = None
+        if any(joint.friction for joint in self.course.space.linkage.joints):
+            smooth = replace(self, friction=False)
+            free = smooth._over(smooth.solve(solved.dynamics.motion.times))
         note = self.note
         if over.violation > POWER_BALANCE:
             note += f" The balance of power is violated by {over.violation:.1e} of the largest."
-        return replace(solved, peaks=over.peaks, efforts=over.drives, note=note.strip())
+        return replace(
+            solved,
+            peaks=over.peaks,
+            efforts=over.drives,
+            frictionless=free,
+            violation=over.violation,
+            note=note.strip(),
+        )
+
+    def _over(self, samples: InSpace) -> SpaceOverTime:
+        return space_over_time(self.course, self.solve, samples, self.corners)
 
 
 def motion_in_space(
@@ -173,26 +203,58 @@ def moving_in_space(moved: MovedInSpace, solved: InSpace) -> MovingLoads:
 def at_rest_in_space(
     study: Study,
     name: str,
-    case: StaticCase | InstantCase,
+    case: StaticCase | InstantCase | GroundCase,
     linkage: SpaceLinkage,
     states: Sequence[tuple[float, float, float]],
+    grounded: Grounded | None = None,
 ) -> Callable[..., InSpace]:
     """Return what gives a case at one instant: `solve()` as stated, `solve(which, size)` with an
     impulse of another size (N) in the load of that number.
 
     states: position, velocity and acceleration of every drive, SI.
+    grounded: the forces of the ground, of a case that has nothing but these.
     """
-    motion = space_move(linkage, [StateDrive(*values) for values in states], np.zeros(1))
+    stated = case.hold if isinstance(case, StaticCase | GroundCase) else None
+    hold = tuple(dict.fromkeys(stated or ()))
+    if hold and not linkage.driven:
+        motion = held_as_drawn(linkage, hold)
+    else:
+        motion = space_move(linkage, [StateDrive(*values) for values in states], np.zeros(1))
+        motion = held(motion, hold) if hold else motion
+    lengths = motion.equations.along_lengths
+    held_by = tuple(zip(hold, lengths, strict=True)) if hold else None
     springs, pins = springs_in_space(study, linkage), pins_in_space(study, linkage)
-    applied = applied_in_space(study, name, case, linkage)
-    note, ground = impulse_notes(study, case), ground_inertia(case)
+    ground: GroundInertia | None = None
+    if isinstance(case, GroundCase):
+        assert grounded is not None
+        applied, note = [grounded.loads_in_space(study, case)], grounded.note(study)
+    else:
+        applied = applied_in_space(study, name, case, linkage)
+        note, ground = impulse_notes(study, case), ground_inertia(case)
 
     def solve(which: int | None = None, size: float | None = None) -> InSpace:
         loads = list(applied)
         if which is not None:
+            assert not isinstance(case, GroundCase)
             loads[which] = load_in_space(study, name, which, case.apply[which], linkage, size)
         every: list[SpaceLoad] = [*springs, *chain.from_iterable(loads)]
         every += [ground] if ground else []
-        return _at_pins(space_reactions(name, motion, every, timed=False), pins, ground, note)
+        dynamics = space_reactions(name, motion, every, timed=False)
+        if held_by is not None:
+            _require_closed(study, dynamics, held_by)
+        return replace(_at_pins(dynamics, pins, ground, note), held=held_by)
 
     return solve
+
+
+def _require_closed(
+    study: Study, dynamics: SpaceDynamics, held_by: Sequence[tuple[str, bool]]
+) -> None:
+    """Raise LinkageError where a stop would have to pull."""
+    stops, forces = space_mechanism(study).stop, dynamics.drive
+    scale = dynamics.motion.equations.drive_scale  # forces that are comparable
+    least = OPENING_FORCE_TOLERANCE * float(np.abs(forces / scale).max())
+    for k, (name, slides) in enumerate(held_by):
+        if name in stops:
+            stop = stops[name].carries
+            require_pressed(name, stop, forces[:, k], least * float(scale[k]), slides)

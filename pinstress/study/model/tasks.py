@@ -197,8 +197,11 @@ def _shared(given: CaseLoads, applied: list[str], build: Callable[..., PinLoads]
     parts: list[PinLoads] = []
     what: list[str] = []
     for text, other in given.shared:
-        assert other.dynamics is not None
-        reactions, accelerations = acting(other.dynamics)
+        if other.space is not None:
+            reactions, accelerations = other.reactions, other.space.accelerations
+        else:
+            assert other.dynamics is not None
+            reactions, accelerations = acting(other.dynamics)
         which = [reactions.connections.index(c) for c in applied]
         sizes = [np.linalg.norm(x[:, which], axis=2) for x in (reactions.forces, reactions.moments)]
         rows = np.unique(np.concatenate([size.argmax(axis=0) for size in sizes]))

@@ -35,6 +35,8 @@ MAX_PATH_LENGTH = 4096  # as Linux has it
 # Errors of a file (loads.read_regular) that say nothing of a line in it
 UNREADABLE_FILE_CODES = "no-such-file", "folder", "not-regular", "too-large"
 MAX_LIST_ITEMS = 200_000  # of a list
+MAY_BE_EMPTY = "title", "report."  # of the keys of texts
+CHECKED_NAMES = "pin", "case", "sequence"  # tables whose names the schema checks
 MAX_KEY_LENGTH = 200  # characters; no name is longer, and messages have it in full
 
 
@@ -197,10 +199,10 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
     """
     lines = text if located else ""
     provenance: list[Sourced] = []
-    long: list[Wrong] = []
-    raw = unwrapped(with_materials(path, read_toml(path, text)), "", provenance, long)
-    if long:
-        raise study_error(path, lines, long)
+    unreadable: list[Wrong] = []
+    raw = unwrapped(with_materials(path, read_toml(path, text)), "", provenance, unreadable)
+    if unreadable:
+        raise study_error(path, lines, unreadable)
     wrong = [
         Wrong(
             f"{s.key}: provenance must be given, derived, fitted or assumed, not {as_text(s.kind)}",
@@ -297,32 +299,43 @@ def _written(value: Any) -> str:
     return cut(value) if isinstance(value, str) else in_toml(value)
 
 
-def unwrapped(node: Any, key: str, sourced: list[Sourced], long: list[Wrong]) -> Any:
+def unwrapped(node: Any, key: str, sourced: list[Sourced], wrong: list[Wrong]) -> Any:
     """Return the tree without provenance and notes, which are added to `sourced`.
 
     The value remains of { value, provenance, note }.
 
-    long: receives the errors for keys that are too long.
+    wrong: receives the errors for keys and lists that are too long, for notes, and for texts and
+    names without a letter.
     """
     if isinstance(node, list):
         if len(node) > MAX_LIST_ITEMS:
-            long.append(
+            wrong.append(
                 Wrong(
                     f"{key}: {len(node):,} elements; the limit is {MAX_LIST_ITEMS:,}",
                     code="too-many",
                 )
             )
             return []
-        return [unwrapped(v, f"{key}[{i}]", sourced, long) for i, v in enumerate(node, 1)]
+        return [unwrapped(v, f"{key}[{i}]", sourced, wrong) for i, v in enumerate(node, 1)]
+    if isinstance(node, str) and not node.strip() and not key.startswith(MAY_BE_EMPTY):
+        text = f"{key}: is empty; write something between the quotes, or leave the key out"
+        wrong.append(Wrong(text, code="empty"))
     if not isinstance(node, dict):
         return node
+    if key not in CHECKED_NAMES and any(not name.strip() for name in node):
+        wrong.append(Wrong(f"{key}: a name is empty; write something in quotes", code="empty"))
     if isinstance(node.get("provenance"), str):
-        kind, note = node["provenance"], str(node.get("note", ""))
+        kind, note = node["provenance"], node.get("note", "")
+        if not isinstance(note, str):
+            where = f"{key}.note".removeprefix(".")
+            text = f"{where}: must be a text in quotes, not {in_toml(note)}"
+            wrong.append(Wrong(text, code="not-a-text"))
+            note = ""
         node = {k: v for k, v in node.items() if k not in ("provenance", "note")}
         sourced.append(Sourced(key, kind, note, _written(node.get("value", node))))
         if set(node) == {"value"}:
-            return node["value"]
-    long += [
+            return unwrapped(node["value"], key, sourced, wrong)
+    wrong += [
         Wrong(f"{key}{': ' * bool(key)}the name {as_text(k)} has {len(k):,} characters; the limit "
               f"is {MAX_KEY_LENGTH}", code="too-long")
         for k in node if len(k) > MAX_KEY_LENGTH
@@ -330,4 +343,4 @@ def unwrapped(node: Any, key: str, sourced: list[Sourced], long: list[Wrong]) ->
     inner = {
         k: f"{key}.{key_part(k)}" if key else key_part(k) for k in node if len(k) <= MAX_KEY_LENGTH
     }
-    return {k: unwrapped(node[k], place, sourced, long) for k, place in inner.items()}
+    return {k: unwrapped(node[k], place, sourced, wrong) for k, place in inner.items()}

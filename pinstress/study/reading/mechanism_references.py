@@ -72,15 +72,16 @@ def of_its_cases(table: StudyTable, mechanism: AnyMechanism) -> Iterator[Wrong]:
     """Yield the references of cases to what the mechanism does not have."""
     moves = all(d.moves for d in mechanism.drive)
     drives = [drive_name(drive) for drive in mechanism.drive]
-    holders = dict.fromkeys(drives)
+    holders, what_holds = dict.fromkeys([*drives, *mechanism.stop]), "drive or stop"
     positions = dict.fromkeys(drives)
     if isinstance(mechanism, MechanismTable):
         holders = dict.fromkeys([*drives, *mechanism.slider, *mechanism.stop])
+        what_holds = "drive, slider or stop"
         positions = dict.fromkeys([*mechanism.slider, *drives])
     else:
-        yield from cases_in_space(table)
+        yield from cases_in_space(table, mechanism)
     known = partial(known_names, table, "")
-    yield from known("case.hold", "drive, slider or stop", holders)
+    yield from known("case.hold", what_holds, holders)
     yield from known("case.apply.body", "body", mechanism.body)
     yield from known(LOADED_JOINT_PATHS, "joint", mechanism.joint)
     what = "drive or slider" if mechanism.dimension == 2 else "drive"
@@ -165,7 +166,13 @@ def _of_wheel(
     key: str, case: AtWheel, table: StudyTable, mechanism: MechanismTable
 ) -> Iterator[Wrong]:
     yield from known_name(f"{key}.body", "body", case.body, mechanism.body)
-    yield from known_name(f"{key}.at", "joint", case.at, mechanism.joint)
+    if isinstance(case.at, str):
+        yield from known_name(f"{key}.at", "joint", case.at, mechanism.joint)
+    else:
+        yield Wrong(f"{key}.at: in a plane name the joint at the axle", code="wrong-dimension")
+    if not isinstance(case.forward, str):
+        text = f'{key}.forward: in a plane give "left" or "right"'
+        yield Wrong(text, code="wrong-dimension")
     if isinstance(case, DropCase) and case.strut is not None:
         slides = {d.slider: d for d in mechanism.drive if isinstance(d, SliderDrive)}
         yield from known_name(f"{key}.strut.drive", "slider drive", case.strut.drive, slides)

@@ -8,8 +8,7 @@ from functools import partial
 from pinbase.keys import key_part
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.names import known_name, known_names, two_bodies
-from pinstress.study.schema.cases import StaticCase
-from pinstress.study.schema.landing import AtWheel
+from pinstress.study.schema.landing import DropCase, GroundCase
 from pinstress.study.schema.shown import as_text, listed
 from pinstress.study.schema.space import (
     AngleDrive,
@@ -37,6 +36,9 @@ def of_space(mechanism: SpaceMechanismTable) -> Iterator[Wrong]:
                 text = f"{key}: joint {names[connection]} has this connection too; rename one"
                 yield Wrong(text, code="duplicate-name")
             names[connection] = name
+    for name in mechanism.link_stiffness:
+        where = f"mechanism.link_stiffness.{key_part(name)}"
+        yield from known_name(where, "body", name, mechanism.body)
     known = partial(known_names, mechanism, "mechanism")
     yield from known("joint.fixed_in joint.connections body.welded_to", "body", bodies)
     yield from known("body.bar.joints drive.between spring.joints", "joint", mechanism.joint)
@@ -58,6 +60,12 @@ def of_space(mechanism: SpaceMechanismTable) -> Iterator[Wrong]:
     for name, torsion in mechanism.torsion_spring.items():
         where = f"mechanism.torsion_spring.{key_part(name)}.joint"
         yield from _moved(where, mechanism, torsion.joint, torsion.connection, False)
+    for name, stop in mechanism.stop.items():
+        where = f"mechanism.stop.{key_part(name)}"
+        if stop.joint is not None:
+            yield from _moved(f"{where}.joint", mechanism, stop.joint, stop.connection, False)
+        elif stop.slide is not None:
+            yield from _moved(f"{where}.slide", mechanism, stop.slide, stop.connection, True)
 
 
 def _moved(
@@ -83,22 +91,34 @@ def _moved(
         yield Wrong(text.format(listed(choices)), code="missing-key")
 
 
-def cases_in_space(table: StudyTable) -> Iterator[Wrong]:
+def _on_ground(where: str, case: GroundCase, mechanism: SpaceMechanismTable) -> Iterator[Wrong]:
+    """Yield errors of a case of the ground's loads."""
+    yield from known_name(f"{where}.body", "body", case.body, mechanism.body)
+    if isinstance(case.at, str):
+        yield from known_name(f"{where}.at", "joint", case.at, mechanism.joint)
+    if isinstance(case.forward, str):
+        text = f"{where}.forward: in space give [x, y, z], the direction of travel"
+        yield Wrong(text, code="wrong-dimension")
+    elif not any(case.forward):
+        text = f"{where}.forward: must not be zero; give the direction of travel, [x, y, z]"
+        yield Wrong(text, code="no-direction")
+    if case.drop is not None:
+        text = f"{where}.drop: in space there is no drop; give reference instead"
+        yield Wrong(text, code="wrong-dimension")
+
+
+def cases_in_space(table: StudyTable, mechanism: SpaceMechanismTable) -> Iterator[Wrong]:
     """Yield errors for what cases of a linkage in space cannot have."""
     for name, case in table.case.items():
-        if isinstance(case, AtWheel):
+        where = f"case.{key_part(name)}"
+        if isinstance(case, DropCase):
             text = (
-                f"case.{key_part(name)}: kind {case.kind!r} needs a linkage in a plane; "
-                "in space apply the "
-                'forces in a case of kind "static"'
+                f"{where}: kind 'drop' needs a linkage in a plane; in space give the largest "
+                'vertical reaction as the reference of a case of kind "ground"'
             )
             yield Wrong(text, code="wrong-dimension")
-        if isinstance(case, StaticCase) and case.hold is not None:
-            text = (
-                f"case.{key_part(name)}.hold: in space all drives hold; remove it, or "
-                "drive what holds"
-            )
-            yield Wrong(text, code="wrong-dimension")
+        if isinstance(case, GroundCase):
+            yield from _on_ground(where, case, mechanism)
     if table.motion_check is not None:
         text = "motion_check: it needs a linkage in a plane; remove it"
         yield Wrong(text, code="wrong-dimension")

@@ -7,9 +7,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import inf
 
+from loads.landing.requirements import DROP_RULES, required_velocity
 from pinbase.keys import key_part, lug_key
+from pinstress.study.schema.landing import DropCase
 from pinstress.study.schema.lugs import LugTable
 from pinstress.study.schema.tables import StudyTable
+
+ROUND_OFF = 1e-6  # of a converted velocity
 
 
 def unused(table: StudyTable) -> Iterator[str]:
@@ -30,6 +34,8 @@ def unused(table: StudyTable) -> Iterator[str]:
             )
     yield from _of_codes(table)
     yield from _of_fillets(table)
+    yield from _of_drops(table)
+    yield from _of_designs(table)
     for key, lug in lugs.items():
         low, high = lug.range.clearance or (-inf, inf)
         if lug.clearance is not None and not low <= lug.clearance <= high:
@@ -37,6 +43,12 @@ def unused(table: StudyTable) -> Iterator[str]:
                 f"{key}.clearance: is not within its range.clearance, which is solved besides; "
                 "change one of both"
             )
+    heated = any(case.temperature is not None for case in table.case.values())
+    if "reference_temperature" in table.analysis.model_fields_set and not heated:
+        yield (
+            "analysis.reference_temperature: has no effect, because no case has a temperature; "
+            "give case.NAME.temperature, or remove it"
+        )
     if lugs or not table.pin:
         return
     if table.lug_defaults is not None:
@@ -71,6 +83,16 @@ def _of_codes(table: StudyTable) -> Iterator[str]:
                 f'{key}: has no effect, because only checks of the code "aircraft" have it; add '
                 "that to analysis.code, or remove it"
             )
+    if table.analysis.partial_factors.model_fields_set and not {"general", "civil"} & {*codes}:
+        yield (
+            "analysis.partial_factors: has no effect, because only checks of EN 1993 have them; "
+            'add "civil" to analysis.code, or remove it'
+        )
+    if "aisc" in table.analysis.model_fields_set and "civil" not in codes:
+        yield (
+            'analysis.aisc: has no effect, because only checks of the code "civil" have it; add '
+            "that to analysis.code, or remove it"
+        )
     if table.analysis.design_factor is not None and "lifting" not in codes:
         yield (
             'analysis.design_factor: has no effect, because only checks of the code "lifting" have '
@@ -93,3 +115,66 @@ def _of_fillets(table: StudyTable) -> Iterator[str]:
                     f"at the far end of the segment, where {where}; state it of the segment before "
                     "the corner, or remove it"
                 )
+
+
+def _of_drops(table: StudyTable) -> Iterator[str]:
+    """Yield a sentence on every key of a drop without an effect, and on every one by which the drop
+    is less than its rule requires.
+    """
+    drops = {n: case for n, case in table.case.items() if isinstance(case, DropCase)}
+    for name, case in drops.items():
+        key = f"case.{key_part(name)}"
+        if case.rule is not None:
+            yield from _short_of_rule(key, case, case.rule)
+        if case.wing_loading is not None and case.rule != "23.473":
+            yield (
+                f'{key}.wing_loading: has no effect, because only the rule "23.473" has it; choose '
+                "that, or remove it"
+            )
+        if case.tyre.at is None and "exponent" in case.tyre.model_fields_set:
+            yield (
+                f"{key}.tyre.exponent: has no effect on a tyre by a table; give at = [deflection, "
+                "force] instead of the table, or remove it"
+            )
+        wheel = case.wheel
+        for of_bending in ("mass", "damping") if wheel and wheel.stiffness is None else ():
+            if wheel is not None and of_bending in wheel.model_fields_set:
+                yield (
+                    f"{key}.wheel.{of_bending}: has no effect, because the leg is rigid fore and "
+                    f"aft; give {key}.wheel.stiffness, or remove it"
+                )
+
+
+def _short_of_rule(key: str, case: DropCase, rule: str) -> Iterator[str]:
+    """Yield a sentence on a velocity and a lift that a drop's rule does not allow."""
+    if rule != "23.473" or case.wing_loading is not None:
+        least = required_velocity(rule, case.wing_loading) * (1.0 - ROUND_OFF)
+        if case.velocity is not None and case.velocity < least:
+            yield (
+                f"{key}.velocity: {case.velocity:.4g} m/s is less than the {least:.4g} m/s of rule "
+                f'"{rule}"; give that at least, or remove one of both'
+            )
+    most = DROP_RULES[rule].lift
+    if case.lift is not None and case.lift > most * (1.0 + ROUND_OFF):
+        yield (
+            f"{key}.lift: {case.lift:.4g} of the weight is more than the {most:.4g} of rule "
+            f'"{rule}"; give that at most, or remove one of both'
+        )
+
+
+def _of_designs(table: StudyTable) -> Iterator[str]:
+    """Yield a sentence on keys of another sample of designs than the one that is chosen."""
+    vary = table.vary
+    if vary is None:
+        return
+    if vary.sample == "grid" and "count" in vary.model_fields_set:
+        yield (
+            "vary.count: has no effect on a grid, which has all combinations of the steps; choose "
+            'another sample, such as sample = "sobol", or remove it'
+        )
+    for key, parameter in vary.parameters.items():
+        if vary.sample != "grid" and parameter.steps is not None:
+            yield (
+                f"vary.parameters.{key_part(key)}.steps: has no effect, because sample = "
+                f'"{vary.sample}" has vary.count designs; choose sample = "grid", or remove it'
+            )

@@ -121,4 +121,4 @@ def drive_name(drive: LawTable) -> str:
     if isinstance(drive, SliderDrive):
         return drive.slider
     moved = (getattr(drive, key, None) for key in ("body", "joint", "slide"))
-    return drive.name or next(filter(None, moved))
+    return drive.name or next(filter(None, moved), "")

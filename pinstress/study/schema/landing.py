@@ -2,18 +2,21 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from loads.landing.requirements import RULES_OF_PART
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.cases import CaseTable, Coordinates
 from pinstress.study.schema.types import (
     NOT_NEGATIVE,
+    ONE_OR_SEVERAL,
     POSITIVE,
     Density,
+    Direction,
     Duration,
     Force,
     Inertia,
+    JointOrPoint3,
     Length,
     Mass,
     Number,
@@ -25,7 +28,6 @@ from pinstress.study.schema.types import (
     Weight,
     Whole,
     exactly_one,
-    one_or_several,
 )
 
 Positive = Annotated[Length, POSITIVE]
@@ -141,17 +143,30 @@ class WheelTable(StrictTable):
     """Damping of that bending, ratio to critical."""
 
 
+Forward = Annotated[
+    Annotated[Literal["left", "right"], Tag("<side>")] | Annotated[Direction, Tag("<direction>")],
+    Discriminator(lambda value: "<direction>" if isinstance(value, list | tuple) else "<side>"),
+]
+
+
 class AtWheel(CaseTable):
     """Keys of cases in which the ground pushes on a wheel."""
 
     body: str
     """Body on which the ground pushes."""
-    at: str
-    """Joint at the axle, where the forces act."""
-    forward: Literal["left", "right"] = "left"
-    """Direction of travel, with gravity downwards."""
+    at: JointOrPoint3
+    """Joint at the axle, where the forces act; in space a joint or [x, y, z] as drawn."""
+    forward: Forward = "left"
+    """Direction of travel: in a plane "left" or "right", with gravity downwards; in space
+    [x, y, z], of which the level part counts."""
     position: Coordinates | None = None
     """Position of the drives, of a strut extended; as in a static case."""
+
+    @property
+    def joint(self) -> str:
+        """The joint at the axle, of a mechanism in a plane."""
+        assert isinstance(self.at, str)
+        return self.at
 
 
 class DropCase(AtWheel):
@@ -274,7 +289,7 @@ class GroundCase(AtWheel):
     part: Literal["23", "25"] | None = None
     """Part of 14 CFR: one case for each of its rules above, side loads to both sides. The case's
     name has a *, which the names of the rules replace."""
-    factors: Annotated[list[FactorTable], Field(max_length=100)] = []
+    factors: Annotated[list[FactorTable], Field(max_length=100), ONE_OR_SEVERAL] = []
     """Other loads: one table, or several `[[case."NAME *".factors]]` with names."""
     reference: Annotated[Force, POSITIVE] | None = None
     """The largest vertical reaction (25.473, 25.479, 23.479), the static load (23.499), or that to
@@ -295,8 +310,6 @@ class GroundCase(AtWheel):
     spin_up: SpinUpTable | None = None
     """For the drag of spin-up and spring-back. Default: the wheel of the drop; without either, the
     most that is required, 0.8 of the vertical reaction."""
-
-    _listed = field_validator("factors", mode="before")(one_or_several)
 
     @property
     def stands(self) -> Literal["left", "right", "nose"]:

@@ -72,10 +72,13 @@ class ShankTable(StrictTable):
 
 Friction = Annotated[Number, Field(ge=0.0, le=1.0)]
 Times = Annotated[Number, Field(gt=0.0)]
+PositiveShare = Annotated[Number, Field(gt=0.0, le=1.0)]
 
 
 class LugFactorsTable(StrictTable):
-    """Efficiency factors of a lug for the code "aircraft", read off the figures of its source."""
+    """Factors of a lug for the code "aircraft": efficiencies read off the figures of its source,
+    and the special factor in bearing.
+    """
 
     K: Times | None = None
     """Bearing: AFFDL-TR-69-42, figure 9-2."""
@@ -91,6 +94,13 @@ class LugFactorsTable(StrictTable):
     """Transverse load, ultimate, by Melcon and Hoblit."""
     k_try: Times | None = None
     """Transverse load, yield, by Melcon and Hoblit."""
+    gamma: PositiveShare | None = None
+    """Of the middle lug in double shear: the part of a quarter of its thickness that is left of the
+    arm of the pin's bending moment, as pressure peaks at its faces, by Melcon and Hoblit."""
+    bearing: Annotated[Number, Field(ge=1.0)] | None = None
+    """Special factor on the ultimate load in bearing, instead of a lower fitting factor: 14 CFR
+    25.623, for a clearance that pounds or vibrates; 25.693, 3.33 in joints of control systems, 2 in
+    cable systems."""
 
 
 class LugRangeTable(StrictTable):
@@ -147,7 +157,7 @@ class LugTable(StrictTable):
     shank: ShankTable | None = None
     """The outline of the lug in its plane, which its own stress requires."""
     factors: LugFactorsTable = LugFactorsTable()
-    """Efficiency factors of the lug, which only figures give."""
+    """Efficiency factors of the lug, which only figures give, and its special factor in bearing."""
     range: LugRangeTable = LugRangeTable()
     """What is not known of the lug, for the range of the maximum over the joint (`joint.range`)."""
 

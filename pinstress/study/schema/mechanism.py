@@ -4,6 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
+from loads.linkage.parts import Sign
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.drives import RotaryDrive, SliderDrive
 from pinstress.study.schema.forces import (
@@ -13,6 +14,7 @@ from pinstress.study.schema.forces import (
 from pinstress.study.schema.gears import GearTable, RackTable
 from pinstress.study.schema.types import (
     NOT_NEGATIVE,
+    ONE_OR_SEVERAL,
     POSITIVE,
     Acceleration,
     Angle,
@@ -24,6 +26,7 @@ from pinstress.study.schema.types import (
     Number,
     Point,
     PositiveLength,
+    Quantity,
     Side,
     Stress,
     StrictTable,
@@ -31,7 +34,6 @@ from pinstress.study.schema.types import (
     Weight,
     both_or_none,
     exactly_one,
-    one_or_several,
     require_one,
 )
 
@@ -254,7 +256,7 @@ class StopTable(StrictTable):
 
     bodies: tuple[str, str]
     """[base, body]; the base may be "ground"."""
-    carries: Literal["both", "positive", "negative"] = "both"
+    carries: Sign = "both"
     """Couples on the body, counter-clockwise positive, that it can carry: "both" for a lock, one
     sign for a stop, which opens under the other."""
 
@@ -265,21 +267,27 @@ class LinkStiffnessTable(StrictTable):
     """
 
     diameter: PositiveLength | None = None
-    """Diameter of a round link. Give one of `diameter`, `section` or `rigid`."""
+    """Diameter of a round link. Give one of `diameter`, `section`, `stiffness` or `rigid`."""
     bore: Annotated[Length, NOT_NEGATIVE] = 0.0
     """Bore of a tube."""
     section: tuple[PositiveLength, PositiveLength] | None = None
     """Section of a rectangular link: [depth in the plane, width across it]."""
-    youngs_modulus: Stress = 210e9
+    youngs_modulus: Annotated[Stress, Field(json_schema_extra={"default": "210 GPa"})] = 210e9
     """Young's modulus; only ratios between links matter."""
+    stiffness: Annotated[Annotated[float, Quantity("stiffness")], POSITIVE] | None = None
+    """For a link that is no bar, the force across it at its joint farthest from its centre of mass
+    over the deflection there, the link being held at the centre. It then yields like the round bar
+    of this stiffness."""
     rigid: Switch = False
     """Whether it does not yield beside the other links."""
 
     @model_validator(mode="after")
     def _one_section(self) -> "LinkStiffnessTable":
-        if (self.diameter is not None) + (self.section is not None) + self.rigid != 1:
+        given = [self.diameter, self.section, self.stiffness, self.rigid or None]
+        if given.count(None) != len(given) - 1:
             raise ArgumentError(
-                "give one of diameter, section = [depth, width] or rigid = true", "give-one"
+                "give one of diameter, section = [depth, width], stiffness or rigid = true",
+                "give-one",
             )
         if self.bore and (self.diameter is None or self.bore >= self.diameter):
             raise ArgumentError("bore must be less than the diameter", "out-of-range")
@@ -302,7 +310,7 @@ class MechanismTable(StrictTable):
     """Bodies by name, except the ground."""
     slider: dict[str, SliderTable] = {}
     """Sliders by name."""
-    drive: list[AnyDrive] = []
+    drive: Annotated[list[AnyDrive], ONE_OR_SEVERAL] = []
     """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom; none
     for a structure, and where `hold` names the locks of every case."""
     gear: dict[str, GearTable] = {}
@@ -326,5 +334,3 @@ class MechanismTable(StrictTable):
     link_stiffness: dict[str, LinkStiffnessTable] = {}
     """Sections of links, by body, by which they share loads out of the plane. Rows of a case with
     such loads have a range over the stiffness of those of which none is stated."""
-
-    _listed = field_validator("drive", mode="before")(one_or_several)

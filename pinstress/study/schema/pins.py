@@ -158,11 +158,11 @@ class SlotTable(StrictTable):
 
 
 class PassageTable(BottomTable):
-    """A hole along the pin, beside its axis."""
+    """A hole along the pin, on its axis or beside it."""
 
     end: Literal["start", "end"] = "start"
     """End face from which it is drilled."""
-    offset: NotNegativeLength
+    offset: NotNegativeLength = 0.0
     """Distance of its axis from that of the pin."""
 
 

@@ -4,44 +4,48 @@ import math
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, field_validator, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
+from loads.linkage.parts import Sign
 from loads.space.conditions import directions
 from loads.space.kinds import KINDS, Kind
 from loads.space.linkage import RIGHT_ANGLE_TOLERANCE
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.drives import LawTable, require_few_turns
 from pinstress.study.schema.forces import LineLawTable, TorsionLawTable
-from pinstress.study.schema.mechanism import BarTable, Ratios, require_single_mass
+from pinstress.study.schema.mechanism import (
+    BarTable,
+    LinkStiffnessTable,
+    Ratios,
+    require_single_mass,
+)
 from pinstress.study.schema.types import (
-    BY_NAME_OR_PLACE,
+    ONE_OR_SEVERAL,
     Acceleration,
     Angle,
-    Joint,
+    Direction,
+    JointOrPoint3,
     Length,
     Mass,
     Number,
+    Point3,
     PositiveLength,
     SignedInertia,
     StrictTable,
     Weight,
     both_or_none,
     exactly_one,
-    one_or_several,
     require_both,
 )
-
-Point3 = tuple[Length, Length, Length]
-Direction = tuple[Number, Number, Number]
-JointOrPoint3 = Annotated[Joint | Annotated[Point3, Tag("<point>")], BY_NAME_OR_PLACE]
 
 # Nearer to each other, the axes of a universal joint do not say which second axis was meant.
 MAX_COSINE_OF_SKEW = math.cos(math.radians(1.0))
 PLANAR_PARTS = {  # of a mechanism, and what stands for them in space
     "slider": 'use a joint of kind = "prismatic" between its two bodies',
-    "stop": "drives hold the linkage: drive the joint at which the stop acts",
-    "gear": "give each of the two bodies a drive, their laws in the ratio of the teeth",
-    "rack": "give each of the two bodies a drive, their laws in the ratio of the gear's radius",
+    "gear": "give each of the two bodies a drive, their laws in the ratio of the teeth, and load "
+    "both with the force between the teeth, which drives do not exert on bearings",
+    "rack": "give each of the two bodies a drive, their laws in the ratio of the gear's radius, "
+    "and load both with the force between the teeth, which drives do not exert on bearings",
     "point": "remove it: bodies.csv has the motion of every body",
 }
 
@@ -162,14 +166,36 @@ class SpaceBarTable(BarTable):
 
     @model_validator(mode="after")
     def _known_depth(self) -> "SpaceBarTable":
-        if (self.section is None) != (self.depth_along is None) or not any(
-            self.depth_along or (1.0,)
-        ):
-            raise ArgumentError(
-                "a rectangular bar needs depth_along = [x, y, z], the direction of its depth; a "
-                "round one has none",
-                "give-both",
-            )
+        _require_depth("bar", self.section, self.depth_along)
+        return self
+
+
+def _require_depth(
+    what: str, section: tuple[float, float] | None, depth_along: Direction | None
+) -> None:
+    """Raise ArgumentError where a rectangular section does not say where its depth is."""
+    if (section is None) != (depth_along is None) or not any(depth_along or (1.0,)):
+        raise ArgumentError(
+            f"a rectangular {what} needs depth_along = [x, y, z], the direction of its depth; a "
+            "round one has none",
+            "give-both",
+        )
+
+
+class SpaceLinkStiffnessTable(LinkStiffnessTable):
+    """The section of a link, for its stiffness where joints are redundant; of a `bar` it is that of
+    the bar.
+    """
+
+    section: tuple[PositiveLength, PositiveLength] | None = None
+    """Section of a rectangular link: [depth, width]."""
+    depth_along: Direction | None = None
+    """Direction of the depth of a rectangular link as drawn; its part across the line from the
+    centre of mass to a joint counts."""
+
+    @model_validator(mode="after")
+    def _known_depth(self) -> "SpaceLinkStiffnessTable":
+        _require_depth("link", self.section, self.depth_along)
         return self
 
 
@@ -329,6 +355,23 @@ class SpaceTorsionSpringTable(TorsionLawTable):
     """Which of its connections. Default: the only one that moves on the pin."""
 
 
+class SpaceStopTable(StrictTable):
+    """A lock or stop of a joint, which can keep it as it is in cases whose `hold` names it."""
+
+    joint: str | None = None
+    """The revolute or cylindrical joint whose angle it keeps. Give either `joint` or `slide`."""
+    slide: str | None = None
+    """The prismatic or cylindrical joint whose travel it keeps."""
+    connection: str | None = None
+    """Which of its connections. Default: the only one that moves on the pin."""
+    carries: Sign = "both"
+    """Couples about the joint's axis, right-handed, or forces along it, on the body of the
+    connection, that it can carry: "both" for a lock, one sign for a stop, which opens under the
+    other."""
+
+    _one = exactly_one("either joint or slide", "joint", "slide")
+
+
 class SpaceSharingTable(StrictTable):
     """Springs in parallel, by which redundant connections share their load."""
 
@@ -358,18 +401,21 @@ class SpaceMechanismTable(StrictTable):
     """Joints by name."""
     body: Annotated[dict[str, SpaceBodyTable], Field(min_length=1)]
     """Bodies by name, except the ground."""
-    drive: list[AnySpaceDrive] = []
+    drive: Annotated[list[AnySpaceDrive], ONE_OR_SEVERAL] = []
     """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom; none
-    for a structure."""
+    for a structure, and where `hold` names the locks of every case."""
+    stop: dict[str, SpaceStopTable] = {}
+    """Stops and locks by name."""
     spring: dict[str, SpaceSpringTable] = {}
     """Springs and dampers by name; they act in all cases."""
     torsion_spring: dict[str, SpaceTorsionSpringTable] = {}
     """Torsion springs and dampers by name; they act in all cases."""
     sharing: list[SpaceSharingTable] = []
-    """Redundant connections, and how they share their load. Default: as all links of one section
-    would, with the range over links a tenth and ten times as stiff."""
-
-    _listed = field_validator("drive", mode="before")(one_or_several)
+    """Redundant connections, and how they share their load. Default: by the stiffness of links."""
+    link_stiffness: dict[str, SpaceLinkStiffnessTable] = {}
+    """Sections of links, by body, by which they share what statics and `sharing` leave open. Those
+    of which none is stated are as stiff as the mean of the others, and rows have a range over each
+    of them a tenth and ten times as stiff."""
 
     @model_validator(mode="before")
     @classmethod

@@ -4,6 +4,7 @@ import datetime
 from typing import Annotated, Any, Literal
 
 from pydantic import (
+    BeforeValidator,
     Discriminator,
     Field,
     Tag,
@@ -13,7 +14,7 @@ from pydantic import (
     model_validator,
 )
 
-from assess.codes import Code
+from assess.codes import RECOMMENDED, AiscDesign, Code
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.cases import GivenCase, InstantCase, MotionCase, StaticCase
 from pinstress.study.schema.fatigue import FatigueTable
@@ -24,7 +25,7 @@ from pinstress.study.schema.mechanism import MechanismTable
 from pinstress.study.schema.pins import PinTable
 from pinstress.study.schema.require import RequireTable
 from pinstress.study.schema.sequence import SequenceTable
-from pinstress.study.schema.shown import as_text
+from pinstress.study.schema.shown import as_text, in_toml
 from pinstress.study.schema.size import SizeTable
 from pinstress.study.schema.space import SpaceMechanismTable
 from pinstress.study.schema.types import (
@@ -58,6 +59,17 @@ AnyMechanism = Annotated[
     Discriminator(_plane_or_space),
 ]
 AnyCase = GivenCase | MotionCase | StaticCase | InstantCase | DropCase | GroundCase
+
+
+class PartialFactorsTable(StrictTable):
+    """Partial factors of EN 1993-1-8, as a national annex has them."""
+
+    M0: Annotated[Number, Field(ge=0.5)] = RECOMMENDED.M0
+    """Of the resistance of cross-sections: bearing and bending of pins."""
+    M2: Annotated[Number, Field(ge=0.5)] = RECOMMENDED.M2
+    """Of shear of pins."""
+    M6_ser: Annotated[Number, Field(ge=0.5)] = RECOMMENDED.M6_ser
+    """Of replaceable pins at the loads of service."""
 
 
 class AnalysisTable(StrictTable):
@@ -102,11 +114,16 @@ class AnalysisTable(StrictTable):
     ] = "general"
     """Which checks of strength are made of pins and lugs: textbooks and EN 1993-1-8 ("general");
     AFFDL-TR-69-42, Melcon and Hoblit, Ekvall, Cozzone ("aircraft"); ASME BTH-1 ("lifting");
-    EN 1993-1-8 and ANSI/AISC 360, D5 ("civil"). A list shows them side by side."""
+    EN 1993-1-8, EN 1993-1-1 and ANSI/AISC 360, D5 ("civil"). A list shows them side by side."""
     design_factor: Annotated[Number, Field(ge=1.0)] | None = None
     """Design factor N_d of ASME BTH-1 for the code "lifting"; the standard gives it by the design
     category of the device."""
 
+    partial_factors: PartialFactorsTable = PartialFactorsTable()
+    """Partial factors of EN 1993-1-8, for checks of "general" and "civil"."""
+    aisc: AiscDesign = "LRFD"
+    """How plates are designed by ANSI/AISC 360, for the code "civil": by load and resistance
+    factors at ultimate load ("LRFD"), or by allowable strengths at limit load ("ASD")."""
     reference_temperature: Annotated[
         Temperature, Field(json_schema_extra={"default": "20 degC"})
     ] = 293.15
@@ -175,12 +192,24 @@ class PublishedTable(StrictTable):
     """CSV file with the columns case,time,quantity,name,published,reason."""
 
 
+def _date(value: object) -> object:
+    """Return a date as it is, or as a text; pydantic takes numbers for seconds since 1970."""
+    text = value.isoformat() if type(value) is datetime.date else value
+    try:
+        return datetime.date.fromisoformat(text if isinstance(text, str) else "")
+    except ValueError:
+        raise ArgumentError(
+            f"must be a date such as 2026-03-31, without quotes, not {in_toml(value)}",
+            "not-a-date",
+        ) from None
+
+
 class ReportTable(StrictTable):
     """The title block of the report; what is not given is left blank."""
 
     revision: Annotated[str, Field(max_length=100)] = ""
     """Revision, as "B"."""
-    date: datetime.date | None = None
+    date: Annotated[datetime.date, BeforeValidator(_date)] | None = None
     """Date of the revision, as 2026-03-31 without quotes; also the PDF's date of creation."""
     prepared: Annotated[str, Field(max_length=100)] = ""
     """Name of who prepared it."""

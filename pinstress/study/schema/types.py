@@ -17,6 +17,7 @@ from urllib.parse import quote
 from pydantic import (
     AfterValidator,
     BaseModel,
+    BeforeValidator,
     ConfigDict,
     Discriminator,
     Field,
@@ -37,6 +38,7 @@ REMOVED_KEYS = {
     "lug_edges": "it was removed: stress near the edges of lugs is read as surface, section and "
     "contact, without an excluded distance (docs/lugs.md), so delete the line"
 }
+PROVENANCE_HINT = 'write provenance = "given", "derived", "fitted" or "assumed", and note beside it'
 UNKNOWN_KEY_ERROR = "unknown_key"  # the type of pydantic's error
 MIN_SI_VALUE = 1.0 / MAX_SI_VALUE  # in SI: its square does not underflow
 FORBIDDEN_CHARACTERS = '/\\:*?"<>|'  # in names of files, on some system
@@ -253,6 +255,10 @@ Joint = Annotated[str, Tag("<joint>")]
 BY_NAME_OR_PLACE = Discriminator(lambda x: "<joint>" if isinstance(x, str) else "<point>")
 JointOrPoint = Annotated[Joint | Annotated[Point, Tag("<point>")], BY_NAME_OR_PLACE]
 
+Point3 = tuple[Length, Length, Length]
+Direction = tuple[Number, Number, Number]
+JointOrPoint3 = Annotated[Joint | Annotated[Point3, Tag("<point>")], BY_NAME_OR_PLACE]
+
 Place3 = Annotated[list[Length], Field(min_length=2, max_length=3)]
 JointOrPlace = Annotated[Joint | Annotated[Place3, Tag("<point>")], BY_NAME_OR_PLACE]
 
@@ -281,9 +287,20 @@ Tilt = Annotated[
 ]
 
 
-def one_or_several(value: Any) -> Any:
-    """Return a list of tables, of which the study may give a single one."""
+class OneOrSeveral(BeforeValidator):
+    """Reads a list of tables, of which the study may give a single one."""
+
+    def __get_pydantic_json_schema__(
+        self, core: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        return handler(core) | {"one_or_several": True}
+
+
+def _listed(value: Any) -> Any:
     return [value] if isinstance(value, dict) else value
+
+
+ONE_OR_SEVERAL = OneOrSeveral(_listed)
 
 
 class StrictTable(BaseModel):
@@ -379,5 +396,7 @@ def hint_for_key(key: str, known: list[str]) -> str:
     """
     if key in REMOVED_KEYS:
         return REMOVED_KEYS[key]
+    if key in PROVENANCE_PROPERTIES:
+        return PROVENANCE_HINT
     near = nearest(key, known, cutoff=0.5)
     return f"did you mean {near!r}?" if near else f"known here: {listed(known)}"

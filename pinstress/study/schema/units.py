@@ -318,15 +318,15 @@ def _by_pint(unit: str, dimension: str, text: str) -> float:
 
 
 def _meant(unit: str, dimension: str) -> str | None:
-    """Return the usual unit of a dimension that is spelled so except for capitals, blanks and
-    dots.
+    """Return the usual unit of a dimension that is spelled so except for capitals, blanks, dots
+    and marks of powers.
     """
     spelled = {_bare(usual): usual for usual, (of, _) in USUAL_UNITS.items() if of == dimension}
     return spelled.get(_bare(unit))
 
 
 def _bare(unit: str) -> str:
-    return re.sub(r"[\s*.·-]", "", unit).casefold()
+    return re.sub(r"[\s*.·^-]", "", unit).casefold()
 
 
 def _symbols() -> dict[str, None]:

@@ -10,7 +10,7 @@ const textsOf = ({ names, places }) => ({ names, at: Float64Array.from(places, (
 const modelOf = (data) => {
   const count = data.numbers.length;
   const texts = Object.fromEntries(Object.entries(data.texts).map(([name, text]) => [name, textsOf(text)]));
-  const columns = data.columns.map((c, index) => ({ ...c, index, all: c.names ? textsOf(c).at : c.values, log: false }));
+  const columns = data.columns.map((c, index) => ({ ...c, index, all: c.names ? textsOf(c).at : c.values, log: false, limit: c.key === "safety_factor" ? data.required : null }));
   const pairs = new Map();
   for (let r = 0; r < texts.pin.at.length; r++) {
     const pin = texts.pin.at[r], load = texts.case.at[r];

@@ -16,10 +16,14 @@ const breakable = (text) => text.replace(/([.\]_])(?=\w)/g, "$1\u200b");
 
 // Digits of a column: results have no more than their errors leave them.
 const digitsOf = ({ key, of }) => (/(^|_)error/.test(key) ? 2 : of === "row" ? 4 : 6);
-// A value of a column for reading; the file has all digits.
+// A value of a column for reading; the file has all digits. A factor has more where it would be
+// rounded past the required one (reports/format/numbers.py: beside_limit).
 const worded = (column, value, digits = digitsOf(column)) => {
   if (column.names) return value >= 0 ? column.names[value] : "–";
-  return Number.isFinite(value) ? short(value, digits) : value === Infinity ? "∞" : "–";
+  if (!Number.isFinite(value)) return value === Infinity ? "∞" : "–";
+  const hides = (n) => (Number(value.toPrecision(n)) >= column.limit) !== (value >= column.limit);
+  while (column.limit !== null && digits < 9 && hides(digits)) digits++;
+  return short(value, digits);
 };
 const exact = (column, value) => (column.names ? worded(column, value) : Number.isNaN(value) ? "" : String(value));
 

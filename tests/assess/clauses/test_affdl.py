@@ -81,7 +81,9 @@ def test_the_load_shifts_to_the_faces() -> None:
     """
     moment = 1.56 * 125 * KSI * math.pi / 32.0 * DP**3
     shear = math.pi / 2.0 * DP**2 * 82 * KSI
-    joint = DoubleShear(28_558 * LBF, 44_010 * LBF, (0.5 * IN, 0.75 * IN), GAP, moment, shear)
+    joint = DoubleShear(
+        28_558 * LBF, 44_010 * LBF, (0.5 * IN, 0.75 * IN), GAP, moment, shear, Circle(DP / 2.0)
+    )
     assert joint.arm / IN == pytest.approx(0.5375)
     assert lbf(joint.shear) == pytest.approx(72_453, rel=1e-5)
     assert lbf(joint.even_bending) == pytest.approx(30_052, rel=1e-4)
@@ -95,7 +97,7 @@ def test_the_load_shifts_to_the_faces() -> None:
 @each("moment", [80.0, 200.0, 400.0, 1200.0])
 def test_the_shifted_load_bends_the_pin_as_much(moment: float) -> None:
     """Statics of 9-16: the load on the widths that are left bends the pin by exactly M_u."""
-    joint = DoubleShear(120e3, 190e3, (0.012, 0.02), 0.002, moment, 1e9)
+    joint = DoubleShear(120e3, 190e3, (0.012, 0.02), 0.002, moment, 1e9, Circle(0.01))
     b1, twice_b2 = joint.bearing_widths
     arm = b1 / 2.0 + twice_b2 / 4.0 + joint.gap
     assert joint.shifted_bending / 2.0 * arm == pytest.approx(moment)
@@ -129,6 +131,16 @@ def test_the_diameter_that_would_pass() -> None:
         m for m in margins_of(replace(s, profile=thicker)) if m.method == "pin bending, rupture"
     )
     assert passing.used == pytest.approx(1.0)
+
+
+def test_factors_of_figures_hold_for_one_width() -> None:
+    """K and K_n are read at e/D and W/D, so that only another thickness can be said to pass."""
+    margins = named(margins_of(joint_of_table()))
+    for method in ("bearing", "net section"):
+        m = margins[f"AFFDL lug {method}", "B"]
+        assert m.passing is not None, method
+        assert m.passing.symbol == "thickness", method
+        assert m.passing.value == pytest.approx(0.75 * IN * m.used, rel=1e-5), method
 
 
 def test_a_joint_that_is_not_checked_leaves_bending_to_even_loads() -> None:

@@ -4,6 +4,8 @@ docs/evidence.md compares.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from assess.checks import margins_of
 from assess.clauses.aisc_d5 import (
     RUPTURE_PHI,
     effective_width,
+    proportions,
     tensile_rupture,
 )
 from assess.clauses.eye import PlateEye
@@ -53,6 +56,47 @@ def test_a_study_of_the_plate() -> None:
     assert margins["AISC bearing"].used == pytest.approx(24.0 / 24.3, rel=1e-6)
     assert margins["AISC tensile rupture"].allowable == pytest.approx(0.75 * 93.38 * KIP, rel=1e-4)
     assert "EN 1993 bending" in margins
+
+
+def test_allowable_strengths() -> None:
+    """16.2 kips in bearing by ASD, at 16 kips of limit load; 2.00 and 1.67 of the nominal ones."""
+    s = plate(Shank("square", 4.25 * IN, 10.0 * IN, (2.25 + 0.515) * IN, 0.0))
+    lrfd, asd = (
+        {m.method: m for m in margins_of(x) if m.method.startswith("AISC")}
+        for x in (s, replace(s, aisc="ASD"))
+    )
+    assert (asd["AISC bearing"].allowable or 0.0) / KIP == pytest.approx(16.2)
+    assert asd["AISC bearing"].used == pytest.approx(16.0 / 16.2)
+    assert {m.level for m in asd.values()} == {"limit"}
+    for method, m in asd.items():
+        phi, omega = (0.90, 1.67) if method == "AISC yielding" else (0.75, 2.00)
+        assert m.allowable == pytest.approx((lrfd[method].allowable or 0.0) / phi / omega)
+
+
+def test_a_width_on_which_nothing_depends_is_not_said_to_pass() -> None:
+    """The shear planes of a square plate end at its end, however wide it is: a width just above
+    that of the hole was said to pass.
+    """
+    s = plate(Shank("square", 4.25 * IN, 10.0 * IN, (2.25 + 0.515) * IN, 0.0))
+    margins = {m.method: m for m in margins_of(s)}
+    assert margins["AISC shear rupture"].used < 1.0
+    assert margins["AISC shear rupture"].passing is None
+    assert margins["AISC tensile rupture"].passing is not None
+
+
+def test_proportions_that_the_clause_demands() -> None:
+    """The example's plate has them: 2.25 in beyond the hole, 1.33 x 1.61 = 2.14. A round head of
+    thick plate has b_e beyond its hole, and a hole of 1.04 in lets a pin of 1 in rattle.
+    """
+    assert proportions(PLATE, "B") == []
+    (short,) = proportions(replace(PLATE, end=(2.1 + 0.515) * IN), "B")
+    assert "now 1.3 b_e" in short
+    (loose,) = proportions(replace(PLATE, hole=1.04 * IN, end=2.8 * IN), "B")
+    assert "1/32 in" in loose
+    assert not proportions(replace(PLATE, hole=1.04 * IN, end=2.8 * IN, bushed=True), "B")
+    s = plate(Shank("round", 4.25 * IN, 10.0 * IN, 4.25 / 2.0 * IN, 0.0))
+    (named,) = (m for m in margins_of(s) if m.method == "AISC proportions")
+    assert "now 1 b_e) at lug B" in named.needs
 
 
 def test_a_narrow_shank_yields_before_its_head() -> None:

@@ -30,6 +30,7 @@ from fea.core.pin_loads import PinLoads
 from fea.lug.in_joint import ShankAngle
 from fea.support.lugs.lug import Bushing, Lug, Shank
 from geometry import ArgumentError
+from reports.data.requirements import keys_in
 from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.pins.plain_pins import double_shear
@@ -155,6 +156,16 @@ def test_a_shank_that_turns() -> None:
     assert margins["Melcon-Hoblit oblique"].demand == pytest.approx(max(R), rel=1e-3)
 
 
+def test_factors_of_figures_hold_for_one_width() -> None:
+    """k_br, k_t and C are read at W/D, so that only another thickness can be said to pass."""
+    margins = named(lug_at(0.0))
+    for method in ("shear-bearing", "tension", "yield"):
+        m = margins[f"Melcon-Hoblit {method}"]
+        assert m.passing is not None, method
+        assert m.passing.symbol == "thickness", method
+        assert m.passing.value == pytest.approx(0.5 * IN * m.used, rel=1e-5), method
+
+
 def test_the_pin_of_the_example() -> None:
     """Niu allows 2.21 in-kip, 1.44 F_tu of the elastic section: 29.4 kips in shear with 75 ksi."""
     margins = named(lug_at(0.0))
@@ -172,3 +183,46 @@ def test_an_eye_needs_material_around_its_bore() -> None:
     with raises(ArgumentError, "out-of-range", "reach further"):
         PlateEye(0.05, 0.02, 0.02, 0.01, end=0.01)
     assert pytest.approx(1.5 / 1.15, rel=1e-3) == ULTIMATE_OVER_YIELD
+
+
+def test_the_pin_bends_by_pressure_that_peaks() -> None:
+    """gamma 0.43: an arm of 0.125 + 0.02 + 0.43 x 0.125 = 0.1988 in, 1.491 in-kip of 15 kips, MS
+    0.288 (0.28 in print, with 1.5); even bearing is for comparison then.
+    """
+    s = replace(lug_at(0.0), lug_factors={"B": replace(FACTORS, gamma=0.43)})
+    bent = named(s)["Melcon-Hoblit pin bending"]
+    assert bent.demand == pytest.approx(1.491 * KIP * IN / 1.5, rel=1e-3)
+    assert bent.margin == pytest.approx(2.209 / (FITTING * 1.491) - 1.0, rel=2e-3)
+    assert bent.passing is not None
+    assert bent.passing.value == pytest.approx(0.5 * IN * bent.used ** (1.0 / 3.0))
+    even = named(s)["pin bending, rupture, for comparison"]
+    assert not even.governs
+    assert named(lug_at(0.0))["pin bending, rupture"].governs
+
+
+def test_what_bending_needs_is_one_entry_of_a_list() -> None:
+    """Reports split what is missing at commas: the page had "and for Cozzone's)"."""
+    s = replace(lug_at(0.0), bending_factor=None)
+    (bent,) = (m for m in margins_of(s) if m.method == "pin bending, rupture")
+    assert keys_in(bent.needs) == ["pin.P.bending_factor or material.steel.ultimate_strain"]
+
+
+@each("at", [("A",), ("A", "B"), ("C",)])
+def test_gamma_is_of_the_middle_lug(at: tuple[str, ...]) -> None:
+    s = replace(lug_at(0.0), lug_factors={name: LugFactors(gamma=0.43) for name in at})
+    (bent,) = (m for m in margins_of(s) if m.method == "Melcon-Hoblit pin bending")
+    assert "gamma of the middle lug" in bent.needs
+
+
+def test_the_bushing_of_the_example() -> None:
+    """34.7 kips with F_cy 75 ksi on 0.25 in2, at yield; the manual's is the lower one."""
+    s = lug_at(0.0)
+    soft = replace(s.lugs[0].bushing.material, yield_strength=75 * KSI)  # type: ignore[union-attr]
+    lug = replace(s.lugs[0], bushing=Bushing(0.075 * IN, soft))
+    margins = named(replace(s, lugs=(lug,), sized=(lug,)))
+    bushing = margins["Melcon-Hoblit bushing"]
+    assert (bushing.allowable or 0.0) / KIP == pytest.approx(34.69, abs=0.01)
+    assert bushing.level == "limit"
+    assert bushing.used < margins["AFFDL bushing"].used
+    plain = named(replace(s, lug_factors={}))
+    assert "Melcon-Hoblit bushing" not in plain

@@ -11,12 +11,14 @@ import pytest
 from assess.plastic.records import LimitLoad
 from assess.situation import LoadFactors, Situation, SolvedRow
 from assess.strength.bending_arms import bending_arms, layout
+from assess.strength.case_crushing import crushed_case
 from assess.strength.collapse import collapse
 from assess.strength.hand_checks import bending
 from assess.strength.model_stress import model_rupture, model_yield
 from assess.strength.section_forces import of_joint, section_forces
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
+from fea.core.places import CaseCrushing, ContactPlace, Places, SurfacePlace
 from fea.support.records import JointForces
 from geometry import Pin, Segment
 from tests.assess.strength.test_strength import S235, in_double_shear, margins
@@ -101,6 +103,25 @@ def test_a_limit_load_is_a_margin_at_ultimate_load() -> None:
     assert (found.level, found.time) == ("ultimate", 0.2)
     (none,) = collapse(replace(s, row=SolvedRow(peak, LimitLoad("none", note="no mesh"))))
     assert none.needs == "a limit load: no mesh"
+
+
+def test_a_crushed_case_has_the_factor_that_is_required_against_yield() -> None:
+    """A core of 300 MPa at 250: enough for a factor of 1.1, not for 1.5; fittings may ask more."""
+    crushing = CaseCrushing("B", 0.01, 250e6, 0.002, 400e6, 300e6)
+    contact = ContactPlace(
+        250e6, 0.0, (0.0, 0.0, 0.01), None, None, None, (), (), crushing=crushing
+    )
+    surface = SurfacePlace(200e6, 0.0, "converged", (0.0, 0.0, 0.01), None)
+    peak = Maximum(
+        "P", "c", "harmonic", "converged", "", 200e6, 0.0,
+        places=Places("surface", surface, contact=contact),
+    )  # fmt: skip
+    s = Situation(None, S235, row=SolvedRow(peak, required=1.5))
+    (crushed,), (lenient,) = crushed_case(s), crushed_case(replace(s, row=SolvedRow(peak)))
+    assert (crushed.factor, lenient.factor) == (1.5, 1.0)
+    assert crushed.margin == pytest.approx(300.0 / (1.5 * 250.0) - 1.0)
+    (fitted,) = crushed_case(replace(s, factors=LoadFactors(fitting=2.0)))
+    assert fitted.factor == 2.0
 
 
 @each(

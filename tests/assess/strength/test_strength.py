@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from scipy.integrate import dblquad
 
 from assess.checks import margins_of
+from assess.codes import PartialFactors
 from assess.margin import Margin, worst_places
 from assess.situation import LoadFactors, Situation, with_supports
 from assess.strength.bending_arms import layout
@@ -140,6 +141,26 @@ def test_eurocode_margins_on_paper() -> None:
     assert contact_stress(F, PinInHole(0.016, 0.0165, 0.015, 210e9)) == pytest.approx(sigma)
     thick = bearing_resistance(np.array([0.015]), np.array([0.016]), np.array([200e6]))
     assert thick == pytest.approx([72e3])
+
+
+def test_partial_factors_of_a_national_annex() -> None:
+    """Every resistance of EN 1993 is divided by its own, and nothing else is."""
+    s = replace(in_double_shear(0.005, 0.001, 0.01, 0.016, 10e3), replaceable=True)
+    s = replace(s, codes=("general", "civil"))
+    annex = margins(replace(s, partial=PartialFactors(M0=1.15, M2=1.5, M6_ser=2.0)))
+    factors = {
+        "EN 1993 bending": 1.15, "EN 1993 bearing": 1.15, "EN 1993 shear": 1.5 / 1.25,
+        "EN 1993 bending, replaceable": 2.0, "EN 1993 bearing, replaceable": 2.0,
+        "EN 1993-1-1 section": 1.15,
+    }  # fmt: skip
+    for at, plain in margins(s).items():
+        ratio = factors.get(at[0], 1.0)
+        if at[0] != "EN 1993 shear and bending":
+            assert annex[at].used == pytest.approx(ratio * plain.used), at
+    m = margins(s)
+    bent, sheared = (m[f"EN 1993 {x}", "ultimate"].used for x in ("bending", "shear"))
+    both = math.hypot(1.15 * bent, 1.2 * sheared)
+    assert annex["EN 1993 shear and bending", "ultimate"].used == pytest.approx(both)
 
 
 def test_contact_in_a_lug_that_is_not_given_is_named() -> None:

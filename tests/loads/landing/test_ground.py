@@ -9,8 +9,11 @@ import pytest
 
 from loads.landing import GROUND_RULES, GroundedWheel, spin_up_drag
 from loads.landing.requirements import MAX_TYRE_FRICTION, RULES_OF_PART
+from tests.support.mechanism.space import vector
 
-LEFT_WARDS = GroundedWheel((0.0, 1.0), (1.0, 0.0), "left", 0.4)  # flies to -x: its left is +z
+LEFT_WARDS = GroundedWheel(
+    (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), "left", 0.4
+)  # flies to -x: its left is +z
 
 
 def test_components_are_those_of_the_clauses() -> None:
@@ -55,9 +58,9 @@ def test_sides_are_those_of_a_pilot_who_looks_forward() -> None:
         for sign in (1.0, -1.0):
             aft = sign * np.array([math.cos(turn), math.sin(turn), 0.0])
             left = np.cross(up, -aft)
-            pairs = tuple(up[:2].tolist()), tuple(aft[:2].tolist())
+            axes = vector(up), vector(aft)
             for leg, outboard in (("left", left), ("right", -left)):
-                wheel = GroundedWheel(*pairs, leg)
+                wheel = GroundedWheel(*axes, leg)
                 assert wheel.sideways("outboard") == pytest.approx(outboard, abs=1e-12)
                 assert wheel.sideways("inboard") == pytest.approx(-outboard, abs=1e-12)
                 assert wheel.sideways("left") == pytest.approx(left, abs=1e-12)
@@ -72,10 +75,10 @@ def test_forces_act_at_the_ground_or_at_the_axle() -> None:
     assert rolling["vertical"].couple == pytest.approx((0.0, 0.0, 0.0))
     # (0, -r, 0) x (0, 0, F) = (-r F, 0, 0): the leg bends to the left at its foot
     assert rolling["side"].couple == pytest.approx((-0.4 * 0.1875e4, 0.0, 0.0))
-    braked = GroundedWheel((0.0, 1.0), (1.0, 0.0), "left", 0.4, braked=True)
+    braked = GroundedWheel((0.0, 1.0, 0.0), (1.0, 0.0, 0.0), "left", 0.4, braked=True)
     drag = {f.component: f for f in braked.forces(drift, 1e4, "left")}["drag"]
     assert drag.couple == pytest.approx((0.0, 0.0, 0.4 * 0.3e4))
-    no_radius = GroundedWheel((0.0, 1.0), (1.0, 0.0), "left")
+    no_radius = GroundedWheel((0.0, 1.0, 0.0), (1.0, 0.0, 0.0), "left")
     assert {f.place for f in no_radius.forces(drift, 1e4, "left")} == {"axle"}
 
 

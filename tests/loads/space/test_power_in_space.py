@@ -6,12 +6,15 @@ differences, so that accelerations, couples and reactions have no part in it.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from benchmarks.space.machines import MACHINES, Machine
 from benchmarks.space.ours import space_linkage
 from loads import CycloidalDrive
+from loads.space import equations
 from loads.space.acting import SpaceForce
 from loads.space.dynamics import space_reactions
 from loads.space.motion import SpaceCourse, SpaceMotion
@@ -67,3 +70,21 @@ def _holds(name: str, machine: Machine) -> None:
     ]
     largest = max(float(np.abs(p).max()) for p in powers)
     assert np.sum(powers, axis=0) == pytest.approx(rate, abs=TOLERANCE * largest)
+
+
+def test_energies_of_a_long_motion_are_summed_in_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As at once, without the velocities and inertias of all instants in memory."""
+    machine = MACHINES["crane"]()
+    laws = [CycloidalDrive(0.0, d["to"], machine["duration"]) for d in machine["drives"].values()]
+    course = SpaceCourse(space_linkage(machine), laws, 0.0, machine["duration"])
+    motion = course.at(machine["duration"] * np.linspace(0.1, 0.9, 9))
+    loads = [SpaceForce(body, at, force) for body, at, force in machine["forces"]]
+    monkeypatch.setattr(equations, "MIN_BATCH", 4)
+    whole = space_reactions("whole", motion, loads)
+    assert len(list(motion.parts)) == 1
+    monkeypatch.setattr(equations, "MATRIX_BATCH_ENTRIES", 1)
+    blocks = space_reactions("blocks", replace(motion), loads)
+    assert len(list(blocks.motion.parts)) == 3
+    assert blocks.imbalance == pytest.approx(whole.imbalance, abs=1e-12 * np.abs(whole.power).max())
+    assert blocks.motion.kinetic_energy == pytest.approx(whole.motion.kinetic_energy, rel=1e-14)
+    assert not {"velocities", "accelerations", "inertias"} & vars(blocks.motion).keys()

@@ -92,6 +92,7 @@ def test_a_load_out_of_the_plane_is_shared_alike_in_both() -> None:
     np.testing.assert_allclose(solid.reactions.forces, expected.forces, atol=1e-7 * force)
     np.testing.assert_allclose(solid.reactions.moments, expected.moments, atol=1e-7 * moment)
     # What nobody stated matters here: with each link stiffer or softer the split is another.
-    assert {body for body, _ in solid.range} == {"crank", "coupler", "rocker"}
+    varied = {text.split()[0] for text in solid.range}
+    assert varied == {"crank", "coupler", "rocker", "all"}
     spread = [np.abs(r.moments - solid.reactions.moments).max() for r in solid.range.values()]
     assert min(spread) > 0.01 * moment

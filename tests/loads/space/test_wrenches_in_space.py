@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 from loads import GROUND, ConstantDrive, CycloidalDrive, StateDrive
 from loads.space.acting import SpaceForce
 from loads.space.dynamics import space_reactions
+from loads.space.kinds import KINDS, Conditions
 from loads.space.linkage import (
     JointAngle,
     JointTravel,
@@ -250,3 +253,33 @@ def test_a_body_on_a_slope() -> None:
     # Struts: s1 and s2 hold the part down the slope at x = 0 and 0.6, s3 none of it.
     wanted = [-down * (1.0 - 0.3 / 0.6), -down * 0.3 / 0.6, 0.0]
     assert found.drive[0] == pytest.approx(wanted, abs=1e-9 * m * G)
+
+
+def test_a_new_kind_of_joint_is_one_more_row(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A ball on a tilted plane pushes along the normal alone: on a post that may turn and climb, a
+    body's weight W needs W / n_z, and the post carries its part across.
+    """
+    new: Any = "point-on-plane"
+    monkeypatch.setitem(KINDS, new, Conditions(along=("w",), axes=1))
+    n, weight, foot = np.array(unit((0.3, -0.2, 1.0))), 120.0, (0.4, 0.1, -0.2)
+    linkage = SpaceLinkage(
+        bodies=(light("table", (0.0, 0.0, 0.0)),),
+        joints=(
+            grounded("post", "cylindrical", "table", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+            grounded("foot", new, "table", foot, vector(n)),
+        ),
+        measured=(JointAngle("turn", "post"),),
+        driven=("turn",),
+    )
+    motion = space_move(linkage, [StateDrive(0.6)], np.zeros(1))
+    assert motion.mobility.kutzbach == 1
+    load = SpaceForce("table", (0.0, 0.0, 0.0), (0.0, 0.0, -weight))
+    found = space_reactions("rest", motion, [load])
+    at = motion.point("table", foot)[0][0]
+    assert n @ np.subtract(at, foot) == pytest.approx(0.0, abs=1e-12)
+    push = found.reactions.force("foot")[0]  # of the table on the plane
+    assert push == pytest.approx(-weight / n[2] * n)
+    across = found.reactions.force("post")[0]
+    assert across == pytest.approx(weight / n[2] * np.array([n[0], n[1], 0.0]))
+    turning = np.cross(at, -push)[2]
+    assert found.drive[0, 0] == pytest.approx(-turning)

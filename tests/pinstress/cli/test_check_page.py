@@ -33,6 +33,20 @@ def drawings(page: str, kind: str) -> list[ET.Element]:
     return [ET.fromstring(svg) for svg in re.findall(rf'<svg class="{kind}".*?</svg>', page)]
 
 
+def test_a_page_is_replaced_in_one_step(tmp_path: Path) -> None:
+    """The former one, seen by its other name, was emptied first: if interrupted, it was lost."""
+    page, other, link = (tmp_path / name for name in ("check.html", "other.html", "link.html"))
+    first = page_of(ONE_PIN, tmp_path)
+    other.hardlink_to(page)
+    link.symlink_to(page)
+    study = pinstress.study_from(ONE_PIN.replace("One pin", "Another"), ROOT / "studies")
+    write_check_page(study, examine(study), link)
+    assert other.read_text(encoding="utf-8") == first
+    assert "Another" in page.read_text(encoding="utf-8")
+    assert link.is_symlink()
+    assert len(list(tmp_path.iterdir())) == 3
+
+
 def test_lugs_are_drawn_to_the_scale_of_the_pin(tmp_path: Path) -> None:
     """The clevis: lugs of 50 mm about a pin of 20 mm, 10, 20 and 10 mm wide, 1 mm apart."""
     (drawing,) = drawings(page_of((ROOT / "studies" / "clevis.toml").read_text(), tmp_path), "pin")
@@ -154,3 +168,14 @@ def test_a_page_below_a_file_is_refused_for_what_it_is(
     page = tmp_path / "afile" / "page.html"
     assert run_command_line(["check", str(tmp_path / "one.toml"), "--out", str(page)]) == 2
     assert f"{page.parent} is a file, not a folder" in capsys.readouterr().err
+
+
+def test_forces_that_only_a_run_finds_are_not_those_of_rest(tmp_path: Path) -> None:
+    """A drop, and the ground loads of its reaction, had the leg's own weight as largest force."""
+    page = page_of((ROOT / "studies" / "drop.toml").read_text(encoding="utf-8"), tmp_path)
+    rows = [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in re.findall("<tr>.*?</tr>", page)]
+    planned = {tuple(row[:2]): row[-3:] for row in rows if len(row) == 7}
+    assert {case for _, case in planned} == {"landing", "drag"}
+    for (_, case), row in planned.items():
+        assert row == ["301" if case == "landing" else "1", "–", "–"]
+    assert page.count(": a run finds its forces</figcaption>") == 2

@@ -309,7 +309,7 @@ def test_a_solid_that_needs_more_memory_than_allowed_is_refused(
     command = ["run", "study.toml", "--model", "solid", "--memory-limit"]
     assert run_command_line([*command, "50"]) == 3
     told = capsys.readouterr().err
-    assert "and 0.049 GB are allowed (--memory-limit): close other programs, allow more" in told
+    assert "fit into the memory allowed (--memory-limit): allow more, or close other" in told
     assert run_command_line([*command, "300"]) == 1
     told = capsys.readouterr().err
     assert "too few to estimate the error; on the next mesh" in told

@@ -8,8 +8,8 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,7 @@ from pinstress.cli.streams import _plain
 from tests.conftest import ROOT
 from tests.support.each import each, sampled
 from tests.support.programs.command_line import QUICK, run_here
+from tests.support.programs.signals import signals_heard
 
 GUARD = 300.0  # s
 SHARP = QUICK.replace("fillet = 0.4 ", "fillet = 0.0 ")  # whose maximum does not exist: status 1
@@ -200,19 +201,6 @@ def test_a_time_that_is_none_is_removed_before_libraries_read_it(
     assert done.stderr.count("Warning: SOURCE_DATE_EPOCH") == (not valid)
     assert os.environ.get("SOURCE_DATE_EPOCH") == (epoch if valid else None)
     assert os.environ["MPLBACKEND"] == "agg"
-
-
-@contextmanager
-def signals_heard() -> Iterator[None]:
-    """In this process, which may be a job in the background that ignores them; as before after."""
-    before = {each: signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        for each in before:
-            signal.signal(each, signal.SIG_DFL)
-        yield
-    finally:
-        for each, handler in before.items():
-            signal.signal(each, handler)
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from assess.checks import SETS
 from assess.margin import Margin
 from assess.work import WorkQuantity
+from reports.data.lug_modes import lug_mode
 from reports.data.row import PinResult, Units
 from reports.page.lug_clauses import lug_clauses
 from reports.page.pins import pin_parts
@@ -60,6 +62,13 @@ def test_a_check_that_was_not_made_is_of_a_lug_whose_name_needs_quotes() -> None
         row_with(margin("BTH-1 plate, tension", "lifting", at="L 1"), across), UNITS
     )
     assert [mode for mode, _ in table.rows] == ["net section", "across the shank"]
+
+
+def test_every_check_of_lugs_has_its_failure_mode() -> None:
+    """Without one it counts as a check of the pin: one that fails then asks for a stronger pin."""
+    several = {"lug", "AISC pin-connected member"}  # each gives its margins names of their own
+    checks = {check for every in SETS.values() for check in every if check.takes == "loads"}
+    assert {c.method for c in checks if lug_mode(c.method) is None} == several
 
 
 def test_the_worst_check_of_a_cell() -> None:

@@ -66,17 +66,18 @@ def test_a_long_table_is_parquet_with_the_cells_of_the_csv(
 def test_a_case_that_is_too_long_for_the_table_of_bodies_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Four bodies at 121 instants of the retraction, and at one of the landing."""
+    """Four bodies at 121 instants of the retraction, and at one of each landing."""
     monkeypatch.setattr(gather_space, "MAX_BODY_LINES", 4 * 121 - 1)
     study, out = ROOT / "studies" / "side_stay.toml", tmp_path / "out"
     command = ["loads", str(study), "--out", str(out)]
     assert run_command_line(command) == 0
     written = [*csv.DictReader((out / "bodies.csv").read_text().splitlines())]
-    assert {row["case"] for row in written} == {"landing"}
+    assert "landing" in (cases := {row["case"] for row in written})
+    assert "retract" not in cases
     told = "bodies.csv does not have this case: 484 lines, above 483; ask for fewer samples."
     printed = " ".join(capsys.readouterr().out.split())
     assert printed.count(told) == 1
-    assert printed[: printed.index(told)].rpartition("retract: ")[2].startswith("In space")
+    assert "In space" in printed[: printed.index(told)].rpartition("retract: ")[2]
     assert told in (out / "report.html").read_text(encoding="utf-8")
 
     monkeypatch.setattr(gather_space, "MAX_BODY_LINES", 4 * 121)

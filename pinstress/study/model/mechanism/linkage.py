@@ -222,7 +222,7 @@ def determined(study: Study, mechanism: AnyLinkage) -> Mobility:
     Raises: InputError where they do not, or where a sharing rule applies to no indeterminate force.
     """
     if isinstance(mechanism, SpaceLinkage):
-        return determined_in_space(study, mechanism)
+        return determined_in_space(study, mechanism, _held_in_all(study))
     try:
         return mobility(mechanism) if _held_in_all(study) else require_determined(mechanism)
     except LinkageError as error:

@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+
+import numpy as np
 
 from geometry import GeometryError, PinLike
 from loads import Dynamics, Linkage
 from loads.space.out_of_plane import Links, Offsets, OutOfPlane, SideLoad, variations
 from loads.space.sharing import STIFFNESS_RATIO
-from loads.space.stiffness import LinkStiffness, flat_link, round_link
 from loads.space.straight import straight
+from pinbase.arrays import Floats
 from pinstress.study.model.clevis import middle_of
 from pinstress.study.model.mechanism.drives import plane_of
+from pinstress.study.model.mechanism.stiffness import stated_stiffness
 from pinstress.study.model.pins import pin
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import CaseTable, MechanismCase
-from pinstress.study.schema.mechanism import LinkStiffnessTable
 
 OUT_OF_LINE = 1e-6  # of the length scale: what a link may be bent without a word
-RIGID = LinkStiffness(math.inf, math.inf, math.inf, math.inf)
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,8 @@ def sideways(
     if not placed and not aside:
         return None
     offsets, note = _offsets(study, mechanism)
-    return Sideways(tuple(loads), offsets, _links(study), note)
+    links = Links(stated_stiffness(table.link_stiffness, table.body, _arms(mechanism)))
+    return Sideways(tuple(loads), offsets, links, note)
 
 
 def _offsets(study: Study, mechanism: Linkage) -> tuple[Offsets, str]:
@@ -114,6 +115,18 @@ def _offsets(study: Study, mechanism: Linkage) -> tuple[Offsets, str]:
     )
 
 
+def _arms(mechanism: Linkage) -> dict[str, list[Floats]]:
+    """Return the vectors (2,) m from the centre of mass of every body to its joints."""
+    return {
+        body.name: [
+            np.subtract(joint.at, body.centre)
+            for joint in mechanism.joints
+            if body.name in (joint.fixed_in, *(c.body for c in joint.connections))
+        ]
+        for body in mechanism.bodies
+    }
+
+
 def _clamps(shape: PinLike, clamps: Sequence[str]) -> list[float]:
     """Return the z of the clamped faces and bands, from the start of the pin, m."""
     ends, out = dict(zip(("start", "end"), shape.ends, strict=True)), list[float]()
@@ -123,22 +136,3 @@ def _clamps(shape: PinLike, clamps: Sequence[str]) -> list[float]:
         except GeometryError:
             continue  # a cut has no place along z
     return out
-
-
-def _links(study: Study) -> Links:
-    """Return the stiffness of the links that state a section."""
-    mechanism = plane_of(study)
-    stated = {name: _stiffness(table) for name, table in mechanism.link_stiffness.items()}
-    for name, body in mechanism.body.items():
-        if body.bar is not None and name not in stated:
-            bar = LinkStiffnessTable(diameter=body.bar.diameter, section=body.bar.section)
-            stated[name] = _stiffness(bar)
-    return Links(stated)
-
-
-def _stiffness(table: LinkStiffnessTable) -> LinkStiffness:
-    if table.section is not None:
-        return flat_link(*table.section, table.youngs_modulus)
-    if table.diameter is not None:
-        return round_link(table.diameter, table.youngs_modulus, table.bore)
-    return RIGID

@@ -11,7 +11,7 @@ import numpy as np
 
 from loads import LinkageError
 from loads.linkage.parts import Sharing
-from loads.motion.mobility import Mobility, require_driven
+from loads.motion.mobility import Mobility, freedom_of, idle_sharing, require_driven
 from loads.space.conditions import directions
 from loads.space.equations import SpaceEquations
 from loads.space.linkage import (
@@ -26,6 +26,7 @@ from loads.space.linkage import (
     SpaceLinkage,
     Vector,
 )
+from loads.space.stiffness import LinkStiffness
 from pinbase.arrays import Floats
 from pinbase.keys import key_part
 from pinstress.study.model.clevis import middle_of
@@ -36,6 +37,7 @@ from pinstress.study.model.mechanism.masses import (
     friction_circle,
     pin_mass,
 )
+from pinstress.study.model.mechanism.stiffness import RIGID, stated_stiffness
 from pinstress.study.model.pins import pin
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.file import Study
@@ -112,20 +114,42 @@ def space_contradictions(study: Study) -> tuple[SpaceLinkage | None, list[Wrong]
                 Sharing(tuple(rule.connections), tuple(rule.stiffness))
                 for rule in mechanism.sharing
             ),
+            stiffness=_stiffness(mechanism, bodies, joints),
         ), []
     except LinkageError as error:
         return None, _located(mechanism, error.each)
 
 
-def determined_in_space(study: Study, linkage: SpaceLinkage) -> Mobility:
+def _stiffness(
+    mechanism: SpaceMechanismTable, bodies: Sequence[RigidBody], joints: Sequence[SpaceJoint]
+) -> dict[str, LinkStiffness]:
+    """Return the stiffness of the links that state one; floating pins do not yield.
+
+    Raises: LinkageError.
+    """
+    arms: dict[str, list[Floats]] = {
+        b.name: [np.subtract(j.at, b.centre) for j in joints if b.name in (j.base, j.moving)]
+        for b in bodies
+    }
+    pins = {pin_body(n): RIGID for n, joint in mechanism.joint.items() if joint.fixed_in is None}
+    return stated_stiffness(mechanism.link_stiffness, mechanism.body, arms) | pins
+
+
+def determined_in_space(study: Study, linkage: SpaceLinkage, held: bool) -> Mobility:
     """Return the mobility of a linkage in space whose drives determine every position.
 
-    Raises: InputError where they do not.
+    held: whether every case names the locks that hold it instead, which are checked with the case.
+
+    Raises: InputError where they do not, or where a sharing rule applies to no indeterminate force.
     """
+    equations = SpaceEquations(linkage)
     try:
-        return require_driven(SpaceEquations(linkage))
+        freedom = freedom_of(equations) if held else require_driven(equations)
+        if errors := list(idle_sharing(linkage.sharing, freedom)):
+            raise LinkageError.all(errors)
     except LinkageError as error:
         raise study.errors(_located(space_mechanism(study), error.each)) from None
+    return freedom
 
 
 def pins_in_space(study: Study, linkage: SpaceLinkage) -> dict[str, SpacePin]:
@@ -289,7 +313,7 @@ def _rows(tensor: Floats) -> Inertia:
 
 
 def _measured(study: Study, mechanism: SpaceMechanismTable) -> Iterator[Measured]:
-    """Yield the coordinates of drives and springs, and those on which loads of cases depend."""
+    """Yield the coordinates of drives, springs and stops, and those that loads depend on."""
     for drive in mechanism.drive:
         yield _driven(mechanism, drive)
     for name, spring in mechanism.spring.items():
@@ -301,6 +325,11 @@ def _measured(study: Study, mechanism: SpaceMechanismTable) -> Iterator[Measured
     for name, torsion in mechanism.torsion_spring.items():
         along = spring_name(name, "torsion spring")
         yield _angle(mechanism, along, torsion.joint, torsion.connection)
+    for name, stop in mechanism.stop.items():
+        if stop.joint is not None:
+            yield _angle(mechanism, name, stop.joint, stop.connection)
+        elif stop.slide is not None:
+            yield JointTravel(name, _connection(mechanism, stop.slide, stop.connection))
     lengths: dict[str, tuple[str, str]] = {}
     for case in study.table.case.values():
         for load in case.apply if isinstance(case, MechanismCase) else ():

@@ -106,6 +106,13 @@ def test_sections_carry_the_force_between_the_seats(model: str) -> None:
     assert inside.any()
     assert course[inside, 1] == pytest.approx(np.full(inside.sum(), PULL / area), rel=1e-4)
     assert found.peak.places.section.axial_force == pytest.approx(PULL, rel=1e-9)
+    assert found.joint is not None
+    along = found.joint.along
+    assert along is not None
+    assert along.axial is not None
+    in_groove = (along.z > 0.0535) & (along.z < 0.0585)
+    assert along.axial[0, in_groove] == pytest.approx(PULL, rel=1e-9)
+    assert along.axial[0, [0, -1]] == pytest.approx(0.0, abs=1e-6 * PULL)
     assert "forces along the axis: that of L on shoulder 1, that of R on shoulder 9" in (
         found.peak.note
     )

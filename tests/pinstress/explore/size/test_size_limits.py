@@ -12,6 +12,7 @@ from pinstress.analysis.plan import prepare
 from pinstress.explore.size.pin_answers import SizedStudy
 from pinstress.explore.size.scaled_study import resized_study
 from pinstress.explore.size.size_limits import largest_scale, too_small
+from pinstress.explore.size.size_pin import _next_standard
 from pinstress.explore.size.standard_diameters import standard_diameters
 from pinstress.study.reading.file import Study, parse_study
 from tests.conftest import ROOT
@@ -47,6 +48,40 @@ def test_the_largest_diameter_by_hand(lines: str, largest: float) -> None:
     limit = largest_scale(sized(clevis(lines)))
     assert 20.0 * limit.scale == pytest.approx(largest, rel=1e-9)
     assert limit.reason.split(" =")[0].split(",")[0] in lines
+
+
+@each(
+    ("lines", "largest"),
+    [
+        # 1.25 in, the largest number of the series in mm below it, is above
+        ("largest_diameter = 31.6\nseries = 'R10'", 25.4),
+        ("largest_diameter = 31.6", 31.597),  # 1.244 in
+    ],
+)
+def test_a_limit_is_in_the_unit_in_which_the_diameter_is_written(
+    lines: str, largest: float
+) -> None:
+    text = clevis(lines).text.replace("diameter = 20", 'diameter = "0.8 in"')
+    pin = sized(parse_study(ROOT / "studies" / "clevis.toml", text))
+    assert 20.32 * largest_scale(pin).scale == pytest.approx(largest, abs=1e-3)
+
+
+MERIDIAN = """
+meridian = [[0, 11], [2, "0.4 in"], [44, "0.4 in"], [46, 11]]
+band = { LEFT = { z = [2, 12] }, EYE = { z = [13, 33] }, RIGHT = { z = [34, 44] } }
+
+lug.EYE"""
+
+
+@each("shape", ["profile", "meridian"])
+def test_the_next_standard_diameter_is_in_that_unit_too(shape: str) -> None:
+    """It was 31.5 mm, which is 1.25 in when it is written: a full solution was wasted."""
+    text = clevis("series = 'R10'").text.replace("diameter = 20", 'diameter = "0.8 in"')
+    if shape == "meridian":
+        start, end = text.index("profile"), text.index("lug.EYE")
+        text = text[:start] + MERIDIAN.lstrip() + text[end + len("lug.EYE") :]
+    pin = sized(parse_study(ROOT / "studies" / "clevis.toml", text))
+    assert 0.8 * _next_standard(pin, 1.3) == pytest.approx(1.25, rel=1e-5)
 
 
 def test_eyes_stay_where_they_may_not_grow() -> None:
@@ -116,3 +151,18 @@ def test_what_would_do_by_hand() -> None:
     assert "about 4 shear planes, not 2, of the same width in all" in text
     assert "lugs about 3.0 times as wide in all" in text
     assert "0.3333 times the loads of pull" in text
+
+
+def test_what_would_do_is_rounded_to_where_it_does() -> None:
+    """700 MPa times 1.5 / 1.3 is 807.69, and 1.3 / 1.5 of the loads 0.86667."""
+    from fea.core.peak import Maximum
+    from pinstress.explore.size.section_law import PinTrial
+
+    pin = sized(clevis("largest_diameter = 30"), 1.5)
+    worst = Maximum("P", "pull", "harmonic", "converged", "")
+    for factor, strength, loads in ((1.3, "807.7", "0.8666"), (1.499999, "700.1", "0.9999")):
+        trial = PinTrial(1.0, factor, factor, 3.0, "quick")
+        text = too_small(pin, largest_scale(pin), trial, worst)
+        assert f"a yield strength of {strength} MPa" in text
+        assert f"{loads} times the loads of pull" in text
+    assert "its factor is about 1.499999 instead of 1.5" in text

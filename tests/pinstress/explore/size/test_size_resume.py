@@ -13,7 +13,9 @@ import pytest
 
 from pinstress.analysis.plan import prepare
 from pinstress.analysis.results import run
+from pinstress.explore.size import least_weight as lightest_module
 from pinstress.explore.size import size_pins as module
+from pinstress.explore.size.lightest_pin import Lightest, lightest_pin
 from pinstress.explore.size.scaled_study import resized_study
 from pinstress.explore.size.size_pin import MAX_FULL, SizingGoal, SizingResult, size_pin
 from pinstress.explore.size.size_pins import changes_of_load, loaded_more
@@ -24,6 +26,7 @@ from reports.data.decision import factor_ends
 from tests.conftest import ROOT
 from tests.support.programs.command_line import QUICK, run_here
 from tests.support.programs.process_group import started
+from tests.support.programs.signals import signals_heard
 
 NAMES = "BCDE"
 PATIENCE = 300.0  # s, for the first pin
@@ -97,15 +100,50 @@ def test_an_interrupted_size_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyP
         assert factor_ends(row)[0] >= 10.0
 
 
+@pytest.mark.seconds
+def test_an_interrupted_search_of_the_lightest_pins_goes_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Searches that ended are not made again, and the new study is that of a command in one go."""
+    (tmp_path / "study.toml").write_text(several("BC"))
+    searched: list[str] = []
+
+    def counted(study: Any, plan: Any, pin: str, *others: Any) -> Lightest:
+        searched.append(pin)
+        return lightest_pin(study, plan, pin, *others)
+
+    def interrupted(study: Any, plan: Any, pin: str, *others: Any) -> Lightest:
+        if searched:
+            signal.raise_signal(signal.SIGINT)
+        return counted(study, plan, pin, *others)
+
+    command = "size", "study.toml", "--least-weight", "--jobs", "1"
+    monkeypatch.setattr(lightest_module, "lightest_pin", interrupted)
+    with signals_heard():
+        first = run_here(*command, cwd=tmp_path)
+    assert first.returncode == 130
+    assert "1 search is kept: run the same command with --resume to continue" in first.stderr
+    target = tmp_path / "study_sized.toml"
+    assert not target.exists()
+    refused = run_here(*command, cwd=tmp_path)
+    assert "has a size that did not end: resume it with --resume" in refused.stderr
+
+    monkeypatch.setattr(lightest_module, "lightest_pin", counted)
+    resumed = run_here(*command, "--resume", cwd=tmp_path)
+    assert resumed.returncode == 0, resumed.stderr
+    assert searched.count(searched[0]) == 1
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["study.toml", target.name]
+    whole = run_here(*command, "--out", "whole.toml", cwd=tmp_path)
+    assert target.read_bytes() == (tmp_path / "whole.toml").read_bytes()
+    assert resumed.stdout == whole.stdout
+
+
 def test_what_cannot_be_resumed_is_told(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(several("B"))
     nothing = run_here("size", "study.toml", "--resume", cwd=tmp_path)
     assert nothing.returncode == 2
     assert "there is no size of study_sized.toml to resume" in nothing.stderr
-    lightest = run_here("size", "study.toml", "--resume", "--least-weight", cwd=tmp_path)
-    assert lightest.returncode == 2
-    assert "--resume is not for --least-weight" in lightest.stderr
-    state = SizeState(tmp_path / "study_sized.toml", "another")
+    state = SizeState[SizingResult](tmp_path / "study_sized.toml", "another", FinishedPins)
     state.begin()
     for option in ([], ["--resume"]):
         busy = run_here("size", "study.toml", *option, cwd=tmp_path)
@@ -182,11 +220,10 @@ def test_a_new_study_that_was_edited_is_not_overwritten(
 
 def test_a_state_is_read_as_it_was_written(tmp_path: Path) -> None:
     result = SizingResult("B", 1.5, 2.0, float("inf"), "converged", others=(("C", 2.0),))
-    state = SizeState(tmp_path / "x.toml", "this")
+    state = SizeState[SizingResult](tmp_path / "x.toml", "this", FinishedPins)
     state.begin()
     state.write((result,))
     assert state.read() == (result,)
-    assert FinishedPins("this", (result,)).pins == (result,)
 
 
 def test_progress_counts_pins_and_trials(tmp_path: Path) -> None:

@@ -295,6 +295,17 @@ def test_rows_that_are_not_converged_are_counted(capsys: pytest.CaptureFixture[s
     assert f" of {40 - found['failed']} solved\n" in told
 
 
+def test_a_factor_that_is_missed_is_not_rounded_to_it(capsys: pytest.CaptureFixture[str]) -> None:
+    """It was "1.500 to 3.000", with one design below 1.5."""
+    table = made_up_designs(2, 1, failing=0.0)
+    at = table.column_names.index("safety_factor")
+    table = table.set_column(at, table.schema.field(at), [pa.array([1.49999, 3.0])])
+    summary(table, Console(width=200))
+    told = capsys.readouterr().out
+    assert "1.49999 to 3.000" in told
+    assert "the required factor of 1.5: B 1" in told
+
+
 UNHELD = """
 title = "A pin that is not held in one of two cases"
 units = "mm-N-s"

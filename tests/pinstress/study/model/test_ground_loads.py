@@ -239,7 +239,7 @@ def test_a_side_that_is_stated_is_the_only_one() -> None:
         ({"leg": "nose"}, "no-rule"),
         ({"part": "23", "leg": "nose", "toward": "inboard", "factors": None}, "no-inboard"),
         ({"radius": None}, "no-radius"),
-        ({"factors": [{**TURNING, "name": ""}]}, "missing-key"),
+        ({"factors": [{**TURNING, "name": ""}]}, "empty"),
         ({"factors": [BRAKED, BRAKED]}, "duplicate-case"),
         ({"factors": [{**TURNING, "clause": " "}]}, "empty"),
         ({"factors": [{**BRAKED, "name": "a/b"}]}, "unusable-name"),

@@ -199,7 +199,7 @@ def test_cuts_of_all_kinds_may_be_in_lugs(tmp_path: Path, cut: str) -> None:
         (
             "lug.M = {}\nslot = [{ z = [12, 29], width = 40, depth = 2 }]",
             "slot-too-wide",
-            "cut the pin in two",
+            "times the pin's diameter there, so that it is a flat: give it as one",
         ),
     ],
 )

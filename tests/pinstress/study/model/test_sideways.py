@@ -135,3 +135,15 @@ def test_links_that_do_not_yield_cannot_share(tmp_path: Path) -> None:
     rigid = "".join(f"[mechanism.link_stiffness.{b}]\nrigid = true\n" for b in bodies)
     with pytest.raises(InputError, match=r"case\.side: .*nothing yields out of the plane"):
         _loads(tmp_path, SIDE, rigid)
+
+
+def test_a_stated_stiffness_is_that_of_a_round_bar(tmp_path: Path) -> None:
+    """Of link AE, 13.75 in long, held at its middle: 3 E I / L^3 to either joint."""
+    half = 0.5 * np.hypot(-40.521953 + 39.234614, -0.005788 + 13.695392) * INCH
+    bar = 3.0 * 210e9 * np.pi / 64.0 * (2.0 * INCH) ** 4 / half**3
+    as_bar, as_stiff = (
+        _loads(tmp_path, SIDE, f"[mechanism.link_stiffness.AE]\n{how}\n").reactions
+        for how in ("diameter = 2", f'stiffness = "{bar} N/m"')
+    )
+    size = np.abs(as_bar.moments).max()
+    assert as_stiff.moments == pytest.approx(as_bar.moments, abs=1e-6 * size)

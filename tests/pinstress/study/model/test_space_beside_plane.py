@@ -8,7 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.pinstress.study.model.test_space import solved
+from pinstress import load_study
+from pinstress.analysis.mechanics.gather_space import note_in_space
+from pinstress.analysis.plan import all_loads
+from tests.pinstress.study.model.test_space import solved, written
 
 FOUR_BAR = """
 title = "A four-bar"
@@ -59,9 +62,9 @@ follows = true
 """
 
 
-def test_a_linkage_of_parallel_axes_is_that_in_the_plane(tmp_path: Path) -> None:
-    """The same linkage stated with three coordinates: same forces in the plane, same drive."""
-    text = re.sub(r"\[(-?[\d.]+), (-?[\d.]+)\]", r"[\1, \2, 0]", FOUR_BAR)
+def _in_space(planar: str) -> str:
+    """A planar study, stated with three coordinates."""
+    text = re.sub(r"\[(-?[\d.]+), (-?[\d.]+)\]", r"[\1, \2, 0]", planar)
     for old, new in (
         ("[mechanism.joint.O]", '[mechanism]\ndimension = 3\ngravity = [0, "-9.80665 m/s^2", 0]\n'
          "[mechanism.joint.O]"),
@@ -72,6 +75,57 @@ def test_a_linkage_of_parallel_axes_is_that_in_the_plane(tmp_path: Path) -> None
     ):  # fmt: skip
         assert old in text
         text = text.replace(old, new)
+    return text
+
+
+# The crank turns fully, so that the rocker turns back twice, against friction; the spring's table
+# has rows within its travel.
+TURNING = (
+    ("at = [0.1, 0.2]", "at = [0.05, 0.09]"),
+    ("at = [0.5, 0.3]\nweight = 4", 'at = [0.35, 0.3]\nfixed_in = "rocker"'),
+    ('connections = { Q1 = "coupler", Q2 = "rocker" }', 'connections = { Q1 = "coupler" }'),
+    ('connections = { R1 = "rocker" }',
+     'connections = { R1 = "rocker" }\nfriction = 0.3\ndiameter = 0.05'),
+    ('end = "25 deg"\nduration = 0.2', 'end = "400 deg"\nduration = 2'),
+    ("stiffness = 500", 'force = { table = "spring.csv" }'),
+    ("samples = 31", "samples = 7"),
+)  # fmt: skip
+
+
+def test_largest_forces_are_resolved_where_friction_turns_back(tmp_path: Path) -> None:
+    """As in the plane: friction jumps and the spring has kinks between the instants; the same
+    without friction.
+    """
+    table = "length,force\n0.1,20\n0.35,10\n0.4,-40\n0.9,-50\n"
+    (tmp_path / "spring.csv").write_text(table, encoding="utf-8")
+    text = FOUR_BAR
+    for old, new in TURNING:
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    plane, space = solved(tmp_path, text)["move"], solved(tmp_path, _in_space(text))["move"]
+    assert plane.peaks is not None
+    assert space.peaks is not None
+    assert not len(plane.peaks.unresolved)
+    assert not len(space.peaks.unresolved)
+    assert plane.frictionless is not None
+    assert space.frictionless is not None
+    for c, peak in plane.peaks.force.items():
+        assert space.peaks.force[c].value == pytest.approx(peak.value, rel=1e-7)
+        smooth = plane.frictionless.peaks.force[c].value
+        assert space.frictionless.peaks.force[c].value == pytest.approx(smooth, rel=1e-7)
+    assert plane.over is not None
+    assert space.space is not None
+    assert space.space.efforts is not None
+    ours, theirs = space.space.efforts[0], plane.over.drives[0]
+    assert ours.rms == pytest.approx(theirs.rms, rel=1e-7)
+    assert ours.work == pytest.approx(theirs.work, abs=1e-7 * np.abs(theirs.work).max())
+    smooth = space.frictionless.drives[0].largest.value
+    assert ours.largest.value != pytest.approx(smooth, rel=0.01)
+
+
+def test_a_linkage_of_parallel_axes_is_that_in_the_plane(tmp_path: Path) -> None:
+    """The same linkage stated with three coordinates: same forces in the plane, same drive."""
+    text = _in_space(FOUR_BAR)
     plane, space = solved(tmp_path, FOUR_BAR)["move"], solved(tmp_path, text)["move"]
     assert plane.dynamics is not None
     assert space.space is not None
@@ -90,3 +144,16 @@ def test_a_linkage_of_parallel_axes_is_that_in_the_plane(tmp_path: Path) -> None
     assert plane.over is not None
     assert space.space.efforts is not None
     assert space.space.efforts[0].rms == pytest.approx(plane.over.drives[0].rms, rel=1e-6)
+
+
+def test_the_note_says_how_near_the_linkage_comes_to_a_dead_point(tmp_path: Path) -> None:
+    """The crank turns towards the line of coupler and rocker, where it cannot drive them."""
+    study = load_study(written(tmp_path, _in_space(FOUR_BAR)))
+    found = all_loads(study, ["move"])["move"].space
+    assert found is not None
+    condition, at = found.dynamics.condition
+    assert condition > 5.0
+    assert at in found.dynamics.motion.times
+    note = note_in_space(study, found)
+    assert f"Maximum condition number {condition:.3g} at " in note
+    assert re.search(r"power balance error \d\.\de-\d\d", note)

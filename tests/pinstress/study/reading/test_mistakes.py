@@ -110,6 +110,8 @@ LANDING = "case.landing"
          'material."AISI 4340".yield_strength', "did you mean 'ksi'?"),
         ("one_pin", '"225 ksi"', '"650 Mpa"', "unknown-unit",
          'material."AISI 4340".yield_strength', "did you mean 'MPa'?"),
+        ("one_pin", '"0.2836 lb/in^3"', '"7850 kg/m3"', "unknown-unit",
+         'material."AISI 4340".density', "did you mean 'kg/m^3'?"),
         ("one_pin", '"225 ksi"', '"225 in"', "wrong-dimension",
          'material."AISI 4340".yield_strength', "not a stress"),
         ("one_pin", '"225 ksi"', '"1,5 GPa"', "decimal-comma",
@@ -164,3 +166,42 @@ def test_what_follows_from_a_mistake_is_not_reported(
     with pytest.raises(InputError) as error:
         parse_study(Path("s.toml"), text.replace(old, new, 1))
     assert re.fullmatch(rf"s\.toml:\d+: {re.escape(message)}", str(error.value))
+
+
+@each(
+    ("study", "old", "new", "message"),
+    [
+        ("one_pin", 'name = "root"', 'name = ""', "pin.B.profile[1].name: is empty"),
+        ("one_pin", "[analysis]", '[fatigue]\nunit = " "\n[analysis]', "fatigue.unit: is empty"),
+        ("one_pin", "[analysis]", '[material."  "]\n[analysis]', "material: a name is empty"),
+        ("slider_crank", 'body = "crank"', 'body = ""', "mechanism.drive.body: is empty"),
+    ],
+)
+def test_a_text_or_name_without_a_letter_is_refused(
+    study: str, old: str, new: str, message: str
+) -> None:
+    """A segment had no name then, a body a blank one, and a drive ended in a traceback."""
+    assert old in STUDIES[study]
+    with raises(InputError, "empty", f": {message}; "):
+        parse_study(Path("s.toml"), STUDIES[study].replace(old, new, 1))
+
+
+def test_the_title_block_may_be_blank() -> None:
+    parse_study(Path("s.toml"), f'{ONE_PIN}\n[report]\nprepared = ""\nrevision = " "\n')
+
+
+@each(
+    "date",
+    ["0", "1774915200", "20260331", "true", "2026-03-31T10:00:00", "10:00:00", "'31.3.2026'"],
+)
+def test_a_date_is_no_number(date: str) -> None:
+    """0 was 1970-01-01, and others could not have "this value"."""
+    text = f"{ONE_PIN}\n[report]\ndate = {date}\n"
+    with raises(InputError, "not-a-date", "report.date: must be a date such as 2026-03-31"):
+        parse_study(Path("s.toml"), text)
+
+
+@each("date", ["2026-03-31", "'2026-03-31'"])
+def test_a_date_may_be_in_quotes(date: str) -> None:
+    study = parse_study(Path("s.toml"), f"{ONE_PIN}\n[report]\ndate = {date}\n")
+    assert study.table.report.date == datetime.date(2026, 3, 31)

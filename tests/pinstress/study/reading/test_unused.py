@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pinstress import study_from
+from tests.conftest import ROOT
 from tests.support.each import each
 
 STUDY = """title = "Clamped pin"
@@ -56,6 +57,20 @@ def test_a_design_factor_without_the_code_that_has_it() -> None:
     (warning,) = study_from(text(analysis="design_factor = 2")).warnings
     assert "analysis.design_factor: has no effect" in warning
     assert not study_from(text(analysis='design_factor = 2\ncode = "lifting"')).warnings
+
+
+def test_the_way_of_aisc_without_its_code() -> None:
+    (warning,) = study_from(text(analysis='aisc = "ASD"')).warnings
+    assert "analysis.aisc: has no effect" in warning
+    assert not study_from(text(analysis='aisc = "ASD"\ncode = "civil"')).warnings
+
+
+def test_partial_factors_without_a_check_of_en_1993() -> None:
+    stated = "partial_factors = { M0 = 1.1 }\n"
+    (warning,) = study_from(text(analysis=f'{stated}code = "aircraft"')).warnings
+    assert "analysis.partial_factors: has no effect" in warning
+    for code in ("general", "civil"):
+        assert not study_from(text(analysis=f'{stated}code = "{code}"')).warnings
 
 
 @each(
@@ -116,3 +131,50 @@ def test_a_fillet_without_a_corner(profile: str, told: int) -> None:
 def test_a_fillet_at_the_end() -> None:
     (warning,) = study_from(text().replace('"L" }', '"L", fillet = 2 }')).warnings
     assert "profile[2].fillet: has no effect" in warning
+
+
+def test_a_reference_temperature_without_a_temperature() -> None:
+    reference = 'reference_temperature = "60 degC"'
+    (warning,) = study_from(text(analysis=reference)).warnings
+    assert "analysis.reference_temperature: has no effect" in warning
+    hot = study_from(text("", DEFAULTS, HOT, reference)).warnings
+    assert not any("reference_temperature" in warning for warning in hot)
+
+
+DROP = (ROOT / "studies" / "drop.toml").read_text(encoding="utf-8")
+AT = 'at = { value = [80, 18000], provenance = "assumed" }'
+STIFFNESS = 'stiffness = { value = "600 N/mm", provenance = "assumed" }\n'
+
+
+@each(
+    ("old", "new", "key", "says"),
+    [
+        ('body = "arm"', 'velocity = "2 m/s"\nbody = "arm"', "velocity", "2 m/s is less than the"),
+        ('body = "arm"', 'lift = 0.9\nbody = "arm"', "lift", "0.9 of the weight is more"),
+        ('rule = "23.473"', 'rule = "25.473-landing-weight"', "wing_loading", "has no effect"),
+        (AT, "deflection = [0, 80]\nforce = [0, 18000]", "tyre.exponent", "has no effect"),
+        (STIFFNESS, "", "wheel.damping", "has no effect"),
+    ],
+)  # fmt: skip
+def test_keys_of_a_drop_that_contradict_others(old: str, new: str, key: str, says: str) -> None:
+    """A drop of 2 m/s was cited as one by the rule of 7 ft/s or more."""
+    assert DROP.count(old) >= 1
+    assert not study_from(DROP, ROOT / "studies").warnings
+    (warning,) = study_from(DROP.replace(old, new, 1), ROOT / "studies").warnings
+    assert f"case.landing.{key}: {says}" in warning
+
+
+@each(
+    ("sample", "steps", "key"),
+    [
+        ('sample = "grid"\ncount = 1000', ", steps = 2", "vary.count"),
+        ('sample = "sobol"', ", steps = 2", 'vary.parameters."pin.P.profile[1].length".steps'),
+        ('sample = "sobol"\ncount = 8', "", ""),
+        ('sample = "grid"', ", steps = 2", ""),
+    ],
+)
+def test_keys_of_another_sample(sample: str, steps: str, key: str) -> None:
+    parameter = f'"pin.P.profile[1].length" = {{ from = 1, to = 2{steps} }}'
+    study = study_from(f"{text()}\n[vary]\n{sample}\n[vary.parameters]\n{parameter}\n")
+    told = [f"{key}: has no effect" in warning for warning in study.warnings]
+    assert told == [True] * bool(key)

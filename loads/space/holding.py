@@ -1,0 +1,56 @@
+"""What holds a linkage in space at rest where its drives do not: locks, and stops of joints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from loads.forces.holding import cannot_hold, require_count
+from loads.linkage.drives import StateDrive
+from loads.motion.as_drawn import RANK_TOLERANCE
+from loads.motion.mobility import freedom_of
+from loads.space.equations import SpaceEquations
+from loads.space.linkage import SpaceLinkage
+from loads.space.motion import SpaceMotion, space_move
+
+
+def held(motion: SpaceMotion, hold: Sequence[str]) -> SpaceMotion:
+    """A position at rest, in which other measured coordinates stand for the drives.
+
+    motion: of one instant.
+    hold: names of measured coordinates.
+
+    Raises: LinkageError where these cannot hold the linkage, or are too many.
+    """
+    equations = _held(motion.linkage, hold, motion.mobility.degrees)
+    factors = equations.factors(motion.pose)
+    if factors.weakest.min() < RANK_TOLERANCE:
+        J = equations.jacobian(motion.pose)[0]
+        _, singular, right = np.linalg.svd(J)
+        size = np.concatenate([singular, np.zeros(len(right) - len(singular))])
+        free = right[size < RANK_TOLERANCE * size[0]] / equations.scale
+        raise cannot_hold(hold, equations.moving(motion.pose, free))
+    values = np.stack([motion.coordinate(name)[0] for name in hold], axis=1)
+    rest, still = np.zeros_like(values), np.zeros_like(motion.q)
+    return replace(
+        motion, equations=equations, drives=values, speeds=rest, rates=rest, v=still, a=still
+    )
+
+
+def held_as_drawn(linkage: SpaceLinkage, hold: Sequence[str]) -> SpaceMotion:
+    """A linkage without drives at rest as drawn.
+
+    hold, raises: as of `held`.
+    """
+    equations = _held(linkage, hold, freedom_of(SpaceEquations(linkage)).degrees)
+    if (freedom := freedom_of(equations)).free:
+        raise cannot_hold(hold, freedom.loose)
+    drawn = [StateDrive(drive.drawn) for drive in equations.linkage.drives]
+    return space_move(equations.linkage, drawn, np.zeros(1))
+
+
+def _held(linkage: SpaceLinkage, hold: Sequence[str], degrees: int) -> SpaceEquations:
+    require_count(degrees, hold, len(hold))
+    return SpaceEquations(replace(linkage, driven=tuple(hold)))

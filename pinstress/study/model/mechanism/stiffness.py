@@ -1,0 +1,70 @@
+"""Stiffness of the links that state a section."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from loads import LinkageError
+from loads.space.stiffness import LinkStiffness, flat_link, round_link
+from pinbase.arrays import Floats
+from pinstress.study.schema.mechanism import BarTable, BodyTable, LinkStiffnessTable
+from pinstress.study.schema.space import SpaceBarTable, SpaceBodyTable, SpaceLinkStiffnessTable
+
+RIGID = LinkStiffness(math.inf, math.inf, math.inf, math.inf)
+
+
+def stated_stiffness(
+    tables: Mapping[str, LinkStiffnessTable],
+    bodies: Mapping[str, BodyTable | SpaceBodyTable],
+    joints: Mapping[str, Sequence[Floats]],
+) -> dict[str, LinkStiffness]:
+    """Return the stiffness of the links that state one, by body; else a bar has its section's.
+
+    joints: from the centre of mass of each body to its joints, m.
+
+    Raises: LinkageError for a stiffness at a joint that the link does not reach out to.
+    """
+    stated = {
+        name: _stiffness(table)
+        if table.stiffness is None
+        else _bar_like(name, table, joints.get(name, ()))
+        for name, table in tables.items()
+    }
+    for name, body in bodies.items():
+        if body.bar is not None and name not in stated:
+            stated[name] = _of_bar(body.bar)
+    return stated
+
+
+def _bar_like(name: str, table: LinkStiffnessTable, joints: Sequence[Floats]) -> LinkStiffness:
+    """Return the round bar that yields as much at the farthest of a link's joints."""
+    assert table.stiffness is not None
+    arm = max((float(np.linalg.norm(joint)) for joint in joints), default=0.0)
+    if not arm:
+        raise LinkageError(
+            f"body {name}: all its joints are at its centre of mass, where it has no stiffness; "
+            "give a diameter, section, or rigid = true",
+            "no-arm",
+            ("link_stiffness", name),
+        )
+    inertia = table.stiffness * arm**3 / (3.0 * table.youngs_modulus)
+    return round_link((64.0 * inertia / math.pi) ** 0.25, table.youngs_modulus)
+
+
+def _of_bar(bar: BarTable) -> LinkStiffness:
+    depth = bar.depth_along if isinstance(bar, SpaceBarTable) else None
+    section = LinkStiffnessTable(diameter=bar.diameter, section=bar.section)
+    return replace(_stiffness(section), depth=depth)
+
+
+def _stiffness(table: LinkStiffnessTable) -> LinkStiffness:
+    if table.section is not None:
+        depth = table.depth_along if isinstance(table, SpaceLinkStiffnessTable) else None
+        return replace(flat_link(*table.section, table.youngs_modulus), depth=depth)
+    if table.diameter is not None:
+        return round_link(table.diameter, table.youngs_modulus, table.bore)
+    return RIGID
