@@ -32,9 +32,9 @@ from assess.clauses.eye import LoadedEye, loaded_eyes
 from assess.clauses.eye_margin import lacks_pull
 from assess.margin import Margin, strength_key
 from assess.situation import Situation
-from assess.strength.bending_arms import in_double_shear
+from assess.strength.bending_arms import in_double_shear, outer_and_gap, sections_between
 from assess.work import Work, diameter_of_wall, work
-from fea.beam.round_section import Circle, thinnest_section
+from fea.beam.round_section import Circle
 from geometry import ArgumentError, Band
 
 LAYOUT_NEEDED = "symmetrical double shear, with the sizes of all three lugs"
@@ -179,12 +179,7 @@ def _joint(s: Situation, bands: list[Band], eyes: list[LoadedEye]) -> DoubleShea
 
     Raises: ArgumentError as assess.clauses.cozzone.
     """
-    stations = zip(s.pin.segments, s.pin.stations, s.pin.stations[1:], strict=False)
-    sections = {
-        thinnest_section(segment, 0.0, segment.length)
-        for segment, z0, z1 in stations
-        if z1 > bands[0].z0 and z0 < bands[2].z1
-    }
+    sections = sections_between(s.pin, bands[0], bands[2])
     strengths, fsu = {x: bending_strength(s, x) for x in sections}, s.material.shear_strength
     loads = [_lug_load(s, x) for x in eyes]
     lacking = [key for x in (*loads, *strengths.values()) if isinstance(x, list) for key in x]
@@ -192,8 +187,7 @@ def _joint(s: Situation, bands: list[Band], eyes: list[LoadedEye]) -> DoubleShea
     if lacking or fsu is None:
         return list(dict.fromkeys(lacking))
     first, middle, last = (load for load in loads if isinstance(load, float))
-    gap = max(bands[1].z0 - bands[0].z1, bands[2].z0 - bands[1].z1)
-    outer = max(bands[0].length, bands[2].length)
+    outer, gap = outer_and_gap(*bands)
     moment, section = min(
         (
             (strength.result.value * section.modulus, section)

@@ -114,7 +114,7 @@ def _designed(
 
 
 def proportions(eye: PlateEye, connection: str) -> list[str]:
-    """What the proportions of a plate lack by D5.2; connection: its lug."""
+    """The proportions that D5.2 demands and a plate does not have; connection: its lug."""
     short = eye.a / effective_width(eye)
     lacking = []
     if short < MIN_END * (1.0 - ROUND_OFF):

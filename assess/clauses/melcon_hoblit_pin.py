@@ -17,9 +17,8 @@ from assess.clauses.cozzone import PIN_OMITS, bending_strength
 from assess.clauses.melcon_hoblit import NIU
 from assess.margin import Margin
 from assess.situation import Situation
-from assess.strength.bending_arms import in_double_shear
+from assess.strength.bending_arms import in_double_shear, outer_and_gap, sections_between
 from assess.work import Work, wider, work
-from fea.beam.round_section import thinnest_section
 from geometry import ArgumentError, Band
 
 GAMMA_NEEDED = "symmetrical double shear, with factors.gamma of the middle lug alone"
@@ -34,14 +33,9 @@ def peaked_bending(text: CheckText, s: Situation) -> list[Margin]:
     bands = peaking_bands(s)
     if bands is None:
         return [text.lacks(s, GAMMA_NEEDED)]
-    sections = {
-        thinnest_section(segment, 0.0, segment.length)
-        for segment, z0 in zip(s.pin.segments, s.pin.stations, strict=False)
-        if z0 + segment.length > bands[0].z0 and z0 < bands[2].z1
-    }
     carried = []
     try:
-        for section in sections:
+        for section in sections_between(s.pin, bands[0], bands[2]):
             strength = bending_strength(s, section)
             if isinstance(strength, list):
                 return [text.lacks(s, *strength)]
@@ -82,8 +76,7 @@ def _given(s: Situation) -> dict[str, float]:
 
 def peaked_moment(force: float, first: Band, middle: Band, last: Band, gamma: float) -> Work:
     """M, N m, of a force on the middle lug, N; the thicker outer lug and the wider gap count."""
-    t_1 = max(first.length, last.length)
-    g = max(middle.z0 - first.z1, last.z0 - middle.z1)
+    t_1, g = outer_and_gap(first, middle, last)
     value = force / 2.0 * (t_1 / 2.0 + g + gamma * middle.length / 4.0)
     return work(
         "M", value, "moment", "{P} / 2 × ({t_1} / 2 + {g} + {γ} × {t_2} / 4)",

@@ -8,7 +8,9 @@ import numpy as np
 
 from assess.situation import Situation
 from assess.strength.section_forces import section_forces
+from fea.beam.round_section import Circle, thinnest_section
 from fea.support.records import Couple
+from geometry import Band, Pin
 from pinbase.dimensions import Time
 
 MAX_OPPOSED_COSINE = -0.99  # cosine between the forces of outer lugs and of the middle one
@@ -55,6 +57,22 @@ def in_double_shear(s: Situation) -> bool:
     size = s.across.max(axis=1)
     loaded = np.flatnonzero(size > LAYOUT_TOLERANCE * size.max())
     return all(layout(s, int(t)) == DOUBLE_SHEAR for t in loaded)
+
+
+def sections_between(pin: Pin, first: Band, last: Band) -> set[Circle]:
+    """The sections of a pin from one band to another, both included; of a cone the thinnest."""
+    stations = zip(pin.segments, pin.stations, pin.stations[1:], strict=False)
+    return {
+        thinnest_section(segment, 0.0, segment.length)
+        for segment, z0, z1 in stations
+        if z1 > first.z0 and z0 < last.z1
+    }
+
+
+def outer_and_gap(first: Band, middle: Band, last: Band) -> tuple[float, float]:
+    """The thickness of the thicker outer lug and the wider gap in double shear, m."""
+    gap = max(middle.z0 - first.z1, last.z0 - middle.z1)
+    return max(first.length, last.length), gap
 
 
 def layout(s: Situation, instant: int = 0) -> str:

@@ -42,7 +42,7 @@ from reports.text.overview import actions, decisions, why
 from reports.text.summary import ALL_CONVERGED, caveats
 
 MAX_PEAKS = 5  # pins whose largest stress the page tells
-MAX_NAMED_CASES = 6  # in the line on the study; of more cases it says the number
+MAX_LISTED_CASES = 6  # in the line on the study; of more cases it says the number
 LABEL_AT_END = 12.0  # per cent of the axis: nearer to its left end, the label begins at its line
 LAST_AT_END = 92.0  # beyond it, the number at a tick ends there
 AXIS_CHARACTERS = 20.0  # that fit above the axis where it is as narrow as the page makes it
@@ -154,7 +154,7 @@ def _about(results: Results, pins: Sequence[str]) -> str:
         if strength:
             text += f", yield strength {engineering(strength)} {results.units.stress}"
         parts.append(text)
-    few = len(cases) <= MAX_NAMED_CASES
+    few = len(cases) <= MAX_LISTED_CASES
     named = f"case{'s' * (len(cases) != 1)} {', '.join(cases)}" if few else f"{len(cases)} cases"
     parts.append(named)
     if (required := common_factor(results.pins)) is not None:

@@ -13,7 +13,7 @@ from pinstress.study.schema.landing import DropCase
 from pinstress.study.schema.lugs import LugTable
 from pinstress.study.schema.tables import StudyTable
 
-ROUND_OFF = 1e-6  # of a converted velocity
+VELOCITY_ROUND_OFF = 1e-6  # of a converted velocity, or lift
 
 
 def unused(table: StudyTable) -> Iterator[str]:
@@ -148,14 +148,14 @@ def _of_drops(table: StudyTable) -> Iterator[str]:
 def _short_of_rule(key: str, case: DropCase, rule: str) -> Iterator[str]:
     """Yield a sentence on a velocity and a lift that a drop's rule does not allow."""
     if rule != "23.473" or case.wing_loading is not None:
-        least = required_velocity(rule, case.wing_loading) * (1.0 - ROUND_OFF)
+        least = required_velocity(rule, case.wing_loading) * (1.0 - VELOCITY_ROUND_OFF)
         if case.velocity is not None and case.velocity < least:
             yield (
                 f"{key}.velocity: {case.velocity:.4g} m/s is less than the {least:.4g} m/s of rule "
                 f'"{rule}"; give that at least, or remove one of both'
             )
     most = DROP_RULES[rule].lift
-    if case.lift is not None and case.lift > most * (1.0 + ROUND_OFF):
+    if case.lift is not None and case.lift > most * (1.0 + VELOCITY_ROUND_OFF):
         yield (
             f"{key}.lift: {case.lift:.4g} of the weight is more than the {most:.4g} of rule "
             f'"{rule}"; give that at most, or remove one of both'
