@@ -79,7 +79,7 @@ bench: setup ## run all benchmarks and write their tables into docs/measured (ab
 	$(BIN)/pip install --quiet --require-hashes -r requirements-bench.lock
 	$(BIN)/python -m benchmarks --record
 
-evidence: setup ## predict tests and printed examples, and write docs/evidence.md (about ten minutes)
+evidence: setup ## predict tests and printed examples, and write docs/evidence.md (about five minutes)
 	$(BIN)/python -m benchmarks.evidence
 
 docs: setup ## build the documentation into build/docs; a warning is an error
