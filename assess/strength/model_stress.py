@@ -59,7 +59,7 @@ def _margin(
     if peak.max_von_mises is None:
         return text.lacks(s, f"a maximum of the model, which is {peak.verdict}")
     if not peak.bounded:
-        return text.lacks(s, f"an error of the maximum, of which the {peak.model} model knows none")
+        return text.lacks(s, "an error of the maximum, which is unknown")
     place = WorstPlace(time=peak.time)
     return text.margin(s, peak.upper_end, strength, place, s.material.name, _basis(peak))
 

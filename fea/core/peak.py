@@ -163,7 +163,7 @@ class Maximum:
 
     @property
     def bounded(self) -> bool:
-        """Whether the error bounds the maximum: not that of a model which knows none."""
+        """Whether the error bounds the maximum: not where it is unknown."""
         return NO_BOUND.isdisjoint(self.reasons)
 
     def yield_strength(self, of_material: float | None) -> float | None:

@@ -30,6 +30,12 @@ from pinbase.dimensions import Point, Stress
 KIND_ARTICLES = {
     "sharp corner": "a", "edge of a clamp": "the", "edge of a load": "the"
 }  # fmt: skip
+ONE_MESH = Reason(
+    "only one mesh was solved, which tells no error", ("too-few-meshes", "no-error-known")
+)
+TWO_MESHES = Reason(
+    "only 2 meshes were solved, so that its error is a rough estimate", ("too-few-meshes",)
+)
 
 
 @dataclass(frozen=True)
@@ -88,9 +94,7 @@ def evidence_of(
         )
     doubt = None
     if len(seen.results) < seen.meshes.min_meshes:
-        meshes = "one mesh was" if len(seen.results) == 1 else f"{len(seen.results)} meshes were"
-        text = f"only {meshes} solved, too few to estimate the error"
-        doubt = Reason(text, ("too-few-meshes",))
+        doubt = TWO_MESHES if len(seen.results) > 1 else ONE_MESH
     return Evidence(
         seen.pin, seen.case, seen.model, last.maximum, seen.parts, last.location, seen.history,
         zones(last, singularities), seen.excluded, doubt, remarks=remarks,

@@ -196,7 +196,8 @@ class PinResult:
         parts = [self.outcome if self.max_von_mises else f"{self.outcome}, {self.verdict}"]
         if self.max_von_mises and self.location is not None:
             error = 100.0 * (self.error_estimate or 0.0) / self.max_von_mises
-            within = f" ± {error:.2g} %" * (self.max_von_mises_interval is None)
+            known = self.max_von_mises_interval is None and self.maximum.bounded
+            within = f" ± {error:.2g} %" * known
             if self.safety_factor is not None:
                 parts.append(f"factor {_brief(self.safety_factor)}{within}")
             place = f"{self.places.governing} " if self.places else ""

@@ -7,6 +7,7 @@ from reports.data.decision import limit, utilisation
 from reports.data.row import PinResult, SharingRange
 from reports.format.numbers import DASH, beside_limit, engineering
 
+UNKNOWN = "unknown"  # an error that the model or too few meshes do not tell
 END_DIGITS = 3  # digits of factors and of an interval's ends
 ERROR_PART_WORDS = {  # of an error, in words
     "mesh": "mesh",
@@ -25,8 +26,17 @@ def error_range(pin: PinResult, to: str = " to ") -> str:
     """
     interval = pin.max_von_mises_interval
     if interval is None:
-        return engineering(pin.error_estimate, 2)
+        return engineering(pin.error_estimate, 2) if pin.maximum.bounded else UNKNOWN
     return to.join(engineering(end, END_DIGITS) for end in interval)
+
+
+def percent_error(pin: PinResult) -> str:
+    """Return the relative error of a maximum, unless it is not known; a dash without a maximum."""
+    if not pin.max_von_mises or pin.error_estimate is None:
+        return DASH
+    if not pin.maximum.bounded:
+        return UNKNOWN
+    return f"{engineering(100.0 * pin.error_estimate / pin.max_von_mises, 2)} %"
 
 
 def factor_range(pin: PinResult, to: str = " to ") -> str:
@@ -73,5 +83,5 @@ def part_words(pin: PinResult) -> str:
 def error_words(pin: PinResult) -> str:
     """Return the error or interval for use in a sentence."""
     if pin.max_von_mises_interval is None:
-        return f"± {error_range(pin)}"
+        return f"± {error_range(pin)}" if pin.maximum.bounded else "error unknown"
     return f"{error_range(pin)} over half and twice the excluded distance"

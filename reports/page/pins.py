@@ -10,7 +10,7 @@ from reports.data.headline import worst_checks
 from reports.data.results import Results
 from reports.data.row import PinResult
 from reports.format.numbers import engineering, ratio
-from reports.format.ranges import error_range, factor_range
+from reports.format.ranges import error_range, factor_range, percent_error
 from reports.page.joint import JointPart, joint_part
 from reports.page.lets_go import LetsGoPart, lets_go_parts
 from reports.page.loads import loads_at
@@ -138,7 +138,7 @@ def _error(row: PinResult) -> str:
     """Return the error in per cent, or the interval of a singular row."""
     if row.max_von_mises_interval is not None or not row.max_von_mises:
         return error_range(row, "–")
-    return f"{engineering(100.0 * (row.error_estimate or 0.0) / row.max_von_mises, 2)} %"
+    return percent_error(row)
 
 
 def _time(row: PinResult) -> str:

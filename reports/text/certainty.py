@@ -45,23 +45,29 @@ def accuracy(lines: Sequence[PinLine], results: Results) -> Content:
     """Return a sentence on the errors of the maxima in the cases that govern, and on those of the
     other cases where they exceed both these and the tolerance; nothing where no maximum has one.
     """
+    unknown = names([x.row.pin for x in lines if not x.row.maximum.bounded])
     most = _largest_error([x.row for x in lines])
     if most is None:
-        return []
+        return [f"unknown for {unknown}."] if unknown else []
     text = f"up to {engineering(100.0 * most, 2)} %" if most >= 1e-4 else "below 0.01 %"
     every = _largest_error(results.pins) or 0.0
     if every > max(most, results.tolerance):
         text += f" in the governing cases, {engineering(100.0 * every, 2)} % in others"
-    return [f"{text}."]
+    return [f"{text}{f'; unknown for {unknown}' if unknown else ''}."]
 
 
 def _largest_error(rows: Sequence[PinResult]) -> float | None:
-    """Return the largest relative error of rows with a maximum that exists."""
+    """Return the largest relative error of rows with a maximum that exists and whose error is
+    known.
+    """
     return max(
         (
             row.error_estimate / row.max_von_mises
             for row in rows
-            if row.max_von_mises and row.verdict != "singular" and row.error_estimate is not None
+            if row.max_von_mises
+            and row.verdict != "singular"
+            and row.error_estimate is not None
+            and row.maximum.bounded
         ),
         default=None,
     )

@@ -20,6 +20,7 @@ from reports.format.ranges import (
     error_range,
     error_words,
     factor_range,
+    percent_error,
     used_text,
     utilisation_range,
 )
@@ -29,6 +30,7 @@ from reports.tables.strength.envelope import cell_text
 from reports.tables.strength.overview import spread_words
 from reports.tables.strength.safety_factors import safety_factors_table, write_safety_factors
 from reports.tables.stress.singular_zones import zones_table
+from reports.text.certainty import accuracy
 from reports.text.html import safety_factors_html
 from reports.text.safety_factors import print_safety_factors
 from tests.support.results.rows import with_values
@@ -42,6 +44,19 @@ ZONE = SingularZone(
 @pytest.fixture
 def found(results: Results) -> Results:
     return replace(results, pins=(singular(results.pins[0]), results.pins[1]))
+
+
+def test_an_error_that_is_unknown_is_not_shown_as_a_number(results: Results) -> None:
+    """It counts as large as the value, which "100 %" would pretend to know."""
+    first = results.pins[0]
+    once = with_values(first, reasons=("too-few-meshes", "no-error-known"), decided=None)
+    of_run = replace(results, pins=(once, *results.pins[1:]))
+    assert error_range(once) == percent_error(once) == "unknown"
+    assert error_words(once) == "error unknown"
+    assert "±" not in repr(once)
+    (told,) = accuracy(pin_lines(of_run), of_run)
+    assert told.endswith(f"unknown for {first.pin}.")
+    assert "unknown" not in accuracy(pin_lines(results), results)[0]
 
 
 def singular(pin: PinResult) -> PinResult:

@@ -62,7 +62,8 @@ def change(requirement: Requirement, task: Task, solutions: tuple[Solution, ...]
         return None
     if _counted(worst) <= strength / required:
         return None
-    high = max(peak.upper_end, _beneath(worst))
+    # An error that is not known says nothing of what would suffice.
+    high = max(peak.upper_end if peak.bounded else peak.max_von_mises, _beneath(worst))
     failing = FailingCase(task, worst, strength / required / high)
     impulse = task.impulses.get(peak.case)
     problem = _problem(requirement, failing)
@@ -85,10 +86,11 @@ def change(requirement: Requirement, task: Task, solutions: tuple[Solution, ...]
 
 def _counted(solution: Solution) -> float:
     """Return the stress that decides whether a case fails, Pa: with its error, unless that is
-    singular, or that beneath contact.
+    singular or not known, or that beneath contact.
     """
     peak = solution.peak
-    stress = peak.max_von_mises if peak.verdict == "singular" else peak.upper_end
+    alone = peak.verdict == "singular" or not peak.bounded
+    stress = peak.max_von_mises if alone else peak.upper_end
     return max(stress or 0.0, _beneath(solution))
 
 

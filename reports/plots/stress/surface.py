@@ -119,11 +119,13 @@ def _mark(pin: PinResult, units: Units) -> list[Spec]:
     """Return the maximum with its error, or the interval of a singular row."""
     if pin.location is None or pin.max_von_mises is None:
         return []
-    value, error = pin.max_von_mises, pin.error_estimate or 0.0
+    value, error, within = pin.max_von_mises, 0.0, ""
     interval = pin.max_von_mises_interval
+    if pin.maximum.bounded:
+        error = pin.error_estimate or 0.0
+        within = f" ({error_range(pin)})" if interval else f" ± {error_range(pin)}"
     low, high = interval or (value - error, value + error)
-    error_text = f"({error_range(pin)})" if interval else f"± {error_range(pin)}"
-    text = f"max {engineering(value)} {error_text} {units.stress}"
+    text = f"max {engineering(value)}{within} {units.stress}"
     at = {"x": pin.location[2], "y": value, "low": low, "high": high, "text": text}
     x, y = ({"field": k, "type": "quantitative"} for k in ("x", "y"))
     error_bar = {

@@ -14,7 +14,7 @@ from reports.data.overview import Diameter, PinLine
 from reports.data.results import Results
 from reports.format.numbers import DASH, engineering, short
 from reports.format.place_words import place_words
-from reports.format.ranges import END_DIGITS, factor_range, factor_text
+from reports.format.ranges import END_DIGITS, factor_range, factor_text, percent_error
 from reports.format.words import result_words
 from reports.tables.column import Column, Table
 from reports.tables.strength import safety_factors
@@ -182,10 +182,7 @@ def _diameter(d: Diameter, diameter: float) -> str:
 
 def error_words(line: PinLine) -> str:
     """Return the relative error of the maximum; a dash for a singular row."""
-    row = line.row
-    if row.verdict == "singular" or not row.max_von_mises or row.error_estimate is None:
-        return DASH
-    return f"{engineering(100.0 * row.error_estimate / row.max_von_mises, 2)} %"
+    return DASH if line.row.verdict == "singular" else percent_error(line.row)
 
 
 def check_words(line: PinLine) -> str:

@@ -10,6 +10,7 @@ import pytest
 from fea.core.hardened import Hardened
 from fea.core.material import Material
 from fea.core.memory import solid_memory
+from fea.core.peak import meets_limit
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.core.voigt import von_mises
@@ -106,6 +107,7 @@ def test_one_mesh_has_no_error_estimate(steel: Material) -> None:
     assert found.peak.verdict == "unconverged"
     assert found.peak.error_estimate == found.peak.max_von_mises
     assert "too-few-meshes" in found.peak.reasons
+    assert meets_limit(found.peak, 100.0 * (found.peak.max_von_mises or 0.0)) is None
 
 
 def test_a_case_out_of_balance_is_rigid_and_the_others_are_solved(steel: Material) -> None:

@@ -87,6 +87,19 @@ def test_the_worst_case_is_that_which_may_fail_with_its_error(weak: pinstress.St
     assert found.load_factor == pytest.approx(1.0 / 1.02)
 
 
+def test_an_error_that_is_not_known_asks_for_no_stronger_pin(weak: pinstress.Study) -> None:
+    """A finer mesh is what such a row needs."""
+    (task,) = prepare(weak).tasks
+    stress = 0.9 * (task.material.yield_strength or 0.0)
+    codes = ("too-few-meshes", "no-error-known")
+    peak = Maximum("B", "once", "solid", "unconverged", "", stress, stress, reasons=codes)
+    once = Solution(peak, None, task.loads[0])
+    assert change(Requirement(required=1.0), task, (once,)) is None
+    found = change(Requirement(required=2.0), task, (once,))
+    assert found is not None
+    assert found.load_factor == pytest.approx(0.5 / 0.9)
+
+
 def test_each_remedy_is_enough(weak: pinstress.Study) -> None:
     """Strength and loads exactly, diameters to a few per cent; and none where nothing fails."""
     required = weak.table.analysis.required_safety_factor or 0.0
