@@ -105,7 +105,7 @@ def refine(
     notes = dict(held.notes)
     before: MeshBefore | None = None
     for level in range(requirement.meshes or meshes.max_meshes):
-        if before is not None and (limit := _limit(model, posed, before)) is not None:
+        if before is not None and (limit := _limit(model, posed, before, level)) is not None:
             notes = {case: notes.get(case, NO_REASON) + limit for case in seen}
             break
         progress(f"pin {held.pin.name}, {model.name} model, mesh {level + 1}")
@@ -137,14 +137,23 @@ def refine(
     return out
 
 
-def _limit(model: Model, posed: MeshProblem, before: MeshBefore) -> Reason | None:
+def _limit(model: Model, posed: MeshProblem, before: MeshBefore, solved: int) -> Reason | None:
     """Why the next mesh is too large, by the unknowns that the model is likely to need: the reason
-    is empty beyond the model's own limit, which is no news. None where it is not too large.
+    is empty beyond the model's own limit, which is no news after enough meshes. None where it is
+    not too large.
+
+    solved: number of meshes.
     """
     meshes = model.meshes
     unknowns = meshes.unknowns_after(max(r.at_once or r.unknowns for r in before.results))
     if unknowns > meshes.max_unknowns:
-        return NO_REASON
+        if solved >= meshes.min_meshes:
+            return NO_REASON
+        text = (
+            f"; the next one would have about {unknowns:,.0f} unknowns, of {meshes.max_unknowns:,} "
+            "that this model may have: larger radii and gaps need fewer"
+        )
+        return Reason(text, ("mesh-limit",))
     if excess := too_much_memory(posed, model, unknowns):
         text = f"; on the next mesh {excess}: allow more, or increase --tolerance"
         return Reason(text, ("memory-limit",))

@@ -251,3 +251,16 @@ def test_unknowns_and_memory_have_a_limit(steel: Material, monkeypatch: pytest.M
     (found,) = solve_pin(BAR, steel, (), (BALANCED,), fine)
     assert 1 < len(found.peak.history) < SECTION_MESHES.max_meshes
     assert found.peak.dofs <= 6000 < 2.0 * found.peak.dofs
+
+
+def test_a_limit_that_leaves_too_few_meshes_is_told(
+    steel: Material, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fine = Requirement(model="harmonic", tolerance=1e-6)
+    (first,) = solve_pin(BAR, steel, (), (BALANCED,), replace(fine, meshes=1))
+    coarse = replace(SECTION_MESHES, max_unknowns=first.peak.dofs)
+    monkeypatch.setattr("fea.harmonic.evaluate.SECTION_MESHES", coarse)
+    (found,) = solve_pin(BAR, steel, (), (BALANCED,), fine)
+    assert len(found.peak.history) == 1
+    assert f"unknowns, of {first.peak.dofs:,} that this model may have" in found.peak.note
+    assert "mesh-limit" in found.peak.reasons
