@@ -188,6 +188,8 @@ def _answer(
             raise NoSizeError(f"it is unconstrained in case {peak.case}: {peak.note}")
         if peak.verdict == "failed":
             raise NoSizeError(f"the numerical solution failed in case {peak.case}: {peak.note}")
+        if accuracy == "full" and not peak.bounded:
+            raise NoSizeError(f"the error is unknown in case {peak.case}: {peak.note}")
     acting = [peak for peak in peaks if peak.max_von_mises]
     if not acting:
         raise NoSizeError("no case loads it")

@@ -6,6 +6,7 @@ import json
 import math
 import re
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from assess.judgement import SAFE
+from fea.harmonic.evaluate import SECTION_MESHES
 from pinstress.analysis.plan import prepare
 from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE, MAX_TRIALS, NoSizeError, smallest
 from pinstress.analysis.results import run
@@ -313,6 +315,18 @@ def test_a_singular_pin_is_sized_but_nothing_is_claimed(
 )
 def test_what_cannot_be_sized_is_told(tmp_path: Path, refused: Refused) -> None:
     sizes_nothing(tmp_path, refused)
+
+
+def test_a_size_whose_error_is_unknown_is_none(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """One mesh does not tell it, and twice the stress is no bound."""
+    monkeypatch.chdir(tmp_path)
+    coarse = replace(SECTION_MESHES, max_unknowns=1)
+    monkeypatch.setattr("fea.harmonic.evaluate.SECTION_MESHES", coarse)
+    Path("study.toml").write_text(QUICK)
+    assert run_command_line(["size", "study.toml"]) == 1
+    assert "the error is unknown in case landing: only one mesh was" in capsys.readouterr().err
 
 
 def test_cells_and_joint_are_compared_in_the_verification_only(
