@@ -93,6 +93,7 @@ class Risk:
     None where no design is singular.
     loose: the probability that the pin is no longer pressed into a lug at the temperature of the
     case; None where it is in all designs.
+    error_known: whether the error of the stress is, in the study as it is.
     curve: of the distribution (factor, probability to be lower, by plain (0) or importance sampling
     (1)).
     """
@@ -116,6 +117,7 @@ class Risk:
     loose: Spread | None = None
     drivers: tuple[Driver, ...] = ()
     curve: tuple[tuple[float, float, int], ...] = ()
+    error_known: bool = True
 
     @property
     def disagrees(self) -> bool:
@@ -146,7 +148,8 @@ class Risk:
         """Return the outcome: whether the probability of failure is within the allowed one.
 
         The interval with the error of the stress decides. A singular row cannot be safe, nor one
-        that may fail or be singular with more than the allowed probability. A row that is safe by
+        whose error is unknown, or that may fail or be singular with more than the allowed
+        probability. A row that is safe by
         surface and section depends on the stress beneath contact, or on what is open, where the
         probability with it may exceed the allowed one, and on what else retains the pin where it
         comes loose more often.
@@ -157,7 +160,7 @@ class Risk:
             low, high = min(low, self.mesh.lower.low), max(high, self.mesh.higher.high)
         may_be_singular = self.unbounded is not None and self.unbounded.high > allowed
         singular = self.verdict == "singular" or may_be_singular
-        if self.disagrees or (high <= allowed and singular):
+        if self.disagrees or (high <= allowed and (singular or not self.error_known)):
             return NOT_DECIDED
         if high <= allowed and self.depends_on(allowed):
             return DEPENDS

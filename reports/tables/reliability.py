@@ -118,6 +118,8 @@ def remark(risk: Risk) -> str:
             "outside the excluded zones: the probability of that or of failure is "
             f"{chance_range(risk.unbounded)}"
         )
+    if not risk.error_known:
+        said.append("the error of its stress is unknown, so that no probability shows it safe")
     if risk.loose is not None:
         said.append(
             f"its press fit is lost with the probability {chance_range(risk.loose)}, and what else "

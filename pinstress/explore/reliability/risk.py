@@ -149,6 +149,7 @@ def risk_of(
         _bounded(low) if low else None,
         row.form,
         drivers=row.drivers,
+        error_known=nominal is None or nominal.maximum.bounded,
     )
     best = weighted if weighted and bare.by_weights else sampled
     return replace(

@@ -45,6 +45,12 @@ def test_the_interval_decides_with_the_error_of_the_mesh() -> None:
     assert replace(ROW, verdict="singular").result(0.01) == "fails"
 
 
+def test_a_row_whose_error_is_unknown_is_not_safe() -> None:
+    row = replace(ROW, error_known=False)
+    assert [row.result(p) for p in (0.01, 0.05)] == ["fails", "not decided"]
+    assert "unknown" in remark(row)
+
+
 def test_no_probability_without_its_interval() -> None:
     assert chance_range(PLAIN) == "0.03 (0.02 to 0.04)"
     assert chance_range(Spread(0.0, 0.0, 0.168)) == "below 0.168"
