@@ -20,8 +20,9 @@ from fea.lug.lug_stress import (
 )
 from fea.lug.slipping import SlippingBushing
 from fea.lug.through_thickness import EyeStress, eye_stress
+from fea.support.contact.joint_changes import VariedPressures
 from fea.support.contact.pressed_cases import PressedCases
-from fea.support.contact.variations import ResolutionComparison, VariedPressures
+from fea.support.contact.variations import ResolutionComparison
 from fea.support.lugs.lug import Lug
 from fea.support.records import LugStress
 from pinbase.arrays import Floats

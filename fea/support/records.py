@@ -11,6 +11,7 @@ from pinbase.dimensions import Force, Forces, Length, Lengths, Moments, Stress, 
 LineLoad = Annotated[float, "force length^-1"]
 Couple = Annotated[float, "moment"]
 FRICTION = "friction"  # the property of a joint whose range only adds to the stress
+TOGETHER = "together"  # several at once, each at the end of its range that counts
 
 
 @dataclass(frozen=True)
@@ -84,15 +85,16 @@ def range_ends(stress: float, variations: Iterable[Variation]) -> tuple[float, f
     """The ends of the range of a maximum over variations of the joint, with the error of the model
     where that is a part of them; friction only raises the upper one.
 
+    Friction multiplies by the ratio that it has alone, since it is not solved with the others.
     stress: the maximum with the joint as given.
     """
-    ends = [stress]
+    ends, rubbed = [stress], [stress]
     for x in variations:
         if x.what == FRICTION:
-            ends.append(max(stress, x.max_von_mises))
+            rubbed.append(x.max_von_mises)
         else:
             ends += x.interval or (x.max_von_mises,)
-    return min(ends), max(ends)
+    return min(ends), max(ends) * (max(rubbed) / stress if stress else 1.0)
 
 
 @dataclass(frozen=True)
@@ -113,10 +115,15 @@ class JointRange:
     def without(self, what: str, stress: float) -> JointRange:
         """The range without the variations of one property.
 
+        The others multiply by the ratios that they have alone: together they are solved with it.
         stress: the maximum von Mises stress with the joint as given.
         """
-        rest = tuple(x for x in self.variations if x.what != what)
-        return replace(self, max_von_mises=range_ends(stress, rest), variations=rest)
+        rest = tuple(x for x in self.variations if x.what not in (what, TOGETHER))
+        low = high = 1.0
+        for name in dict.fromkeys(x.what for x in rest):
+            least, most = range_ends(stress, (x for x in rest if x.what == name))
+            low, high = low * least / (stress or 1.0), high * most / (stress or 1.0)
+        return replace(self, max_von_mises=(low * stress, high * stress), variations=rest)
 
     @property
     def across(self) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 
 from assess.judgement import BELOW_YIELD, NOT_DECIDED, SAFE
 from fea.core.places import ContactPlace
-from fea.support.records import FRICTION, JointResult, LostFit, Variation
+from fea.support.records import FRICTION, TOGETHER, JointRange, JointResult, LostFit, Variation
 from pinbase.arrays import Mask
 from pinbase.dimensions import Floats
 from reports.data.decision import factor_ends
@@ -23,7 +23,6 @@ IMPULSE_RANGES_TOGETHER = "impulse time, velocity change and pulse together"
 # A pin that is loose at the temperature of the case: strong enough, and retained by nothing known.
 PRESS_FIT, LOST_FIT = "press fit", "press fit lost in"
 YIELD_STRENGTH = "yield strength"
-TOGETHER = "together"  # what only several ranges together change
 
 
 @dataclass(frozen=True)
@@ -198,11 +197,9 @@ def _together(
         return
     more, variations = math.prod(ratios.values()), over.variations if over else ()
     counted = [v for v in variations if judged.safe or v.what != FRICTION]
+    most = _largest_over_joint(judged, over) if over and judged.safe else judged.high
     beneath = [contact.upper_end if contact else 0.0, *(_upper_end(contact, v) for v in counted)]
-    error = judged.high / judged.maximum
-    # The interval of a variation has its error already, and so has a range by foundations.
-    tops = [v.interval[1] if v.interval else v.max_von_mises * error for v in counted]
-    tops += [over.max_von_mises[1]] if over and judged.safe else []
+    tops = [most] if judged.safe else [_top(judged, v) for v in counted]
     top, deep = (more * extreme(x) for x in ([judged.high, *tops], beneath))
     if (max(top, deep) > judged.permitted) == judged.safe:
         ends = over.max_von_mises if over else ()
@@ -246,19 +243,23 @@ def _over_joint(
         if judged.turns(v.max_von_mises, v.interval)
         and (judged.safe or (v not in deep and v.what != FRICTION))
     ]
+    turning = _alone_first(turning)
     for v in turning:
         yield Dependence(
             v.what, v.value, "joint", judged.strength / _counted(judged, v),
             given=given if v.length is not None else None, at=v.length,
             flips_at=_crossing(judged, v, given), dimension="length",
         )  # fmt: skip
-    if not turning and judged.safe and over.max_von_mises[1] > judged.permitted:
+    if not turning and judged.safe and _largest_over_joint(judged, over) > judged.permitted:
         lugs = "assumed lugs" if over.assumed else "its lugs"
+        what, value = "joint", f"contact with {lugs}"
+        if over.model == "contact":  # by friction, which multiplies what the others do
+            what, value = TOGETHER, f"all properties and {FRICTION}"
         factor = judged.strength / over.max_von_mises[1]
-        yield Dependence("joint", f"contact with {lugs}", "joint", factor)
+        yield Dependence(what, value, "joint", factor)
     if contact is None or not judged.safe or contact.upper_end > judged.permitted:
         return
-    for v in (v for v in deep if v not in turning):
+    for v in _alone_first([v for v in deep if v not in turning]):
         end = _upper_end(contact, v)
         what = f"{v.what} {v.value}" if v.length is None else v.what
         yield Dependence(
@@ -266,6 +267,26 @@ def _over_joint(
             given=given if v.length is not None else None, at=v.length,
             flips_at=_on_the_way(judged, v, given, (contact.upper_end, end)), dimension="length",
         )  # fmt: skip
+
+
+def _largest_over_joint(judged: JudgedStress, over: JointRange) -> float:
+    """Return the largest stress over the joint with its error; friction multiplies it."""
+    tops = [_top(judged, v) for v in over.variations if v.what != FRICTION]
+    tops += [over.max_von_mises[1]] if over.model == "foundation" else []
+    rubbed = (v.max_von_mises / judged.maximum for v in over.variations if v.what == FRICTION)
+    return max([judged.high, *tops]) * max([1.0, *rubbed])
+
+
+def _top(judged: JudgedStress, v: Variation) -> float:
+    """Return the upper end of a variation, whose interval has its error already."""
+    return v.interval[1] if v.interval else v.max_von_mises * judged.high / judged.maximum
+
+
+def _alone_first(variations: list[Variation]) -> list[Variation]:
+    """Return the variations of one property each, or else one of several together: what one alone
+    changes, all of them together do, too.
+    """
+    return [v for v in variations if v.what != TOGETHER] or variations[:1]
 
 
 def _upper_end(contact: ContactPlace | None, v: Variation) -> float:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from fea.support.records import FRICTION
+from fea.support.records import FRICTION, TOGETHER
 from pinbase.grouped import grouped
 from reports.data.dependence import BENEATH_CONTACT, YIELD_STRENGTH, landing_axes
 from reports.data.row import Dependence, LandingRange, PinResult
@@ -185,7 +185,7 @@ def _of_joint(row: PinResult) -> Iterator[OpenValue]:
     if joint is None or over is None:
         return
     given = max((band.clearance for band in joint.bands), default=None)
-    for what in dict.fromkeys(v.what for v in over.variations):
+    for what in dict.fromkeys(v.what for v in over.variations if v.what != TOGETHER):
         here = [v for v in over.variations if v.what == what]
         ends = [v.length for v in here if v.length is not None]
         ends += [given] if ends and given is not None else []

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
+from fea.support.records import TOGETHER
 from reports.data.decision import worst_first
 from reports.data.dependence import BENEATH_CONTACT, PRESS_FIT
 from reports.data.headline import JudgedCheck, worst_checks
@@ -178,7 +179,7 @@ def _dependence(d: Dependence, units: Units) -> str:
         (f"beneath contact at {d.value}", "") if d.what == BENEATH_CONTACT else (d.what, d.value)
     )
     if d.at is None:
-        return f"{what} {value}".strip()
+        return " ".join(filter(None, (value, what) if what == TOGETHER else (what, value)))
     unit = unit_name(d.dimension, units)
     flips = d.at if d.flips_at is None else d.flips_at
     side = "" if d.given is None else "above " if d.at > d.given else "below "

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from assess.judgement import DEPENDS, FAILS, NOT_DECIDED
+from fea.support.records import TOGETHER
 from reports.data.decision import limit
 from reports.data.dependence import (
     BENEATH_CONTACT,
     IMPULSE_RANGES_TOGETHER,
     PRESS_FIT,
-    TOGETHER,
 )
 from reports.data.overview import GOOD, PinLine
 from reports.data.results import Results
@@ -214,7 +214,7 @@ def flips(row: PinResult, units: Units) -> str:
         what = d.value if d.what == BENEATH_CONTACT else d.what
         if d.what == TOGETHER or what == IMPULSE_RANGES_TOGETHER:
             what = f"the {d.over} values together"
-        at = _at(d, units)
+        at = "" if d.what == TOGETHER else _at(d, units)  # which would be a list
         told.append(f"{what} ({at})" if at else what)
     return ", ".join(dict.fromkeys(told))
 

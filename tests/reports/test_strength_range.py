@@ -14,9 +14,10 @@ import pinstress
 from assess.judgement import DEPENDS, FAILS, SAFE
 from assess.requirement import StatedRequirement
 from assess.strength.model_stress import YIELD_METHOD
+from fea.support.records import TOGETHER
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.in_python import study_from
-from reports.data.dependence import TOGETHER, YIELD_STRENGTH, depends_on
+from reports.data.dependence import YIELD_STRENGTH, depends_on
 from reports.data.requirements import requirement_rows
 from reports.data.row import PinResult, Units
 from reports.data.unknowns import factor_spread, unknowns

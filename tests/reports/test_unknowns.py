@@ -12,14 +12,14 @@ from dataclasses import replace
 import pytest
 
 from assess.judgement import DEPENDS, FAILS, SAFE
-from fea.support.records import JointRange, Variation
-from reports.data.dependence import TOGETHER, depends_on
+from fea.support.records import TOGETHER, JointRange, Variation, range_ends
+from reports.data.dependence import depends_on
 from reports.data.headline import JudgedCheck
 from reports.data.overview import PinLine, pin_lines
 from reports.data.results import Results
 from reports.data.row import PinResult, Units
 from reports.data.unknowns import factor_spread, open_values, unknowns
-from reports.format.words import over_words
+from reports.format.words import but_words, over_words
 from reports.text.certainty import (
     certainty,
     excess_stress,
@@ -71,6 +71,48 @@ def test_two_ranges_that_change_an_outcome_only_together() -> None:
     assert over_words(both.depends_on) == "joint and landing"
     assert flips(both, UNITS) == "the joint and landing values together"
     assert pin(3.1, (0.9, 1.3), ("rectangular",)).outcome == SAFE  # 3.1 / 1.95 = 1.59
+
+
+def test_properties_of_a_joint_that_change_an_outcome_only_together() -> None:
+    """2.0 of 1.5: 1.67 with soft lugs, 1.54 with free ones, 1.28 with both; friction adds 10 %."""
+
+    def of(*over: tuple[str, str, float]) -> PinResult:
+        made = row("x", "converged", 2.0, True)
+        stress = made.max_von_mises or 0.0
+        variations = [Variation(what, value, times * stress) for what, value, times in over]
+        ends = range_ends(stress, variations)
+        joint = replace(make_joint(), range=JointRange(ends, tuple(variations)))
+        made = replace(made, joint=joint)
+        return replace(made, depends_on=depends_on(made))
+
+    soft, free = ("stiffness", "times 0.5", 1.2), ("tilt", "free", 1.3)
+    assert of(soft, free).outcome == SAFE
+    both = of(soft, free, (TOGETHER, "stiffness times 0.5, tilt free", 1.56))
+    (d,) = both.depends_on
+    assert (d.over, d.what) == ("joint", TOGETHER)
+    assert d.factor == pytest.approx(2.0 / 1.56)
+    assert flips(both, UNITS) == "the joint values together"
+    assert over_words(both.depends_on) == "joint"
+    assert "(stiffness times 0.5, tilt free together)" in but_words(both.depends_on, UNITS)
+    assert [x.what for x in open_values(both)] == ["stiffness", "tilt"]
+    # What one changes alone is named, not the others with it.
+    stiffer = of(("tilt", "free", 1.4), (TOGETHER, "stiffness times 0.5, tilt free", 1.7))
+    assert [x.what for x in stiffer.depends_on] == ["tilt"]
+    rubbed = of(free, ("friction", "0.15", 1.1))
+    (d,) = rubbed.depends_on
+    assert (d.what, d.value) == (TOGETHER, "all properties and friction")
+    assert d.factor == pytest.approx(2.0 / 1.43)
+
+
+def test_a_range_without_one_property_has_the_product_of_the_others() -> None:
+    over = [Variation("clearance", "0", 1.1), Variation("tilt", "free", 1.2),
+            Variation("stiffness", "2", 0.9), Variation(TOGETHER, "all", 1.4)]  # fmt: skip
+    joint = JointRange(range_ends(1.0, over), tuple(over))
+    assert joint.max_von_mises == (0.9, 1.4)
+    rest = joint.without("clearance", 1.0)
+    assert rest.max_von_mises == pytest.approx((0.9, 1.2))
+    assert [x.what for x in rest.variations] == ["tilt", "stiffness"]
+    assert joint.without("tilt", 1.0).max_von_mises == pytest.approx((0.9, 1.1))
 
 
 def test_pins_whose_ranges_straddle_the_requirement_are_told_apart(results: Results) -> None:

@@ -7,61 +7,42 @@ act on one mesh, the first: its error is in all maxima alike, so that their rati
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fea.core.linear_solver import SolveError
-from fea.core.pin_loads import Floats, PinLoads
+from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
-from fea.core.zone import Zone
-from fea.harmonic.beneath import maxima_beneath
-from fea.harmonic.field import HarmonicField
-from fea.harmonic.section_solution import SectionProblem, harmonic_solution
-from fea.section.section_stress import SectionField
-from fea.singular.singularities import edges_of_loads, singularities_of
-from fea.support.contact.bending import LoadedJoint, growth_across, growth_of_lugs
+from fea.singular.singularities import edges_of_loads
 from fea.support.contact.cell_error import (
-    MIN_HARMONICS_PER_ARC,
     NOWHERE,
     AtPlaces,
     by_cells,
 )
 from fea.support.contact.coarser_cells import on_coarser_cells
-from fea.support.contact.contact import ContactProblem
-from fea.support.contact.contact_state import ContactState
 from fea.support.contact.friction import friction_variations, rubbed, rubbed_across, rubs
+from fea.support.contact.joint_changes import (
+    ChangedContact,
+    JointChanges,
+    PressedJoint,
+    VariedPressures,
+    at_places,
+    in_half_the_harmonics,
+    loaded,
+    loads_of,
+    on_cells,
+)
 from fea.support.contact.joint_contact import JointContact
 from fea.support.contact.pressure_loads import (
     MODE_TOLERANCE,
-    PressureLoads,
     PressureModes,
-    resultants,
-    stacked,
 )
 from fea.support.contact.solve_joint import ContactModel
-from fea.support.lugs.changes import joint_variations
-from fea.support.lugs.lug import Lug
+from fea.support.lugs.changes import JointChange, joint_variations, worst_together
 from fea.support.records import JointRange, Variation, range_ends
 from geometry.shape.rings import USUAL_RING_COUNT
-
-# Of the largest amplitude: what a pattern must add to the pressures of a varied joint. Chosen by
-# judgement, coarser than MODE_TOLERANCE since only ratios of maxima follow from it.
-VARIATION_MODE_TOLERANCE = 1e-2
-
-
-@dataclass(frozen=True)
-class VariedPressures:
-    """The pressures of a varied joint at an instant.
-
-    lugs: with their clearance and tilt. waves: harmonics, (N + 1, 1, R, 2) Pa.
-    """
-
-    lugs: tuple[Lug, ...]
-    waves: Floats
 
 
 @dataclass(frozen=True)
@@ -116,27 +97,6 @@ def nowhere(compared: Sequence[ResolutionComparison]) -> Sequence[bool]:
     return (False,) * len(compared)
 
 
-@dataclass(frozen=True)
-class _Joint:
-    """The contact at an instant with something changed: the harmonics of its pressures, and the
-    cells.
-
-    per_arc: harmonics that the cells follow, times the half angle of contact in rad.
-    lugs: of a varied joint.
-    """
-
-    waves: Floats
-    states: list[ContactState]
-    per_arc: float = math.inf
-    lugs: tuple[Lug, ...] = ()
-
-    @property
-    def with_rougher(self) -> tuple[_Joint, ...]:
-        """This joint, and on narrow arcs the one from which the error of the cells follows."""
-        narrow = self.per_arc < MIN_HARMONICS_PER_ARC
-        return (self, _in_half_the_harmonics(self)) if narrow else (self,)
-
-
 def compare(
     model: ContactModel,
     at: Sequence[JointContact],
@@ -157,10 +117,10 @@ def compare(
     # One set of patterns for all, so that all stress comes from one solution on the first mesh.
     patterns = model.patterns(parts, known)
     every = [
-        [_loads(model, patterns, x, contact) for x in (*both, _in_half_the_harmonics(both[1]))]
+        [loads_of(model, patterns, x, contact) for x in (*both, in_half_the_harmonics(both[1]))]
         for contact, both in zip(at, exact, strict=True)
     ]
-    stress, out, likes = _at_places(model, requirement, every), [], []
+    stress, out, likes = at_places(model, requirement, every), [], []
     for contact, both in zip(at, exact, strict=True):
         first, twice, roughest = (stress.pop(0) for _ in range(3))
         arc = contact.half_angle(model.bands, model.tail)
@@ -189,7 +149,7 @@ def _over_joint(
     at: Sequence[JointContact],
     requirement: Requirement,
     known: PressureModes,
-    likes: Sequence[tuple[AtPlaces, _Joint]],
+    likes: Sequence[tuple[AtPlaces, PressedJoint]],
     vary: Sequence[bool],
 ) -> list[tuple[tuple[Variation, ...], str, tuple[VariedPressures, ...]]]:
     """The variations of each contact, what is not included in them, and the pressures
@@ -198,74 +158,27 @@ def _over_joint(
     likes: the joints as given on the same cells, with their stress.
     vary: the contacts whose joint is varied.
     """
-    over, varied, missing = _varied(model, at, _large_cells(model), vary)
-    parts = [(one.waves, VARIATION_MODE_TOLERANCE) for one in itertools.chain(*varied)]
-    patterns = model.patterns(parts, known) if parts else known
-    every = [
-        [
-            _loads(model, patterns, one, contact)
-            for one in itertools.chain(*(x.with_rougher for x in others))
-        ]
-        for contact, others in zip(at, varied, strict=True)
-    ]
-    stress = _at_places(model, requirement, every) if any(every) else []
-    by_friction = _by_friction(model, requirement, patterns, at, vary)
+    singles = tuple(joint_variations(model.whole, model.lugs)) if any(vary) else ()
+    changed = JointChanges(model, at, requirement, likes, _large_cells(model))
+    alone, known = changed.by([singles if so else () for so in vary], known)
+    together, known = changed.by([_worst_of(model, x) for x in alone], known)
+    by_friction = _by_friction(model, requirement, known, at, vary)
     out = []
-    of_contacts = zip(at, likes, over, varied, missing, by_friction, strict=True)
-    for contact, (like, given), names, joints, why, more in of_contacts:
-        own = _loaded(model, given, contact)
-        every_loaded = [_loaded(model, x, contact) for x in joints]
-        ratios = [
-            replace(
-                _ratio(
-                    x, [stress.pop(0) for _ in y.with_rougher], like, model.cells.rings, y.per_arc
-                ),
-                across=growth_across(loaded, own),
-                lugs=growth_of_lugs(loaded, own),
-            )
-            for x, y, loaded in zip(names, joints, every_loaded, strict=True)
-        ]
-        left_out = f"not included: {'; '.join(why)}" if why else ""
-        pressures = tuple(VariedPressures(x.lugs or model.lugs, x.waves) for x in (given, *joints))
-        out.append(((*ratios, *more), left_out, pressures))
+    for of_contact in zip(likes, alone, together, by_friction, strict=True):
+        (_, given), first, second, more = of_contact
+        missing = (*first.missing, *second.missing)
+        left_out = f"not included: {'; '.join(missing)}" if missing else ""
+        pressures = (VariedPressures(model.lugs, given.waves), *first.pressures, *second.pressures)
+        out.append(((*first.over, *second.over, *more), left_out, pressures))
     return out
 
 
-def _loaded(model: ContactModel, joint: _Joint, contact: JointContact) -> LoadedJoint:
-    """A varied joint with the resultants of its pressures on the rings."""
-    loads = resultants(model.pin, model.rings, joint.waves, contact.loads.links)
-    return LoadedJoint(model.pin, model.lugs, model.bands, loads, contact.mass)
-
-
-def _ratio(
-    change: Variation,
-    stress: Sequence[AtPlaces],
-    like: AtPlaces,
-    rings: int,
-    per_arc: float,
-) -> Variation:
-    """The variation with its stresses relative to those of the joint as given, and with the error
-    of the cells on narrow arcs.
-
-    stress: with the variation; on narrow arcs also with half the harmonics.
-    like: of the joint as given, on the same cells.
-    rings, per_arc: as of `_by_cells`.
+def _worst_of(model: ContactModel, alone: ChangedContact) -> Sequence[JointChange]:
+    """The changes together that raise the stress of the row, or that beneath contact, or lower the
+    former.
     """
-    varied, *half = stress
-    row, deep, interval = varied.row, varied.beneath, None
-    if half:
-        error = by_cells(varied, half[0], rings, per_arc)
-        above, below = 1.0 + error.surface, 1.0 + error.section
-        low = max(varied.surface / above, varied.section / below)
-        high = max(varied.surface * above, varied.section * below)
-        interval = low / (like.row or 1.0), high / (like.row or 1.0)
-        deep *= 1.0 + error.beneath
-    return replace(
-        change,
-        max_von_mises=row / (like.row or 1.0),
-        interval=interval,
-        beneath=deep / (like.beneath or 1.0),
-    )
+    measures = [(x.max_von_mises, x.beneath or 1.0) for x in alone.over]
+    return worst_together(model.lugs, alone.changes, measures)
 
 
 def _by_friction(
@@ -289,11 +202,11 @@ def _by_friction(
             out.append(())
             continue
         without, changed = rubbed(model, contact, known)
-        plain, *stress = _at_places(model, requirement, [[without], *changed.values()], edges)
+        plain, *stress = at_places(model, requirement, [[without], *changed.values()], edges)
         pairs = [(x.row / (plain.row or 1.0), x.beneath / (plain.beneath or 1.0)) for x in stress]
         ratios = {name: [pairs.pop(0) for _ in loads] for name, loads in changed.items()}
-        own = _Joint(model.waves(contact.contact), list(contact.contact))
-        across = rubbed_across(model, contact, _loaded(model, own, contact))
+        own = PressedJoint(model.waves(contact.contact), list(contact.contact))
+        across = rubbed_across(model, contact, loaded(model, own, contact))
         out.append(tuple(friction_variations(model.lugs, ratios, across)))
     return out
 
@@ -303,94 +216,15 @@ def uncompared(contact: JointContact) -> ResolutionComparison:
     return ResolutionComparison(NOWHERE, NOWHERE, contact.loads.links, ())
 
 
-def _loads(
-    model: ContactModel, patterns: PressureModes, one: _Joint, contact: JointContact
-) -> PressureLoads:
-    return patterns.loads(one.waves, contact.loads.links, model.arcs(one.states))
-
-
-def _at_places(
-    model: ContactModel,
-    requirement: Requirement,
-    every: Sequence[Sequence[PressureLoads]],
-    unread: tuple[Zone, ...] = (),
-) -> list[AtPlaces]:
-    """The stress at the places on the first mesh, of loads of one instant each.
-
-    unread: zones that are not read, about which the mesh is no finer.
-    """
-    whole = stacked(list(itertools.chain(*every)))
-    singular = singularities_of(model.pin, model.material, (), (whole,), requirement.distance)
-    problem = SectionProblem(model.pin, model.material, (), (whole,), singular, model.first)
-    section = harmonic_solution(problem, 0, 1.0)
-    in_sections = whole.in_sections
-    zones = tuple(dict.fromkeys((*singular, *unread)))
-    places = (
-        HarmonicField(section, zones).maxima(whole),
-        SectionField(model.pin, model.material, (), (in_sections,)).maxima(in_sections),
-        maxima_beneath(section.fields, whole, zones),
-    )
-    return [AtPlaces(*stress) for stress in zip(*(x.tolist() for x in places), strict=True)]
-
-
-def _on_both_cells(model: ContactModel, at: Sequence[JointContact]) -> list[tuple[_Joint, _Joint]]:
+def _on_both_cells(
+    model: ContactModel, at: Sequence[JointContact]
+) -> list[tuple[PressedJoint, PressedJoint]]:
     """Each contact, and the same on cells twice as large."""
     cells = on_coarser_cells(model)
     return [
         (
-            _Joint(model.waves(contact.contact), list(contact.contact)),
-            _coarse(model, contact.loads.links, *cells),
+            PressedJoint(model.waves(contact.contact), list(contact.contact)),
+            on_cells(model, contact.loads.links, *cells),
         )
         for contact in at
     ]
-
-
-def _coarse(
-    model: ContactModel, links: PinLoads, problem: ContactProblem, belongs: Floats
-) -> _Joint:
-    states = model.pressed(links, problem)
-    states = [replace(x, pressure=belongs @ x.pressure) for x in states]
-    return _Joint(model.waves(states), states)
-
-
-def _in_half_the_harmonics(joint: _Joint) -> _Joint:
-    """The joint with the lower half of its harmonics alone, as many as half the sectors resolve."""
-    waves = joint.waves.copy()
-    waves[(len(waves) + 1) // 2 :] = 0.0
-    return replace(joint, waves=waves)
-
-
-def _own_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
-    return model.contact, np.eye(len(model.rings))
-
-
-def _varied(
-    model: ContactModel, at: Sequence[JointContact], own_cells: bool, vary: Sequence[bool]
-) -> tuple[list[list[Variation]], list[list[_Joint]], list[list[str]]]:
-    """The variations of the joint for each contact, the contact under each, and those that could
-    not be solved.
-
-    Lugs that are free to tilt may leave a couple on the pin, and contact may be lost in a large
-    clearance.
-    own_cells: whether to use the model's own cells, instead of cells twice as large.
-    vary: the contacts for which the joint is varied.
-    """
-    names: list[list[Variation]] = [[] for _ in at]
-    varied: list[list[_Joint]] = [[] for _ in at]
-    missing: list[list[str]] = [[] for _ in at]
-    highest = model.cells.highest * (1.0 if own_cells else 0.5)
-    for change in joint_variations(model.whole, model.lugs) if any(vary) else ():
-        other = model.varied(change.lugs, change.softness)
-        cells = _own_cells(other) if own_cells else on_coarser_cells(other)
-        for contact, over, changed, why, so in zip(at, names, varied, missing, vary, strict=True):
-            if not so:
-                continue
-            try:
-                joint = _coarse(other, contact.loads.links, *cells)
-                per_arc = highest * contact.half_angle(other.bands, other.tail)
-                changed.append(replace(joint, per_arc=per_arc, lugs=other.lugs))
-            except SolveError as error:
-                why.append(f"{change.what} {change.value} ({error})")
-                continue
-            over.append(Variation(change.what, change.value, 1.0, change.length))
-    return names, varied, missing

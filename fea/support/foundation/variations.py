@@ -8,36 +8,26 @@ the beam knows no more than these.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.support.contact.bending import growth_across, growth_of_lugs
 from fea.support.foundation.bounds import stress_bounds
-from fea.support.foundation.foundation_model import FoundationModel
+from fea.support.foundation.foundation_model import FoundationModel, JointFoundation
 from fea.support.foundation.stress import FoundationStress
-from fea.support.lugs.changes import joint_variations, pressed_in, with_stiffness
+from fea.support.lugs.changes import (
+    JointChange,
+    joint_variations,
+    pressed_in,
+    with_stiffness,
+    worst_together,
+)
 from fea.support.lugs.fit import beyond_foundations
 from fea.support.lugs.lug import Lug
 from fea.support.records import JointRange, JointResult, Variation
 from geometry import ArgumentError, Pin
-
-
-@dataclass(frozen=True)
-class Varied:
-    """A joint with one property changed.
-
-    what, value: the property, and its value in words.
-    length: the value, m, if it is a length.
-    stress: None where the pin is pressed into a lug, whose stress a beam does not know.
-    """
-
-    what: str
-    value: str
-    length: float | None
-    stress: FoundationStress | None
 
 
 class FoundationRange:
@@ -55,7 +45,7 @@ class FoundationRange:
             raise SolveError(reason, "beyond-foundations")
         self.assumed = assumed
         self.own = FoundationStress.of(FoundationModel(pin, material, lugs), distance)
-        self.varied = tuple(_varied(self.own))
+        self._in_lugs: dict[str, FoundationStress | None] = {}  # of joints that were changed
 
     def at(self, loads: PinLoads) -> tuple[JointRange | None, str]:
         """The range at a single instant, and the variations it leaves out, or the reason why there
@@ -67,38 +57,57 @@ class FoundationRange:
         given = stress_bounds(self.own, own)
         if given.bounds is None:
             return None, given.why
-        over, left_out, unheld = [], [], []
-        for joint in self.varied:
-            if joint.stress is None:
-                left_out.append(f"{joint.what} {joint.value}")
-                continue
-            try:
-                varied = joint.stress.model.solve(loads)
-            except SolveError as error:  # lugs that are free to tilt may leave a couple on the pin
-                unheld.append(f"{joint.what} {joint.value} ({error})")
-                continue
-            varied_bounds = stress_bounds(joint.stress, varied)
-            if varied_bounds.bounds is None:
-                left_out.append(f"{joint.what} {joint.value}")
-                continue
-            size = varied_bounds.maximum
-            over.append(
-                Variation(
-                    joint.what,
-                    joint.value,
-                    size,
-                    joint.length,
-                    varied_bounds.bounds,
-                    across=growth_across(varied, own),
-                    lugs=growth_of_lugs(varied, own),
-                )
-            )
+        changed, left_out, unheld = [], [], []
+
+        def solve(changes: Iterable[JointChange]) -> None:
+            for change in changes:
+                name = f"{change.what} {change.value}"
+                try:
+                    varied = self._variation(name, change, loads, own)
+                except SolveError as error:  # lugs free to tilt may leave a couple on the pin
+                    unheld.append(f"{name} ({error})")
+                    continue
+                if varied is None:
+                    left_out.append(name)
+                else:
+                    changed.append((change, varied))
+
+        lugs = self.own.model.lugs
+        solve(joint_variations(self.own.model.whole, lugs))
+        measures = [(x.max_von_mises / (given.maximum or 1.0),) for _, x in changed]
+        solve(worst_together(lugs, [change for change, _ in changed], measures))
+        over = [variation for _, variation in changed]
         bounds = [given.bounds, *(v.interval for v in over if v.interval)]
         ends = min(low for low, _ in bounds), max(high for _, high in bounds)
         beyond = f"beyond the range of the measurements, and not included: {', '.join(left_out)}"
         none = f"not included: {'; '.join(unheld)}"
         remarks = [text for text, of in ((beyond, left_out), (none, unheld)) if of]
         return JointRange(ends, tuple(over), "foundation", self.assumed), "; ".join(remarks)
+
+    def _variation(
+        self, name: str, change: JointChange, loads: PinLoads, own: JointFoundation
+    ) -> Variation | None:
+        """The maximum with the joint changed; None beyond what a beam knows.
+
+        own: of the joint as given. Raises: SolveError.
+        """
+        if name not in self._in_lugs:
+            self._in_lugs[name] = _changed(self.own, change)
+        if (stress := self._in_lugs[name]) is None:
+            return None
+        varied = stress.model.solve(loads)
+        of_joint = stress_bounds(stress, varied)
+        if of_joint.bounds is None:
+            return None
+        return Variation(
+            change.what,
+            change.value,
+            of_joint.maximum,
+            change.length,
+            of_joint.bounds,
+            across=growth_across(varied, own),
+            lugs=growth_of_lugs(varied, own),
+        )
 
 
 def prescribed_ranges(
@@ -129,15 +138,16 @@ def _prescribed(over: FoundationRange, loads: PinLoads) -> JointResult:
     return JointResult("prescribed", range=joint_range, remark=remark)
 
 
-def _varied(given: FoundationStress) -> Iterator[Varied]:
-    model = given.model
-    for change in joint_variations(model.whole, model.lugs):
-        if pressed_in(change):
-            yield Varied(change.what, change.value, change.length, None)
-            continue
-        if change.length is not None:
-            other = model.with_clearances(list(change.lugs))
-        else:
-            both = zip(change.lugs, change.softness, strict=True)
-            other = FoundationModel(model.given, model.material, [with_stiffness(*x) for x in both])
-        yield Varied(change.what, change.value, change.length, given.in_lugs(other))
+def _changed(given: FoundationStress, change: JointChange) -> FoundationStress | None:
+    """The stress in lugs that are changed; None where the pin is pressed into one, whose stress a
+    beam does not know.
+    """
+    if pressed_in(change):
+        return None
+    if change.length is not None:
+        other = given.model.with_clearances(list(change.lugs))
+    else:
+        both = zip(change.lugs, change.softness, strict=True)
+        lugs = [with_stiffness(*x) for x in both]
+        other = FoundationModel(given.model.given, given.model.material, lugs)
+    return given.in_lugs(other)

@@ -2,8 +2,8 @@
 
 By default a clearance goes from none to twice the given one (to a free running fit where none is
 given), the lugs are half and twice as stiff, and the tilt is free and guided. A lug may have ranges
-of its own. Both ends of each range are tried, for all lugs at once. What a temperature adds to a
-clearance (Lug.growth) is not varied.
+of its own. Both ends of each range are tried, for all lugs at once, then the ends of all properties
+that go farthest, together. What a temperature adds to a clearance (Lug.growth) is not varied.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from fea.support.lugs.lug import Lug
+from fea.support.records import TOGETHER
 from geometry import Pin
 
 DEFAULT_FIT_CLEARANCE = 0.002  # of the diameter: a free running fit, where no clearance is given
@@ -23,7 +24,7 @@ RANGE_ENDS = (0, 1)
 
 @dataclass(frozen=True)
 class JointChange:
-    """A joint with one property changed.
+    """A joint with one property changed, or with several together.
 
     what, value: the property, and its value in words.
     lugs: with the change.
@@ -57,6 +58,49 @@ def joint_variations(pin: Pin, lugs: Sequence[Lug]) -> Iterator[JointChange]:
         changes.append(JointChange("tilt", _in_words(words), tilted, same))
     unchanged = (tuple(lugs), same)
     return (change for change in changes if (change.lugs, change.softness) != unchanged)
+
+
+def worst_together(
+    lugs: Sequence[Lug],
+    changes: Sequence[JointChange],
+    measures: Sequence[Sequence[float]],
+) -> list[JointChange]:
+    """The changes of several properties at once that raise one of some measures most, or lower the
+    first of them.
+
+    What each raises alone is taken to raise it together, too.
+    measures: of each change, over those of the joint as given.
+    """
+    out: dict[str, JointChange] = {}
+    for k, way in _ways(len(measures[0])) if measures else ():
+        farthest: dict[str, tuple[float, JointChange]] = {}
+        for change, of_change in zip(changes, measures, strict=True):
+            beyond = way * (of_change[k] - 1.0)
+            if beyond > farthest.get(change.what, (0.0, change))[0]:
+                farthest[change.what] = beyond, change
+        if len(farthest) > 1:
+            both = _combined(lugs, [change for _, change in farthest.values()])
+            out[both.value] = both
+    return list(out.values())
+
+
+def _ways(measures: int) -> list[tuple[int, float]]:
+    """The measures that are raised, 1, or lowered, -1."""
+    return [*((k, 1.0) for k in range(measures)), (0, -1.0)]
+
+
+def _combined(lugs: Sequence[Lug], changes: Sequence[JointChange]) -> JointChange:
+    """Several changes at once, of one property each."""
+    whole, softness = list(lugs), [1.0] * len(lugs)
+    for change in changes:
+        for k, (given, lug) in enumerate(zip(lugs, change.lugs, strict=True)):
+            if lug.clearance != given.clearance:
+                whole[k] = replace(whole[k], clearance=lug.clearance)
+            if lug.tilt != given.tilt:
+                whole[k] = replace(whole[k], tilt=lug.tilt)
+            softness[k] *= change.softness[k]
+    words = ", ".join(f"{change.what} {change.value}" for change in changes)
+    return JointChange(TOGETHER, words, tuple(whole), tuple(softness))
 
 
 def pressed_in(change: JointChange) -> bool:

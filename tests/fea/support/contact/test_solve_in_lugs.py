@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import replace
 from functools import partial
@@ -14,7 +15,8 @@ from fea.core.pin_loads import Floats, PinLoads
 from fea.core.requirement import Requirement
 from fea.solve.solve import solve_in_lugs
 from fea.support.contact.solve_joint import ContactModel
-from fea.support.lugs.lug import Lug
+from fea.support.lugs.lug import Lug, LugRange
+from fea.support.records import TOGETHER
 from fea.support.support import PinProblem, Solution
 from geometry import Pin, Segment
 from pinbase.memo import Memo
@@ -63,7 +65,7 @@ def test_a_clevis_beside_contact_in_three_dimensions(sharp: Solution) -> None:
     assert peak.location[2] == pytest.approx(0.023, abs=0.0005)
     assert peak.singular_at == ()
     low, high = joint.range.max_von_mises
-    assert low < 306.3e6 < high < 1.1 * low * 1.1
+    assert low < 306.3e6 < high < 1.25 * low
     nominal = FORCE / 2.0 * (0.005 + 0.001 + 0.005)
     middle = dict(joint.bending_moments)[0.023]
     assert middle / nominal == pytest.approx(0.8418, abs=0.03)
@@ -270,6 +272,28 @@ def test_the_range_says_what_it_leaves_out() -> None:
     assert found.joint.range is not None
     assert ("tilt", "free") not in {(v.what, v.value) for v in found.joint.range.variations}
     assert found.joint.remark.startswith("not included: tilt free (the links leave a couple")
+
+
+def test_the_range_holds_joints_with_every_property_at_an_end() -> None:
+    """Each solved as a joint of its own. What one property alone adds is 3 % less here: pins
+    were safe that such a joint overloads.
+    """
+    loose = tuple(replace(lug, range=LugRange(clearance=(0.0, 1e-4))) for lug in LUGS)
+    (found,) = solve_in_lugs(problem(PIN, STEEL, loose, (STEADY,)), QUICK)
+    assert found.joint is not None
+    assert found.joint.range is not None
+    alone = replace(QUICK, varied=False)
+    values = []
+    for clearance, stiffness, tilt in itertools.product((0.0, 1e-4), (0.5, 2.0), (0.0, math.inf)):
+        metal = replace(STEEL, youngs_modulus=stiffness * STEEL.youngs_modulus)
+        lugs = tuple(Lug(x.connection, EYE, metal, clearance, tilt=tilt) for x in LUGS)
+        (one,) = solve_in_lugs(problem(PIN, STEEL, lugs, (STEADY,)), alone)
+        values.append(one.peak.max_von_mises or 0.0)
+    low, high = found.joint.range.max_von_mises
+    assert min(values) == pytest.approx(low, rel=0.02)
+    assert max(values) == pytest.approx(high, rel=0.02)
+    one_by_one = [v.max_von_mises for v in found.joint.range.variations if v.what != TOGETHER]
+    assert max(one_by_one) < 0.98 * high
 
 
 def test_larger_cells_decide_and_have_the_range_of_the_usual_ones() -> None:

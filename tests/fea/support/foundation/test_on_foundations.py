@@ -299,6 +299,9 @@ def test_contact_in_three_dimensions_is_within_the_range(
     assert low < largest * 1e6 < high
 
 
+SOFT_AND_FREE = "stiffness of the lugs times 0.5, tilt free"
+
+
 def test_a_range_by_what_is_changed() -> None:
     pin, lugs = usual()
     found, remark = FoundationRange(pin, STEEL, lugs, 0.1, assumed=True).at(PULL)
@@ -308,7 +311,10 @@ def test_a_range_by_what_is_changed() -> None:
     assert set(by) == {
         ("clearance", "0.002 of the diameter"), ("stiffness of the lugs", "times 0.5"),
         ("stiffness of the lugs", "times 2"), ("tilt", "free"), ("tilt", "guided"),
+        ("together", SOFT_AND_FREE), ("together", "stiffness of the lugs times 2, tilt guided"),
     }  # fmt: skip
+    alone = max(v.max_von_mises for v in found.variations if v.what != "together")
+    assert by["together", SOFT_AND_FREE].max_von_mises > 1.02 * alone
     assert by["clearance", "0.002 of the diameter"].length == pytest.approx(4e-5)
     soft, stiff = (by["stiffness of the lugs", f"times {k}"].max_von_mises for k in ("0.5", "2"))
     assert stiff < soft
@@ -322,7 +328,7 @@ def test_clearance_that_is_wide_for_a_small_load_is_left_out() -> None:
     over = FoundationRange(pin, STEEL, lugs, 0.1, assumed=True)
     found, remark = over.at(replace(PULL, forces=1e-3 * PULL.forces))
     assert found is not None
-    assert {v.what for v in found.variations} == {"stiffness of the lugs", "tilt"}
+    assert {v.what for v in found.variations} == {"stiffness of the lugs", "tilt", "together"}
     assert "clearance" in remark
 
 

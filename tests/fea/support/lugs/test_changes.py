@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from fea.core.material import Material
-from fea.support.lugs.changes import JointChange, joint_variations
+from fea.support.lugs.changes import JointChange, joint_variations, worst_together
 from fea.support.lugs.lug import Lug, LugRange
 from geometry import ArgumentError, Pin, Segment
 from tests.support.each import each
@@ -71,3 +71,22 @@ def test_impossible_ranges(given: dict[str, tuple[float, float]], code: str) -> 
     with pytest.raises(ArgumentError) as error:
         LugRange(**given)
     assert error.value.code == code
+
+
+def test_the_ends_that_go_farthest_are_changed_together() -> None:
+    """For two measures, and for the least of the first; what goes nowhere stays as it is."""
+    lugs = (TIGHT, LOOSE)
+    changes = list(by_name(lugs).values())
+    first = [0.99, 1.02, 1.10, 0.9, 1.0, 0.95]  # clearance, stiffness, tilt
+    second = [1.0, 1.0, 0.9, 1.0, 1.3, 1.0]
+    most, least = worst_together(lugs, changes, list(zip(first, second, strict=True)))
+    assert most.what == least.what == "together"
+    assert most.value == f"clearance {changes[1].value}, stiffness of the lugs times 0.5"
+    assert [(x.clearance, x.tilt) for x in most.lugs] == [
+        (changes[1].lugs[0].clearance, math.inf), (changes[1].lugs[1].clearance, 1e5),
+    ]  # fmt: skip
+    assert most.softness == (2.0, 2.0)
+    assert least.value == "clearance none, stiffness of the lugs times 2, tilt guided"
+    assert [x.tilt for x in least.lugs] == [math.inf, math.inf]
+    assert worst_together(lugs, changes[2:4], [(1.1,), (0.9,)]) == []  # one property alone
+    assert worst_together(lugs, (), ()) == []

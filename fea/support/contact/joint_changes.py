@@ -1,0 +1,275 @@
+"""Contact in joints that are changed: stress, and forces across the pin, relative to the joint as
+given.
+
+Contact is solved again with the flexibilities at hand, and all pressures act on one mesh, the
+first: its error is in all maxima alike, so that their ratios are compared.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fea.core.linear_solver import SolveError
+from fea.core.pin_loads import Floats, PinLoads
+from fea.core.requirement import Requirement
+from fea.core.zone import Zone
+from fea.harmonic.beneath import maxima_beneath
+from fea.harmonic.field import HarmonicField
+from fea.harmonic.section_solution import SectionProblem, harmonic_solution
+from fea.section.section_stress import SectionField
+from fea.singular.singularities import singularities_of
+from fea.support.contact.bending import LoadedJoint, growth_across, growth_of_lugs
+from fea.support.contact.cell_error import (
+    MIN_HARMONICS_PER_ARC,
+    AtPlaces,
+    by_cells,
+)
+from fea.support.contact.coarser_cells import on_coarser_cells
+from fea.support.contact.contact import ContactProblem
+from fea.support.contact.contact_state import ContactState
+from fea.support.contact.joint_contact import JointContact
+from fea.support.contact.pressure_loads import (
+    PressureLoads,
+    PressureModes,
+    resultants,
+    stacked,
+)
+from fea.support.contact.solve_joint import ContactModel
+from fea.support.lugs.changes import JointChange
+from fea.support.lugs.lug import Lug
+from fea.support.records import Variation
+
+# Of the largest amplitude: what a pattern must add to the pressures of a varied joint. Chosen by
+# judgement, coarser than MODE_TOLERANCE since only ratios of maxima follow from it.
+VARIATION_MODE_TOLERANCE = 1e-2
+
+
+@dataclass(frozen=True)
+class VariedPressures:
+    """The pressures of a varied joint at an instant.
+
+    lugs: with their clearance and tilt. waves: harmonics, (N + 1, 1, R, 2) Pa.
+    """
+
+    lugs: tuple[Lug, ...]
+    waves: Floats
+
+
+@dataclass(frozen=True)
+class PressedJoint:
+    """The contact at an instant with something changed: the harmonics of its pressures, and the
+    cells.
+
+    per_arc: harmonics that the cells follow, times the half angle of contact in rad.
+    lugs: of a varied joint.
+    """
+
+    waves: Floats
+    states: list[ContactState]
+    per_arc: float = math.inf
+    lugs: tuple[Lug, ...] = ()
+
+    @property
+    def with_rougher(self) -> tuple[PressedJoint, ...]:
+        """This joint, and on narrow arcs the one from which the error of the cells follows."""
+        narrow = self.per_arc < MIN_HARMONICS_PER_ARC
+        return (self, in_half_the_harmonics(self)) if narrow else (self,)
+
+
+@dataclass(frozen=True)
+class ChangedContact:
+    """A contact under some changes of the joint.
+
+    changes: those that could be solved; over: their ratios, and pressures.
+    missing: the others, and why.
+    """
+
+    changes: tuple[JointChange, ...] = ()
+    over: tuple[Variation, ...] = ()
+    pressures: tuple[VariedPressures, ...] = ()
+    missing: tuple[str, ...] = ()
+
+
+# The joint of a contact under each change that could be solved, and the others with the reasons.
+JointsUnderChanges = tuple[list[tuple[JointChange, PressedJoint]], list[str]]
+
+
+@dataclass(frozen=True)
+class JointChanges:
+    """Contacts, each at one instant, whose joint is changed.
+
+    likes: the joints as given on the same cells, with their stress.
+    own_cells: whether to use the model's own cells, instead of cells twice as large.
+    """
+
+    model: ContactModel
+    at: Sequence[JointContact]
+    requirement: Requirement
+    likes: Sequence[tuple[AtPlaces, PressedJoint]]
+    own_cells: bool
+
+    def by(
+        self, changes: Sequence[Sequence[JointChange]], known: PressureModes
+    ) -> tuple[list[ChangedContact], PressureModes]:
+        """Each contact under changes of its own, and the patterns of the pressures, with those that
+        are known.
+        """
+        model = self.model
+        every = self._joints(changes)
+        joints = [[joint for _, joint in solved] for solved, _ in every]
+        parts = [(x.waves, VARIATION_MODE_TOLERANCE) for x in itertools.chain(*joints)]
+        patterns = model.patterns(parts, known) if parts else known
+        loads = [
+            [
+                loads_of(model, patterns, one, contact)
+                for one in itertools.chain(*(x.with_rougher for x in of_contact))
+            ]
+            for contact, of_contact in zip(self.at, joints, strict=True)
+        ]
+        stress = iter(at_places(model, self.requirement, loads) if any(loads) else [])
+        out = []
+        for contact, like, (solved, missing) in zip(self.at, self.likes, every, strict=True):
+            over = [self._variation(contact, like, *one, stress) for one in solved]
+            pressures = [VariedPressures(x.lugs or model.lugs, x.waves) for _, x in solved]
+            names = tuple(change for change, _ in solved)
+            out.append(ChangedContact(names, tuple(over), tuple(pressures), tuple(missing)))
+        return out, patterns
+
+    def _variation(
+        self,
+        contact: JointContact,
+        like: tuple[AtPlaces, PressedJoint],
+        change: JointChange,
+        joint: PressedJoint,
+        stress: Iterator[AtPlaces],
+    ) -> Variation:
+        """The ratios of a contact under a change to that as given.
+
+        stress: of this joint and those with rougher cells comes next.
+        """
+        (given_stress, given), model = like, self.model
+        here = [next(stress) for _ in joint.with_rougher]
+        own, other = (loaded(model, x, contact) for x in (given, joint))
+        name = Variation(change.what, change.value, 1.0, change.length)
+        return replace(
+            _ratio(name, here, given_stress, model.cells.rings, joint.per_arc),
+            across=growth_across(other, own),
+            lugs=growth_of_lugs(other, own),
+        )
+
+    def _joints(self, changes: Sequence[Sequence[JointChange]]) -> list[JointsUnderChanges]:
+        """The joint of each contact under its changes, and those that could not be solved.
+
+        Lugs that are free to tilt may leave a couple on the pin, and contact may be lost in a large
+        clearance.
+        """
+        out: list[JointsUnderChanges] = [([], []) for _ in self.at]
+        wanted: dict[str, list[tuple[int, JointChange]]] = {}
+        for k, of_contact in enumerate(changes):
+            for change in of_contact:  # each is one joint for all contacts
+                wanted.setdefault(f"{change.what} {change.value}", []).append((k, change))
+        highest = self.model.cells.highest * (1.0 if self.own_cells else 0.5)
+        for name, of_change in wanted.items():
+            _, change = of_change[0]
+            other = self.model.varied(change.lugs, change.softness)
+            cells = _own_cells(other) if self.own_cells else on_coarser_cells(other)
+            for k, _ in of_change:
+                contact, (solved, missing) = self.at[k], out[k]
+                try:
+                    joint = on_cells(other, contact.loads.links, *cells)
+                    per_arc = highest * contact.half_angle(other.bands, other.tail)
+                    solved.append((change, replace(joint, per_arc=per_arc, lugs=other.lugs)))
+                except SolveError as error:
+                    missing.append(f"{name} ({error})")
+        return out
+
+
+def loaded(model: ContactModel, joint: PressedJoint, contact: JointContact) -> LoadedJoint:
+    """A varied joint with the resultants of its pressures on the rings."""
+    loads = resultants(model.pin, model.rings, joint.waves, contact.loads.links)
+    return LoadedJoint(model.pin, model.lugs, model.bands, loads, contact.mass)
+
+
+def _ratio(
+    change: Variation,
+    stress: Sequence[AtPlaces],
+    like: AtPlaces,
+    rings: int,
+    per_arc: float,
+) -> Variation:
+    """The variation with its stresses relative to those of the joint as given, and with the error
+    of the cells on narrow arcs.
+
+    stress: with the variation; on narrow arcs also with half the harmonics.
+    like: of the joint as given, on the same cells.
+    rings, per_arc: as of `_by_cells`.
+    """
+    varied, *half = stress
+    row, deep, interval = varied.row, varied.beneath, None
+    if half:
+        error = by_cells(varied, half[0], rings, per_arc)
+        above, below = 1.0 + error.surface, 1.0 + error.section
+        low = max(varied.surface / above, varied.section / below)
+        high = max(varied.surface * above, varied.section * below)
+        interval = low / (like.row or 1.0), high / (like.row or 1.0)
+        deep *= 1.0 + error.beneath
+    return replace(
+        change,
+        max_von_mises=row / (like.row or 1.0),
+        interval=interval,
+        beneath=deep / (like.beneath or 1.0),
+    )
+
+
+def loads_of(
+    model: ContactModel, patterns: PressureModes, one: PressedJoint, contact: JointContact
+) -> PressureLoads:
+    return patterns.loads(one.waves, contact.loads.links, model.arcs(one.states))
+
+
+def at_places(
+    model: ContactModel,
+    requirement: Requirement,
+    every: Sequence[Sequence[PressureLoads]],
+    unread: tuple[Zone, ...] = (),
+) -> list[AtPlaces]:
+    """The stress at the places on the first mesh, of loads of one instant each.
+
+    unread: zones that are not read, about which the mesh is no finer.
+    """
+    whole = stacked(list(itertools.chain(*every)))
+    singular = singularities_of(model.pin, model.material, (), (whole,), requirement.distance)
+    problem = SectionProblem(model.pin, model.material, (), (whole,), singular, model.first)
+    section = harmonic_solution(problem, 0, 1.0)
+    in_sections = whole.in_sections
+    zones = tuple(dict.fromkeys((*singular, *unread)))
+    places = (
+        HarmonicField(section, zones).maxima(whole),
+        SectionField(model.pin, model.material, (), (in_sections,)).maxima(in_sections),
+        maxima_beneath(section.fields, whole, zones),
+    )
+    return [AtPlaces(*stress) for stress in zip(*(x.tolist() for x in places), strict=True)]
+
+
+def on_cells(
+    model: ContactModel, links: PinLoads, problem: ContactProblem, belongs: Floats
+) -> PressedJoint:
+    states = model.pressed(links, problem)
+    states = [replace(x, pressure=belongs @ x.pressure) for x in states]
+    return PressedJoint(model.waves(states), states)
+
+
+def in_half_the_harmonics(joint: PressedJoint) -> PressedJoint:
+    """The joint with the lower half of its harmonics alone, as many as half the sectors resolve."""
+    waves = joint.waves.copy()
+    waves[(len(waves) + 1) // 2 :] = 0.0
+    return replace(joint, waves=waves)
+
+
+def _own_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
+    return model.contact, np.eye(len(model.rings))
