@@ -8,6 +8,7 @@ that go farthest, together. What a temperature adds to a clearance (Lug.growth) 
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -20,6 +21,9 @@ DEFAULT_FIT_CLEARANCE = 0.002  # of the diameter: a free running fit, where no c
 DEFAULT_STIFFNESS_FACTOR = 2.0
 LOW_END_TEXT, HIGH_END_TEXT = "low end of its range", "high end of its range"
 RANGE_ENDS = (0, 1)
+# Of the stress: what one property alone does, below which it does not tell what it does together
+# with others. Chosen by judgement.
+LITTLE_EFFECT = 0.02
 
 
 @dataclass(frozen=True)
@@ -68,20 +72,40 @@ def worst_together(
     """The changes of several properties at once that raise one of some measures most, or lower the
     first of them.
 
-    What each raises alone is taken to raise it together, too.
+    What each raises alone is taken to raise it together, too; of one that alone does little beside
+    others, both ends are tried: in a clearance stiff lugs raise the stress that without it they
+    leave alone.
     measures: of each change, over those of the joint as given.
     """
     out: dict[str, JointChange] = {}
     for k, way in _ways(len(measures[0])) if measures else ():
-        farthest: dict[str, tuple[float, JointChange]] = {}
-        for change, of_change in zip(changes, measures, strict=True):
-            beyond = way * (of_change[k] - 1.0)
-            if beyond > farthest.get(change.what, (0.0, change))[0]:
-                farthest[change.what] = beyond, change
-        if len(farthest) > 1:
-            both = _combined(lugs, [change for _, change in farthest.values()])
-            out[both.value] = both
+        beyond = [way * (of_change[k] - 1.0) for of_change in measures]
+        by_property: dict[str, list[tuple[float, JointChange]]] = {}
+        for change, amount in zip(changes, beyond, strict=True):
+            by_property.setdefault(change.what, []).append((amount, change))
+        matters = max(map(abs, beyond)) >= LITTLE_EFFECT and way > 0.0
+        each = [_to_combine(ends, matters) for ends in by_property.values()]
+        for several in itertools.product(*each):
+            together = [change for change in several if change is not None]
+            if len(together) > 1:
+                both = _combined(lugs, together)
+                out[both.value] = both
     return list(out.values())
+
+
+def _to_combine(
+    ends: Sequence[tuple[float, JointChange]], matters: bool
+) -> list[JointChange | None]:
+    """The changes of one property that are combined with others; None: it stays as given.
+
+    ends: with how much each raises the measure. matters: whether another property does so much that
+    a little tells nothing.
+    """
+    most, farthest = max(ends, key=lambda x: x[0])
+    if matters and all(abs(amount) < LITTLE_EFFECT for amount, _ in ends):
+        both = [change for _, change in ends]
+        return [*both, None][:2]
+    return [farthest if most > 0.0 else None]
 
 
 def _ways(measures: int) -> list[tuple[int, float]]:

@@ -74,11 +74,11 @@ def test_impossible_ranges(given: dict[str, tuple[float, float]], code: str) -> 
 
 
 def test_the_ends_that_go_farthest_are_changed_together() -> None:
-    """For two measures, and for the least of the first; what goes nowhere stays as it is."""
+    """For two measures, and for the least of the first."""
     lugs = (TIGHT, LOOSE)
     changes = list(by_name(lugs).values())
-    first = [0.99, 1.02, 1.10, 0.9, 1.0, 0.95]  # clearance, stiffness, tilt
-    second = [1.0, 1.0, 0.9, 1.0, 1.3, 1.0]
+    first = [0.99, 1.03, 1.10, 0.9, 0.96, 0.95]  # clearance, stiffness, tilt
+    second = [1.0, 1.0, 0.9, 0.8, 0.9, 0.8]  # raised by nothing
     most, least = worst_together(lugs, changes, list(zip(first, second, strict=True)))
     assert most.what == least.what == "together"
     assert most.value == f"clearance {changes[1].value}, stiffness of the lugs times 0.5"
@@ -90,3 +90,16 @@ def test_the_ends_that_go_farthest_are_changed_together() -> None:
     assert [x.tilt for x in least.lugs] == [math.inf, math.inf]
     assert worst_together(lugs, changes[2:4], [(1.1,), (0.9,)]) == []  # one property alone
     assert worst_together(lugs, (), ()) == []
+
+
+def test_of_what_does_little_alone_both_ends_are_tried() -> None:
+    """Stiff lugs raise the stress of a loose pin by a third, of a tight one by nothing: the range
+    of pin C of the landing gear ended at half of what both together give.
+    """
+    changes = list(by_name((TIGHT,)).values())  # clearance, soft, stiff, free
+    found = worst_together((TIGHT,), changes, [(4.8,), (1.001,), (0.999,), (1.005,)])
+    loose = "clearance 0.002 of the diameter"
+    soft, stiff = (f"{loose}, stiffness of the lugs times {x}" for x in ("0.5", "2"))
+    assert [x.value for x in found] == [f"{soft}, tilt free", soft, f"{stiff}, tilt free", stiff]
+    # Where nothing does much there is nothing to look for.
+    assert len(worst_together((TIGHT,), changes, [(1.01,), (1.001,), (0.999,), (1.005,)])) == 1
