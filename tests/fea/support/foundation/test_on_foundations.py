@@ -308,11 +308,11 @@ def test_a_range_by_what_is_changed() -> None:
     assert found is not None
     assert (found.model, found.assumed, remark) == ("foundation", True, "")
     by = {(v.what, v.value): v for v in found.variations}
-    assert set(by) == {
+    assert {x for x in by if x[0] != "together"} == {
         ("clearance", "0.002 of the diameter"), ("stiffness of the lugs", "times 0.5"),
         ("stiffness of the lugs", "times 2"), ("tilt", "free"), ("tilt", "guided"),
-        ("together", SOFT_AND_FREE), ("together", "stiffness of the lugs times 2, tilt guided"),
     }  # fmt: skip
+    assert ("together", "stiffness of the lugs times 2, tilt guided") in by
     alone = max(v.max_von_mises for v in found.variations if v.what != "together")
     assert by["together", SOFT_AND_FREE].max_von_mises > 1.02 * alone
     assert by["clearance", "0.002 of the diameter"].length == pytest.approx(4e-5)
