@@ -27,8 +27,13 @@ from loads.linkage.linkage import Linkage, LinkageError
 from loads.linkage.parts import GROUND, Slider
 from loads.motion.complex_points import number
 from loads.motion.joint_forces import connection_members, slider_members
-from loads.space.stiffness import LinkStiffness, cantilever, complete
-from loads.space.stiffness import variations as other_links
+from loads.space.stiffness import (
+    LinkStiffness,
+    cantilever,
+    complete,
+    variations,
+    worst_groups,
+)
 from pinbase.arrays import Complex, Floats
 
 # Of the largest flexibility: below it nothing in a loop yields, and statics cannot be completed.
@@ -276,15 +281,30 @@ def stiffness_of(linkage: Linkage, links: Links) -> dict[str, LinkStiffness]:
     return complete([b.name for b in linkage.bodies], links.stated, linkage.length_scale)
 
 
-def variations(linkage: Linkage, links: Links, ratio: float) -> dict[str, Links]:
-    """Other stiffnesses that are as possible, by what is different.
+def over_stiffness(balance: OutOfPlane, links: Links, ratio: float) -> dict[str, Reactions]:
+    """The reactions for other stiffnesses that are as possible, by what is different.
 
     Each link of which nothing is stated is `ratio` times as stiff and as flexible; then all of them
-    in torsion.
+    in torsion; then those groups that raise the force, or the moment across the pin, of each
+    connection most.
     """
-    known = stiffness_of(linkage, links)
+    known = stiffness_of(balance.linkage, links)
     loose = [name for name in known if name not in links.stated]
-    return {text: Links(each) for text, each in other_links(known, loose, ratio).items()}
+    out = {
+        text: balance.reactions(Links(each))
+        for text, each in variations(known, loose, ratio).items()
+    }
+    loads = {text: _sizes(reactions) for text, reactions in out.items()}
+    for text, each in worst_groups(known, loose, ratio, loads).items():
+        out[text] = balance.reactions(Links(each))
+    return out
+
+
+def _sizes(reactions: Reactions) -> Floats:
+    """The largest force and moment across the pin of each connection, (2 C,)."""
+    across = reactions.moments[..., :2]
+    sizes = (np.linalg.norm(x, axis=-1).max(axis=0) for x in (reactions.forces, across))
+    return np.concatenate(list(sizes))
 
 
 def _raised(force: Complex, z: Floats | float) -> Floats:

@@ -9,7 +9,7 @@ import numpy as np
 
 from geometry import GeometryError, PinLike
 from loads import Dynamics, Linkage
-from loads.space.out_of_plane import Links, Offsets, OutOfPlane, SideLoad, variations
+from loads.space.out_of_plane import Links, Offsets, OutOfPlane, SideLoad, over_stiffness
 from loads.space.sharing import STIFFNESS_RATIO
 from loads.space.straight import straight
 from pinbase.arrays import Floats
@@ -55,12 +55,8 @@ class Sideways:
         balance = OutOfPlane(dynamics, self.loads, self.offsets)
         if not balance.redundancy:
             return {}
-        return {
-            text: replace(dynamics, reactions=balance.reactions(links))
-            for text, links in variations(
-                dynamics.motion.linkage, self.links, STIFFNESS_RATIO
-            ).items()
-        }
+        every = over_stiffness(balance, self.links, STIFFNESS_RATIO)
+        return {text: replace(dynamics, reactions=reactions) for text, reactions in every.items()}
 
 
 def sideways(

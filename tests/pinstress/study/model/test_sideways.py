@@ -7,6 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from loads import Reactions
+from loads.space.out_of_plane import Links, OutOfPlane, stiffness_of
+from pinbase.arrays import Floats
 from pinstress import load_study
 from pinstress.study.model.cases import CaseLoads, case_loads
 from pinstress.study.model.mechanism.linkage import linkage
@@ -24,6 +27,7 @@ body = "tyre"
 at = [-39.294675, -60]
 force = [0, 30000, 10000]
 """
+BODIES = ("AE", "EF", "BC", "EBJ", "FDG", "CDG", "CYL", "PIS", "tyre", "further")
 PLANAR = SIDE.replace(", 10000]", "]")
 GROUND = {"A": -1, "D1": -1, "D2": -1, "H": -1}  # connections on pins that are fixed in the ground
 
@@ -76,11 +80,39 @@ def test_a_floating_pin_is_in_equilibrium_at_its_bands(tmp_path: Path) -> None:
 
 
 def test_stated_stiffness_leaves_no_range(tmp_path: Path) -> None:
-    """Each body twice, and all in torsion; with all stated nothing is open."""
-    bodies = ("AE", "EF", "BC", "EBJ", "FDG", "CDG", "CYL", "PIS", "tyre", "further")
-    assert len(_loads(tmp_path, SIDE).shared) == 2 * (len(bodies) + 1)
-    stated = "".join(f"[mechanism.link_stiffness.{b}]\ndiameter = 2\n" for b in bodies)
+    """Each body twice, and all in torsion, then groups; with all stated nothing is open."""
+    alone = [x for x, _ in _loads(tmp_path, SIDE).shared if "than the rest" not in x]
+    assert len(alone) == 2 * (len(BODIES) + 1)
+    stated = "".join(f"[mechanism.link_stiffness.{b}]\ndiameter = 2\n" for b in BODIES)
     assert not _loads(tmp_path, SIDE, stated).shared
+
+
+def test_groups_of_links_raise_loads_more_than_one_link_alone(tmp_path: Path) -> None:
+    """Beside links that are at random ten times as stiff as the others: the force on D1 and the
+    moment on G1 were at most half of what such links may cause, and pins safe on them.
+    """
+    solved = _loads(tmp_path, SIDE)
+    assert solved.dynamics is not None
+    assert solved.side is not None
+    balance = OutOfPlane(solved.dynamics, solved.side.loads, solved.side.offsets)
+    known = stiffness_of(solved.dynamics.motion.linkage, solved.side.links)
+    draw, drawn = np.random.default_rng(7), []
+    for _ in range(150):
+        ends = draw.choice([10.0**-0.5, 10.0**0.5], len(known))
+        other = {x: known[x].times(times) for x, times in zip(known, ends, strict=True)}
+        drawn.append(_sizes(balance.reactions(Links(other))))
+    largest: Floats = np.max(drawn, axis=0)
+    every = {text: _sizes(x.reactions) for text, x in solved.shared}
+    most = np.max(list(every.values()), axis=0)
+    matter = largest > 1e-2 * largest.max(axis=1, keepdims=True)
+    assert np.all(most[matter] > 0.85 * largest[matter])
+    alone = np.max([x for text, x in every.items() if "than the rest" not in text], axis=0)
+    assert np.any(alone[matter] < 0.6 * largest[matter])
+
+
+def _sizes(r: Reactions) -> Floats:
+    """Forces, then moments across the pin, of every connection, (2, C)."""
+    return np.asarray(np.linalg.norm([r.forces[0], r.moments[0]], axis=-1))
 
 
 def test_stiffer_links_take_more(tmp_path: Path) -> None:
