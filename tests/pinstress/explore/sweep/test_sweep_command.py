@@ -9,10 +9,15 @@ import sys
 import time
 from pathlib import Path
 
+import pyarrow as pa
 import pytest
 from pyarrow import parquet
 
 from pinbase.processes.folder_lock import lock
+from pinstress import study_from
+from pinstress.explore.sweep.parameters import parameters_of
+from pinstress.explore.sweep.parts import BatchFolder, identity
+from pinstress.explore.sweep.table import table_of
 from tests.support.each import each, sampled
 from tests.support.programs.command_line import QUICK, pinstress, run_here
 from tests.support.programs.process_group import started
@@ -192,6 +197,20 @@ def test_a_sequence_is_continued_to_more_designs(
     refused = run_here(*arguments[:-1], "cube", "--resume", cwd=tmp_path)
     assert refused.returncode == 2
     assert "a latin-hypercube sample of another count has other designs" in refused.stderr
+
+
+def test_a_damaged_batch_is_solved_anew_in_a_longer_sweep(tmp_path: Path) -> None:
+    """As in the same sweep; there it was a traceback."""
+    shorter, longer = (
+        study_from(varied(LOADS, f'sample = "sobol"\ncount = {count}')) for count in (4, 8)
+    )
+    schema = table_of(longer, parameters_of(longer), []).schema
+    before, after = (BatchFolder(tmp_path, identity(x)) for x in (shorter, longer))
+    before.begin()
+    (before.folder / "00000001.parquet").write_bytes(b"PAR1")
+    before.write(pa.Table.from_pylist([{"design": 3}], schema))
+    after.continue_with(schema)
+    assert [table["design"].to_pylist() for table in after.read(schema)] == [[3]]
 
 
 def test_run_ignores_vary_and_check_reads_it(tmp_path: Path) -> None:
