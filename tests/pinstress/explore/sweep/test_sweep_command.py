@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -211,6 +212,20 @@ def test_a_damaged_batch_is_solved_anew_in_a_longer_sweep(tmp_path: Path) -> Non
     before.write(pa.Table.from_pylist([{"design": 3}], schema))
     after.continue_with(schema)
     assert [table["design"].to_pylist() for table in after.read(schema)] == [[3]]
+
+
+@pytest.mark.linux
+def test_a_full_disk_at_the_end_loses_no_design(tmp_path: Path) -> None:
+    """The page is the largest file; how to go on was not said."""
+    _study(tmp_path, LOADS, 2)
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, before[1]))
+    try:
+        full = run_here("sweep", "study.toml", "--out", "out", "--jobs", "1", cwd=tmp_path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert full.returncode == 2
+    assert "2 batches are kept: run the same command with --resume to continue" in full.stderr
 
 
 def test_run_ignores_vary_and_check_reads_it(tmp_path: Path) -> None:
