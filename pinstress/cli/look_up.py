@@ -15,7 +15,7 @@ from pinbase.errors import ArgumentError
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.materials import StoredMaterial, library, read_materials
 from pinstress.study.schema.iso286 import fit_of
-from pinstress.study.schema.shown import as_text, in_toml, near
+from pinstress.study.schema.shown import as_text, near
 from pinstress.study.schema.units import UNIT_SYSTEMS, split, to_si
 
 COLUMNS = {"youngs_modulus": "E", "yield_strength": "yield", "ultimate_strength": "ultimate"}
@@ -106,10 +106,19 @@ def _list(stored: list[StoredMaterial]) -> list[str]:
 
 def _values(stored: StoredMaterial) -> list[str]:
     """Return a material as a study would write it, each value with its source."""
-    lines = [f'[material."{stored.name}"]  # {stored.file}']
+    import tomlkit
+
+    lines = [f"[{tomlkit.key(['material', stored.name]).as_string()}]  # {stored.file}"]
+    document = _line(stored.source)
     for key, value in stored.values.items():
-        own = stored.table[key]
+        own, written = stored.table[key], tomlkit.inline_table()
         source = own.get("note", "") if isinstance(own, dict) else ""
-        lines.append(f"{key} = {in_toml(value)}  # {source or stored.source}")
-    lines += [f"# {key}: missing, {stored.source} does not state it" for key in stored.missing]
+        written[key] = value
+        lines.append(f"{written.as_string()[1:-1]}  # {_line(str(source)) or document}")
+    lines += [f"# {key}: missing, {document} does not state it" for key in stored.missing]
     return lines
+
+
+def _line(text: str) -> str:
+    """Return a text in one line, as a comment has it."""
+    return " ".join(text.split())

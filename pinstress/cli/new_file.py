@@ -5,7 +5,10 @@ of JUnit results.
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import BinaryIO
 
 from pinstress.study.reading.errors import InputError, cannot_write
 
@@ -24,17 +27,33 @@ def require_new(path: Path, remedy: str) -> None:
 
 
 def write_new(path: Path, content: bytes, remedy: str) -> None:
-    """Create a file.
+    """Create a file, whole or not at all.
 
     Raises: InputError if it exists or cannot be written.
     """
     try:
-        with path.open("xb") as file:  # does not follow links
+        with _created(path) as file:
             file.write(content)
     except FileExistsError:
         raise InputError(f"{path} exists already; {remedy}", code="exists") from None
     except OSError as error:
         raise cannot_write(path, error) from None
+
+
+@contextmanager
+def _created(path: Path) -> Iterator[BinaryIO]:
+    """Create a file, which is removed where the block ends with an error.
+
+    Raises: OSError.
+    """
+    file = path.open("xb")  # does not follow links
+    try:
+        with file:
+            yield file
+    except BaseException:
+        with suppress(OSError):
+            path.unlink()
+        raise
 
 
 def require_junit(path: Path, directory: Path) -> None:

@@ -90,9 +90,10 @@ def sweep_and_write(
                 count = len(sweep.values)
                 click.echo(f"Continued from {before:,} designs to {count:,}.", err=True)
         alone = way.connection is not None or (way.jobs or cores()) == 1
-        with resumable(lambda: _finished(parts)), progress(way.quiet, alone) as report:
-            table = solved(sweep, parts, way.jobs, way.connection, report, warn)
-        _write(directory, table)
+        with resumable(lambda: _finished(parts)):
+            with progress(way.quiet, alone) as report:
+                table = solved(sweep, parts, way.jobs, way.connection, report, warn)
+            _write(directory, table)
         parts.finish()
     return _told(directory, table, way)
 

@@ -29,7 +29,7 @@ def _columns(curve: FactorCurve) -> list[Column[CurvePoint]]:
         return f"{engineering(point.value)}{here}"
 
     def error(point: CurvePoint) -> str:
-        if not point.max_von_mises or point.error_estimate is None:
+        if not point.max_von_mises or point.error_estimate is None or point.verdict == "singular":
             return DASH
         return percent(point.error_estimate / point.max_von_mises)
 

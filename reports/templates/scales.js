@@ -4,6 +4,7 @@ const STOPS = ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80",
 
 // Number format of reports/format/numbers.py.
 const written = (value, digits = 4) => {
+  if (!Number.isFinite(value)) return "–";
   const rounded = Number(value.toPrecision(digits));
   if (!rounded) return "0";
   const size = Math.floor(Math.log10(Math.abs(rounded)) + 1e-9);

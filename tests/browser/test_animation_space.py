@@ -11,7 +11,7 @@ import pytest
 
 from pinbase.dimensions import Floats
 from reports.animation.page import render_animation
-from tests.support.results.browser_page import errors, wait
+from tests.support.results.browser_page import errors, screen, wait
 from tests.support.results.space_results import landing_gear, rssr
 
 pytestmark = pytest.mark.browser
@@ -168,6 +168,21 @@ def test_names_do_not_overlap_however_it_is_turned(browser: Any, tmp_path: Path)
             for a, b, c, d in boxes[:i]:
                 assert right <= a or b <= left or bottom <= c or d <= top, view(page)
         press(page, *[Keys.ARROW_LEFT] * 12)
+
+
+def test_numbers_beside_curves_are_whole_on_a_phone(browser: Any, tmp_path: Path) -> None:
+    """Their letters are larger there: the first of "−51,100" was cut off."""
+    page = shown(browser, tmp_path, landing_gear())
+    page.execute_script("document.querySelector('.strip .y').textContent = '−51,100'")
+    with screen(page, 320):
+        cut = page.execute_script(
+            "return [...document.querySelectorAll('.strip text')].filter((text) => {"
+            "  const svg = text.closest('svg'), whole = getComputedStyle(svg).overflow;"
+            "  const edge = whole === 'visible' ? document.body : svg;"
+            "  return text.getBoundingClientRect().left < edge.getBoundingClientRect().left;"
+            "}).map((text) => text.textContent);"
+        )
+    assert cut == []
 
 
 def test_axes_turn_with_the_linkage(page: Any) -> None:

@@ -251,3 +251,16 @@ def test_long_names_wrap_and_push_nothing_out(
             upright = browser.execute_script(UPRIGHT)
             assert upright == ("pin.B" in names), width
     assert errors(browser) == []
+
+
+def test_factors_are_whole_on_the_smallest_phone(browser: Any, tmp_path: Path) -> None:
+    """Beside a long outcome, where no diameter is estimated, they had 8 px, and were cut off."""
+    sharp = QUICK.replace("fillet = 0.4 ", "fillet = 0.0 ").replace("pin.B", "pin.constructor")
+    (tmp_path / "sharp.toml").write_text(sharp)
+    run = run_here("run", "sharp.toml", "--out", "out", cwd=tmp_path)
+    assert run.returncode == 1, run.stderr
+    opened(browser, tmp_path / "out")
+    with screen(browser, 320):
+        (cell,) = browser.find_elements("css selector", ".lines .factor:not(th)")
+        assert cell.get_property("scrollWidth") <= cell.get_property("clientWidth")
+        assert browser.execute_script("return innerWidth") == 320

@@ -10,6 +10,7 @@ import pytest
 
 from reports.format.numbers import engineering, short
 from tests.support.each import sampled
+from tests.support.programs.command_line import QUICK, run_here
 from tests.support.results.browser_page import (
     canvas,
     colours,
@@ -305,3 +306,20 @@ def test_maxima_along_the_pin_are_a_table(page: Any, gear_run: Path) -> None:
     assert "J2" in [row[0] for row in cells]
     largest = max(float(row[5].replace(",", "")) for row in cells if row[5] != "–")
     assert largest == pytest.approx(result(gear_run, "J", "landing")["max_von_mises"], rel=2e-3)
+
+
+def test_an_instant_without_load_has_no_factor(browser: Any, tmp_path: Path) -> None:
+    """Its factor is infinite, which ended the script: the numbers of the instant before stayed."""
+    (tmp_path / "loads.csv").write_text("connection,fx,fy,time\nB,0,0,0\nB,0,-900,1\n")
+    stated = next(line for line in QUICK.splitlines() if line.startswith("forces"))
+    (tmp_path / "study.toml").write_text(QUICK.replace(stated, 'table = "loads.csv"'))
+    run = run_here("run", "study.toml", "--out", "out", cwd=tmp_path)
+    assert run.returncode == 0, run.stderr
+    opened(browser, tmp_path / "out")
+    root = view(browser, "B")
+    slide(browser, part(root, "time"), 0)
+    told = part(root, "told").text
+    assert "t = 0 s: maximum von Mises stress" in told
+    assert " 0 psi; safety factor – (converged)." in told
+    assert part(root, "probed").text.startswith("von Mises stress 0 psi, safety factor –; z = ")
+    assert errors(browser) == []

@@ -26,7 +26,8 @@ from pinstress.study.reading.inputs import inputs
 
 STATE_SUFFIX = ".unfinished"
 PINS_FILE = "pins"  # in the folder
-DAMAGED = (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile)
+# What a damaged file ends in; RuntimeError where it says to be encrypted, or packed in another way
+DAMAGED = (OSError, ValueError, KeyError, EOFError, RuntimeError, zipfile.BadZipFile)
 
 T = TypeVar("T")
 

@@ -169,8 +169,9 @@ class Evaluator:
         self._alike = Recent[tuple[object, ...], str](MAX_REMEMBERED_LOADS)
         self._of_shapes = [k for k, x in enumerate(self.numbers) if not only_loads(x)]
         self._of_loads = {
-            case: [k for k, number in enumerate(self.numbers) if self._moves(number, case)]
+            (case, along): [k for k, x in enumerate(self.numbers) if self._moves(x, case, along)]
             for case in self._cases
+            for along in (False, True)
         }
 
     def rows(self, values: Sequence[float] | Floats) -> list[DesignRow]:
@@ -206,11 +207,13 @@ class Evaluator:
                 raw = with_value(raw, path, number.in_study(number.shown(float(value))))
         return with_raw(self.study, raw)
 
-    def _moves(self, number: Number, case: str) -> bool:
+    def _moves(self, number: Number, case: str, along: bool) -> bool:
         """Return whether the loads of a case depend on a number.
 
         They depend on numbers of the mechanism, of the case and of cases that it names, on those
-        that give mass to floating pins, and in space on lengths, which place bands along pins.
+        that give mass to floating pins, and on lengths, which place bands along pins.
+
+        along: whether these places count (`bands_count`), which may differ from design to design.
         """
         table, *inner = number.path
         if table == "case":
@@ -228,8 +231,8 @@ class Evaluator:
         ]
         if table == "pin":
             lengths = any(path[-1] == "length" for path in number.paths)
-            along = lengths or not study.pin[str(inner[0])].profile
-            return inner[0] in free or (along and bands_count(self.study))
+            places = lengths or not study.pin[str(inner[0])].profile
+            return inner[0] in free or (along and places)
         return inner[-1] == "density" and any(study.pin[x].material == inner[0] for x in free)
 
     def loads_of(self, study: Study, values: Sequence[float]) -> dict[str, CaseLoads | InputError]:
@@ -239,8 +242,9 @@ class Evaluator:
         """
         loads: dict[str, CaseLoads | InputError] = {}
         mechanism: AnyLinkage | None = None
+        along = study.table.mechanism is not None and bands_count(study)
         for name in self._cases:
-            key = name, *(values[k] for k in self._of_loads[name])
+            key = name, along, *(values[k] for k in self._of_loads[name, along])
             known = self._loads.get(key)
             if known is None:
                 if mechanism is None and study.table.mechanism:

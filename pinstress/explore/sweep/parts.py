@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -125,12 +126,8 @@ class BatchFolder:
 
         A sweep that is killed inside is taken over again.
         """
-        from pyarrow import parquet
-
         if self.there():
-            tables = [
-                parquet.read_table(path) for path in sorted(self.folder.glob(f"*{PART_SUFFIX}"))
-            ]
+            tables = [table for _, table in self._tables() if table is not None]
         else:
             tables = [read_table(self.folder.parent / DESIGNS_FILE)]
         self.folder.mkdir(exist_ok=True)
@@ -148,19 +145,24 @@ class BatchFolder:
         """Return all batches; a file that is damaged, or of other columns, is removed and solved
         anew.
         """
-        from pyarrow import ArrowException, parquet
-
         tables = []
-        for path in sorted(self.folder.glob(f"*{PART_SUFFIX}")):
-            try:
-                table = parquet.read_table(path)
-            except (ArrowException, OSError):
-                table = None
+        for path, table in self._tables():
             if table is not None and table.schema.equals(schema, check_metadata=True):
                 tables.append(table)
             else:
                 path.unlink(missing_ok=True)
         return tables
+
+    def _tables(self) -> Iterator[tuple[Path, pa.Table | None]]:
+        """Yield the files of batches with their tables; None for a file that is damaged."""
+        from pyarrow import ArrowException, parquet
+
+        for path in sorted(self.folder.glob(f"*{PART_SUFFIX}")):
+            try:
+                table = parquet.read_table(path)
+            except (ArrowException, OSError):
+                table = None
+            yield path, table
 
     @property
     def count(self) -> int:

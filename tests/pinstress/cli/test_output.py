@@ -17,10 +17,12 @@ from pathlib import Path
 import pytest
 
 from pinstress.cli import manifest, output_folder
+from pinstress.cli.new_file import write_new
 from pinstress.cli.output_folder import replacing
 from pinstress.study.reading.errors import InputError
 from tests.conftest import ROOT
 from tests.support.each import each
+from tests.support.errors import raises
 from tests.support.programs.process_group import alive, started
 
 WRITER = """
@@ -205,6 +207,18 @@ def test_a_full_disk_is_told_and_nothing_is_written(earlier: Path, jobs: str) ->
     assert len(done.stderr.splitlines()) == 1
     assert (earlier / "results.json").read_text() == "earlier"
     assert names(earlier.parent) == ["out", "study.toml"]
+
+
+def test_a_full_disk_leaves_no_half_of_a_new_file(tmp_path: Path) -> None:
+    """An empty study stayed, which the next `init` would not overwrite."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (100, before[1]))
+    try:
+        with raises(InputError, "cannot-write"):
+            write_new(tmp_path / "study.toml", bytes(1000), "")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert names(tmp_path) == []
 
 
 def test_without_an_exchange_in_one_step_there_are_two(

@@ -15,6 +15,7 @@ from pinstress.explore.curve import curve, values_between
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.in_python import changed_study, study_from
 from reports.data.curve import CurvePoint, FactorCurve
+from reports.tables.curve import worst_table
 from reports.text.curve import reached_lines
 from tests.support.each import each
 from tests.support.programs.command_line import ONE_PIN
@@ -73,6 +74,13 @@ def test_the_error_of_a_small_stress_is_in_proportion() -> None:
     point = CurvePoint(1.0, "P", "c", 5e-4, 5e-5, 4.0, "safe")
     assert point.factor_ends == pytest.approx((4.0 / 1.1, 4.0 / 0.9))
     assert replace(point, error_estimate=5e-4).factor_ends == pytest.approx((2.0, math.inf))
+
+
+def test_a_singular_row_shows_no_error() -> None:
+    """It has a range instead; "0 %" stood there."""
+    singular = replace(point(1.0, 4.0), verdict="singular")
+    grid = worst_table(of(singular)).grid()
+    assert grid.body[0][grid.head.index("±")] == "–"
 
 
 def test_a_curve_is_one_short_line_in_a_notebook() -> None:

@@ -153,10 +153,13 @@ def test_what_cannot_be_resumed_is_told(tmp_path: Path) -> None:
     other = run_here("size", "study.toml", "--resume", cwd=tmp_path)
     assert other.returncode == 2
     assert "is of another study, factor, step or pins" in other.stderr
-    (state.path / PINS_FILE).write_bytes(b"damaged")
-    damaged = run_here("size", "study.toml", "--resume", cwd=tmp_path)
-    assert damaged.returncode == 2
-    assert "is damaged" in damaged.stderr
+    whole = (state.path / PINS_FILE).read_bytes()
+    at = whole.index(b"PK\1\2")  # the entry of a file in it, with its flags and its compression
+    for byte, value in ((0, 0), (at + 8, 1), (at + 10, 99)):
+        (state.path / PINS_FILE).write_bytes(whole[:byte] + bytes([value]) + whole[byte + 1 :])
+        damaged = run_here("size", "study.toml", "--resume", cwd=tmp_path)
+        assert damaged.returncode == 2
+        assert "is damaged" in damaged.stderr
     assert not (tmp_path / "study_sized.toml").exists()
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
 import pinstress
@@ -12,7 +13,7 @@ from pinstress import InputError, Study, changed_study, load_study, shipped_stud
 from pinstress.analysis.solve import solutions
 from pinstress.explore.sweep.evaluate import Evaluator, Recent
 from pinstress.explore.sweep.number import number_at
-from pinstress.study.model.cases import case_loads
+from pinstress.study.model.cases import CaseLoads, case_loads
 from tests.support.programs.swept import DIAMETER, FORCE, ONE_PIN, STRENGTH
 
 MODULUS = "material.AISI 4340.youngs_modulus"
@@ -102,6 +103,21 @@ def test_a_design_that_cannot_be_is_a_row_with_its_reason() -> None:
     assert close.mass is None
     (right,) = evaluator.rows([diameter, force])
     assert right.verdict == "converged"
+
+
+def test_lengths_of_pins_count_where_only_a_design_has_a_load_out_of_the_plane() -> None:
+    """As the study is, they place nothing: later designs had the moments of the first length."""
+    text = shipped_studies()["slider_crank"].read_text(encoding="utf-8")
+    text = text.replace('"motion"', '"static"').replace("samples = 241", "")
+    study = study_from(text.replace('"0 N"]', '"0 N", "0 N"]'))
+    evaluator, _ = _evaluator(study, "case.turn.apply[1].force[3]", "pin.O.profile[1].length")
+    moments = []
+    for length in (0.010, 0.020):
+        values = [200.0, length]
+        loads = evaluator.loads_of(evaluator.changed(values), values)["turn"]
+        assert isinstance(loads, CaseLoads)
+        moments.append(loads.reactions.moments)
+    assert np.abs(moments[1] - moments[0]).max() > 0.1 * np.abs(moments[0]).max()
 
 
 def test_the_mass_is_that_of_the_shape() -> None:

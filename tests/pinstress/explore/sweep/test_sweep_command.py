@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import os
+import resource
 import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
 
+import pyarrow as pa
 import pytest
 from pyarrow import parquet
 
 from pinbase.processes.folder_lock import lock
+from pinstress import study_from
+from pinstress.explore.sweep.parameters import parameters_of
+from pinstress.explore.sweep.parts import BatchFolder, identity
+from pinstress.explore.sweep.table import table_of
 from tests.support.each import each, sampled
 from tests.support.programs.command_line import QUICK, pinstress, run_here
 from tests.support.programs.process_group import started
@@ -192,6 +198,34 @@ def test_a_sequence_is_continued_to_more_designs(
     refused = run_here(*arguments[:-1], "cube", "--resume", cwd=tmp_path)
     assert refused.returncode == 2
     assert "a latin-hypercube sample of another count has other designs" in refused.stderr
+
+
+def test_a_damaged_batch_is_solved_anew_in_a_longer_sweep(tmp_path: Path) -> None:
+    """As in the same sweep; there it was a traceback."""
+    shorter, longer = (
+        study_from(varied(LOADS, f'sample = "sobol"\ncount = {count}')) for count in (4, 8)
+    )
+    schema = table_of(longer, parameters_of(longer), []).schema
+    before, after = (BatchFolder(tmp_path, identity(x)) for x in (shorter, longer))
+    before.begin()
+    (before.folder / "00000001.parquet").write_bytes(b"PAR1")
+    before.write(pa.Table.from_pylist([{"design": 3}], schema))
+    after.continue_with(schema)
+    assert [table["design"].to_pylist() for table in after.read(schema)] == [[3]]
+
+
+@pytest.mark.linux
+def test_a_full_disk_at_the_end_loses_no_design(tmp_path: Path) -> None:
+    """The page is the largest file; how to go on was not said."""
+    _study(tmp_path, LOADS, 2)
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, before[1]))
+    try:
+        full = run_here("sweep", "study.toml", "--out", "out", "--jobs", "1", cwd=tmp_path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert full.returncode == 2
+    assert "2 batches are kept: run the same command with --resume to continue" in full.stderr
 
 
 def test_run_ignores_vary_and_check_reads_it(tmp_path: Path) -> None:

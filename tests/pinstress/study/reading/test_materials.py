@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -199,7 +200,7 @@ def test_the_command_lists_materials_and_the_values_of_one(
     assert "a certificate" in listed
     assert run_command_line(["materials", "4130 125 ksi"]) == 0
     shown = capsys.readouterr().out
-    assert "shear_strength = '82 ksi'  # AFFDL-TR-69-42" in shown
+    assert 'shear_strength = "82 ksi"  # AFFDL-TR-69-42' in shown
     assert "# poisson_ratio: missing, AFFDL-TR-69-42" in shown
     assert run_command_line(["materials", "6061-T651", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["yield_strength"] == "40 ksi"
@@ -226,6 +227,22 @@ def test_the_command_refuses_a_file_that_no_study_can_use(
         done = capsys.readouterr()
         assert f"Error: ours.toml: {message}" in done.err
         assert not done.out
+
+
+def test_the_command_prints_tables_sources_of_lines_and_quoted_names_as_toml(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A table was "a table", and the second line of a source no comment."""
+    text = steel("'5\" bar'") + (
+        'ultimate_strength = { value = "510 MPa", note = """a test\nof ours""" }\n'
+        'range.yield_strength = ["350 MPa", "360 MPa"]\n'
+    )
+    (tmp_path / "ours.toml").write_text(text)
+    command = "materials", "--materials", str(tmp_path / "ours.toml"), '5" bar'
+    assert run_command_line([*command]) == 0
+    printed = tomllib.loads(capsys.readouterr().out)["material"]['5" bar']
+    assert printed["range"] == {"yield_strength": ["350 MPa", "360 MPa"]}
+    assert printed["ultimate_strength"] == "510 MPa"
 
 
 def test_what_the_command_prints_is_a_material_of_a_study(
