@@ -48,6 +48,13 @@ def allowed_memory(limit: float | None) -> float:
     return MEMORY_SHARE * free_memory() if limit is None else limit
 
 
+def _needed(unknowns: float, section_loads: int, local_loads: int) -> float:
+    """Memory, MB: of a solid, or of a section or local solid with that many unit loads."""
+    if section_loads:
+        return section_memory(unknowns, section_loads)
+    return local_memory(unknowns, local_loads) if local_loads else solid_memory(unknowns)
+
+
 def most_unknowns(limit: float | None, local_loads: int = 0) -> float:
     """The number of unknowns for which the memory is allowed: of a solid, or of a local solid with
     so many unit loads.
@@ -57,8 +64,8 @@ def most_unknowns(limit: float | None, local_loads: int = 0) -> float:
     allowed, low, high = allowed_memory(limit), 1.0, 1e12
     while high > 1.001 * low:
         middle = math.sqrt(low * high)
-        need = local_memory(middle, local_loads) if local_loads else solid_memory(middle)
-        low, high = (middle, high) if need <= allowed else (low, middle)
+        fits = _needed(middle, 0, local_loads) <= allowed
+        low, high = (middle, high) if fits else (low, middle)
     return low
 
 
@@ -70,13 +77,7 @@ def too_much(
     unknowns: of a solid, or of a section or local solid with that many unit loads.
     limit: MB.
     """
-    allowed = allowed_memory(limit)
-    if section_loads:
-        need = section_memory(unknowns, section_loads)
-    elif local_loads:
-        need = local_memory(unknowns, local_loads)
-    else:
-        need = solid_memory(unknowns)
+    need, allowed = _needed(unknowns, section_loads, local_loads), allowed_memory(limit)
     if need <= allowed:
         return ""
     return (

@@ -13,6 +13,7 @@ from fea.harmonic.trigonometric_maximum import (
     crest_of_samples,
     highest_crest,
     one_wave,
+    parabola_crest,
     upper_bound,
 )
 from pinbase.arrays import Floats, Ints, Mask
@@ -86,9 +87,7 @@ def _climbed(
         slope, bend = (five * risen).sum(axis=1), (risen * risen + five * bent).sum(axis=1)
         step = np.where(bend < 0.0, slope / np.where(bend < 0.0, bend, 1.0), 0.0)
         angle = angle - np.clip(step, -most, most)
-    turns = n * angle[:, None]
-    five = (back * np.cos(turns)[:, None] + forth * np.sin(turns)[:, None]).sum(axis=2)
-    return np.sqrt(np.square(five).sum(axis=1)), angle
+    return np.linalg.norm(_five(n, back, forth, angle), axis=1), angle
 
 
 def crest_where_read(n: Ints, back: Floats, forth: Floats, read: Mask) -> tuple[Floats, Floats]:
@@ -133,9 +132,5 @@ def closer_crest(
     before, here, after = (
         np.square(_five(n, back, forth, angle + step)).sum(axis=1) for step in (-apart, 0.0, apart)
     )
-    bend = 2.0 * here - before - after
-    good = bend > 0.0
-    bend = np.where(good, bend, 1.0)
-    shift = np.where(good, np.clip(0.5 * (after - before) / bend, -1.0, 1.0), 0.0)
-    square = here + 0.5 * shift * (after - before) - 0.5 * shift**2 * bend
-    return np.sqrt(np.maximum(square, 0.0)), angle + shift * apart
+    value, shift = parabola_crest(before, here, after)
+    return value, angle + shift * apart

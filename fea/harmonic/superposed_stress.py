@@ -36,8 +36,6 @@ PAIR_BATCH = 4096  # pairs of points and instants at once: limits the memory of 
 # Points and angles of an envelope at once: their samples stay in the cache. Tuned on 240 instants
 # of 13 harmonics, where 16 points at all 120 angles took three times as long.
 CACHED_POINT_BATCH, CACHED_ANGLE_BATCH = 4, 24
-# Unit loads of one harmonic up to which quadratic forms take fewer operations than summed stresses.
-MAX_QUADRATIC_FORM_LOADS = 4
 ALL_INSTANTS = slice(None)
 ROUND_OFF = 1e-12  # relative, of a stress
 
@@ -83,7 +81,6 @@ class SuperposedStress:
         self.fields, self._five, self._unit_reach = fields, unit_numbers.five, unit_numbers.reach
         self._n = np.array([load.n for load in units], dtype=np.int64)
         starts = np.flatnonzero(np.diff(self._n, prepend=-1))
-        self._amount_products: dict[int, tuple[Floats, Floats, Floats]] = {}
         self._waves = [slice(*ends) for ends in itertools.pairwise([*starts, len(units)])]
         self._orders = self._n[starts]  # the harmonic of each wave
 
@@ -123,28 +120,12 @@ class SuperposedStress:
         wave: the columns of its unit loads.
         """
         five = self._five[points, :, wave]
-        if wave.stop - wave.start > MAX_QUADRATIC_FORM_LOADS:
-            return self._of_summed_loads(five, wave, instants)
-        # The square is quadratic in the load amounts: its forms are built once per point and
-        # contracted with the products of amounts at each instant.
-        first, second, mixed = (x[instants] for x in self._products(wave))
-        even, odd = (x.swapaxes(1, 2) @ x for x in (five[:, COS], five[:, SIN]))
-        if self._n[wave.start] == 0:
-            # n = 0: nothing varies over the circumference, so the square itself is the maximum.
-            square = _forms(even, first) + _forms(odd, second)
-        else:
-            apart = even - odd
-            total = _forms(even + odd, first + second)
-            square = form_maximum(total, _forms(apart, first - second), _forms(apart, mixed))
-        return np.sqrt(np.maximum(square, 0.0, out=square), out=square)
-
-    def _of_summed_loads(self, five: Floats, wave: slice, instants: Instants) -> Floats:
-        """The same for stresses (J, 5, K), which are summed over the loads first."""
         first, second = self._first[instants, wave].T, self._second[instants, wave].T
         flat = np.ascontiguousarray(five).reshape(-1, five.shape[2])
         shape = (len(five), 5, first.shape[1])
         one, other = ((flat @ x).reshape(shape) for x in (first, second))
         if self._n[wave.start] == 0:
+            # Nothing varies over the circumference, so the square itself is the maximum.
             square = np.square(one[:, COS]).sum(axis=1) + np.square(other[:, SIN]).sum(axis=1)
         else:
             # The sine parts lag by a quarter wave, so their phases swap places, one with its sign
@@ -153,18 +134,7 @@ class SuperposedStress:
             one[:, SIN], other[:, SIN] = -other[:, SIN], one[:, SIN].copy()
             A, C = np.square(one).sum(axis=1), np.square(other).sum(axis=1)
             square = form_maximum(A + C, A - C, np.einsum("jit,jit->jt", one, other))
-        return np.asarray(np.sqrt(np.maximum(square, 0.0)))
-
-    def _products(self, wave: slice) -> tuple[Floats, Floats, Floats]:
-        """Products (T, K, K) of the amounts of two unit loads of a harmonic at each instant.
-
-        They are those of both first phases, of both second phases, and of one of each.
-        """
-        if wave.start not in self._amount_products:
-            a, b = self._first[:, wave], self._second[:, wave]
-            aa, bb, ab = (x[:, :, None] * y[:, None, :] for x, y in ((a, a), (b, b), (a, b)))
-            self._amount_products[wave.start] = aa, bb, ab
-        return self._amount_products[wave.start]
+        return np.asarray(np.sqrt(np.maximum(square, 0.0, out=square)))
 
     def reach(self, points: Ints, instants: Instants = ALL_INSTANTS) -> Floats:
         """The loosest bound (J, T), Pa: the sum over unit loads of the most that each does."""
@@ -250,7 +220,7 @@ class SuperposedStress:
         for w, wave in enumerate(waves):
             five = np.ascontiguousarray(self._five[one, :, wave])
             a, b = ((five @ x[now, wave].T)[i, :, t] for x in (self._first, self._second))
-            # As in `_of_summed_loads`: the sine parts lag by a quarter wave.
+            # As in `_of_harmonic`: the sine parts lag by a quarter wave.
             back[:, COS, w], back[:, SIN, w] = a[:, COS], -b[:, SIN]
             forth[:, COS, w], forth[:, SIN, w] = b[:, COS], a[:, SIN]
         return back, forth
@@ -326,9 +296,3 @@ class SuperposedStress:
             parts = np.ascontiguousarray(summed[..., some])
             out[..., some] = np.tensordot(np.stack(factors, axis=1), parts, axes=2)
         return out.swapaxes(0, 1)
-
-
-def _forms(form: Floats, products: Floats) -> Floats:
-    """The values (J, T) of forms (J, K, K) for T pairs of vectors with products (T, K, K)."""
-    size = form.shape[1] * form.shape[2]  # there may be no points
-    return np.asarray(form.reshape(-1, size) @ products.reshape(-1, size).T)

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pinbase.arrays import Floats, Ints
+from pinbase.arrays import Floats, Ints, Mask
 
 # Angles over samples: D h = 0.3 with 5 samples per degree, so a missed second crest costs 1e-4.
 ANGLES_PER_SAMPLE = 4
@@ -74,15 +74,25 @@ def crest_of_samples(square: Floats) -> tuple[Floats, Floats]:
     """
     count, row = square.shape[1], np.arange(len(square))
     top = square.argmax(axis=1)
-    value = square[row, top]
-    before, after = square[row, (top - 1) % count], square[row, (top + 1) % count]
-    bend = 2.0 * value - before - after
-    crest = (before >= 0.0) & (after >= 0.0) & (bend > 0.0)
-    bend = np.where(crest, bend, 1.0)
-    shift = np.where(crest, 0.5 * (after - before) / bend, 0.0)
-    value = value + np.where(crest, (after - before) ** 2 / (8.0 * bend), 0.0)
-    angle = (top + shift) * (2.0 * np.pi / count)
-    return np.sqrt(np.maximum(value, 0.0)), np.asarray(angle)
+    before, here, after = (square[row, (top + step) % count] for step in (-1, 0, 1))
+    value, shift = parabola_crest(before, here, after, (before >= 0.0) & (after >= 0.0))
+    return value, np.asarray((top + shift) * (2.0 * np.pi / count))
+
+
+def parabola_crest(
+    before: Floats, here: Floats, after: Floats, usable: Mask | bool = True
+) -> tuple[Floats, Floats]:
+    """The root of the crest (J,) of the parabola through three squares, and its place from the one
+    in the middle, in steps, at most one; that in the middle where it has no crest.
+
+    usable: where the outer squares count.
+    """
+    bend = 2.0 * here - before - after
+    usable = usable & (bend > 0.0)
+    slope = np.where(usable, 0.5 * (after - before), 0.0)
+    shift = np.clip(slope / np.where(usable, bend, 1.0), -1.0, 1.0)
+    square = here + shift * slope - 0.5 * shift**2 * np.where(usable, bend, 0.0)
+    return np.sqrt(np.maximum(square, 0.0)), shift
 
 
 def _crests(c: Floats, low: Floats, angle: Floats, high: Floats) -> Floats:

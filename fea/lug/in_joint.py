@@ -12,12 +12,12 @@ import numpy as np
 from fea.core.material import Material
 from fea.lug.lug_load import LugLoad
 from fea.lug.lug_stress import (
-    USUAL_AROUND,
     BoreStress,
     LugInPlane,
     at_walls,
     bore_stresses,
 )
+from fea.lug.plane_fields import USUAL_AROUND
 from fea.lug.slipping import SlippingBushing
 from fea.lug.through_thickness import EyeStress, eye_stress
 from fea.support.contact.joint_changes import VariedPressures

@@ -24,7 +24,7 @@ import numpy as np
 from fea.core.material import Material
 from fea.lug.lug_load import LugLoad
 from fea.lug.plane_contact import PlaneContact
-from fea.lug.plane_fields import Elasticity, PlaneFields, plane_fields
+from fea.lug.plane_fields import USUAL_AROUND, Elasticity, plane_fields
 from fea.lug.shank_bending import bent
 from fea.lug.slipping import SlippingBushing, TwoWalls
 from fea.lug.through_thickness import EyeStress
@@ -37,7 +37,6 @@ COARSER = 2  # times as long: elements and sectors with which the result is comp
 # in a clearance touches less than a sector. A press fit alone is with every force alike.
 MIN_FORCE_SHARE = 0.05
 MIN_RINGS_OF_SHARP_BORE = 2  # of which the outermost are not read beneath the pin
-USUAL_AROUND = 96  # elements and sectors around the bore
 
 
 @dataclass(frozen=True)
@@ -91,9 +90,7 @@ class LugInPlane:
     ) -> None:
         self.lug, self.outline, elastic = lug, lug.outline(radius), _elasticity(lug)
         scaled = self.outline.in_radii()
-        self.fields: PlaneFields = (memo or Memo()).get(
-            ("plane lug", scaled, elastic, around), lambda: plane_fields(scaled, elastic, around)
-        )
+        self.fields = plane_fields(scaled, elastic, around, memo)
         E = lug.material.youngs_modulus
         self.contact = PlaneContact(
             self.fields, E, lug.bearing, pin, inner, radius, lug.clearance, around

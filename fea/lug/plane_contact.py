@@ -22,8 +22,6 @@ from fea.support.contact.pressure_loads import waves_of_sectors
 from fea.support.foundation.plane_contact import pin_harmonics
 from pinbase.arrays import Floats
 
-USUAL_SECTORS = 96  # docs/measured has what fewer and more give
-
 
 def in_plane_stress(material: Material) -> Material:
     """The material whose plane strain is the given one's plane stress."""
@@ -50,7 +48,7 @@ class PlaneContact:
     inner: float
     radius: float
     clearance: float
-    sectors: int = USUAL_SECTORS
+    sectors: int
 
     @cached_property
     def problem(self) -> ContactProblem:

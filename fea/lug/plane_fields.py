@@ -25,10 +25,11 @@ from fea.core.linear_solver import ConstrainedSystem
 from geometry.mesh.lug_mesh import LugMesh, lug_mesh
 from geometry.shape.lug_outline import LugOutline
 from pinbase.arrays import Floats, Ints
+from pinbase.memo import Memo
 
 HARMONICS = 16  # of pressure; what is beyond changes the hoop stress by its negative
-# Around the bore; docs/measured has what coarser and finer meshes give
-USUAL_ELEMENTS_AROUND = 96
+# Elements, and sectors of contact, around the bore; docs/measured has what fewer and more give
+USUAL_AROUND = 96
 
 
 @dataclass(frozen=True)
@@ -74,21 +75,25 @@ class PlaneFields:
 
 
 def plane_fields(
-    outline: LugOutline, elastic: Elasticity, around: int = USUAL_ELEMENTS_AROUND
+    outline: LugOutline, elastic: Elasticity, around: int = USUAL_AROUND, memo: Memo | None = None
 ) -> PlaneFields:
     """The fields of a lug under unit loads.
 
     around: elements around the bore.
+    memo: of what is solved already.
 
     Raises: MeshError, SolveError.
     """
-    return _Plane(outline, elastic, lug_mesh(outline, around)).fields()
+    fields: PlaneFields = (memo or Memo()).get(
+        ("plane lug", outline, elastic, around),
+        lambda: _Plane(outline, elastic, lug_mesh(outline, around)).fields(),
+    )
+    return fields
 
 
-def waves(angles: Floats) -> Floats:
+def waves(angles: Floats, highest: int = HARMONICS) -> Floats:
     """The pressures of the unit loads at angles (P,), (2 H + 1, P)."""
-    n = np.arange(HARMONICS + 1)
-    turns = np.outer(n, angles)
+    turns = np.outer(np.arange(highest + 1), angles)
     return np.concatenate([np.cos(turns), np.sin(turns[1:])])
 
 

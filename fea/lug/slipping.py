@@ -19,7 +19,7 @@ import numpy as np
 
 from fea.core.material import Material
 from fea.lug.plane_contact import in_plane_stress, sector_flexibility, unit_waves
-from fea.lug.plane_fields import HARMONICS, Elasticity, PlaneFields, Wall, plane_fields
+from fea.lug.plane_fields import HARMONICS, Elasticity, Wall, plane_fields, waves
 from fea.lug.plane_ring import RingFields, ring_fields
 from fea.support.bands import Bands
 from fea.support.contact.contact import ContactProblem
@@ -30,9 +30,8 @@ from geometry.shape.lug_outline import LugOutline
 from pinbase.arrays import Floats, Ints, Mask
 from pinbase.memo import Memo
 
-HIGHEST = (
-    48  # harmonic of the bushing: of a wall of a tenth of the bore's radius e^-4.8 gets through
-)
+# Harmonic of the bushing: of a wall of a tenth of the bore's radius e^-4.8 gets through.
+HIGHEST = 48
 
 
 @dataclass(frozen=True)
@@ -44,8 +43,8 @@ class TwoWalls:
 
     def amounts(self, highest: int) -> tuple[Floats, Floats]:
         """The harmonics of both, cosines then sines."""
-        waves = unit_waves(self.bore.shape[1], highest).T
-        return self.bore @ waves, self.hole @ waves
+        of_sectors = unit_waves(self.bore.shape[1], highest).T
+        return self.bore @ of_sectors, self.hole @ of_sectors
 
 
 class SlippingBushing:
@@ -71,9 +70,7 @@ class SlippingBushing:
             whole.shape, 2.0 * self.hole, whole.head, whole.width, whole.length, whole.end
         ).in_radii()
         elastic = Elasticity(lug.material.poisson_ratio)
-        self.fields: PlaneFields = (memo or Memo()).get(
-            ("plane lug", alone, elastic, around), lambda: plane_fields(alone, elastic, around)
-        )
+        self.fields = plane_fields(alone, elastic, around, memo)
         self.ring: RingFields = ring_fields(radius, self.hole, lug.bearing, HIGHEST)
 
     @cached_property
@@ -147,10 +144,10 @@ class SlippingBushing:
         """
         angles = self.angles
         inside, outside = pressures.amounts(HIGHEST)
-        waves = _waves(angles, HIGHEST)
+        at_points = waves(angles, HIGHEST)
         n = np.concatenate([np.arange(HIGHEST + 1), np.arange(1, HIGHEST + 1)])
         h = self.ring.hoop[n, 0]
-        bore = (inside * (h[:, 0] + 1.0) + outside * h[:, 1]) @ waves
+        bore = (inside * (h[:, 0] + 1.0) + outside * h[:, 1]) @ at_points
         wall, (_, few) = self.fields.bore, pressures.amounts(HARMONICS)
         return bore, few @ (wall.hoop - wall.radial)[:-1]
 
@@ -166,8 +163,3 @@ def _beyond(known: Floats, material: Material, radius: float, n: Ints) -> Floats
     known = known[: HARMONICS + 1]
     far = half_plane(material, radius) / np.maximum(n, 1)
     return np.asarray(np.where(n < len(known), np.resize(known, len(n)), far))
-
-
-def _waves(angles: Floats, highest: int) -> Floats:
-    turns = np.outer(np.arange(highest + 1), angles)
-    return np.concatenate([np.cos(turns), np.sin(turns[1:])])

@@ -10,6 +10,7 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
 from fea.solid.assembly import Discretisation
+from geometry.mesh.section_mesh import triangle_shapes
 from pinbase.arrays import Floats, Ints, Mask
 
 _PLANE_TOLERANCE = 1e-6  # difference of unit normals on a plane facet, by round-off and gmsh's
@@ -21,33 +22,16 @@ QUARTER_TRIANGLES = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
 _TRIANGLE_NODES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
 
 
-def _shapes(x: Floats, y: Floats, nodes: int) -> Floats:
-    """Shape functions (Q, K) on the triangle, quadratic (corners, edges 01, 12, 02) or linear.
+def slopes_at(x: Floats, y: Floats, nodes: int = 6) -> tuple[Floats, Floats]:
+    """Shape functions (Q, K) at points (Q,) of a facet, and their derivatives by x and y (Q, K, 2).
 
-    nodes: 3 for the linear ones.
+    nodes: 6 for quadratic functions (corners, then edges 01, 12, 02), 3 for linear ones.
     """
-    w = 1.0 - x - y
     if nodes == 3:
-        return np.stack([w, x, y], 1)
-    return np.stack(
-        [w * (2 * w - 1), x * (2 * x - 1), y * (2 * y - 1), 4 * w * x, 4 * x * y, 4 * w * y], 1
-    )
-
-
-def _slopes(x: Floats, y: Floats, nodes: int) -> Floats:
-    """The derivatives of the shape functions by x and y, (Q, K, 2)."""
-    w, zero = 1.0 - x - y, 0.0 * x
-    if nodes == 3:
-        one = zero + 1.0
-        return np.stack([np.stack([-one, one, zero], 1), np.stack([-one, zero, one], 1)], 2)
-    by_x = [1 - 4 * w, 4 * x - 1, zero, 4 * (w - x), 4 * y, -4 * y]
-    by_y = [1 - 4 * w, zero, 4 * y - 1, -4 * x, 4 * x, 4 * (w - y)]
-    return np.stack([np.stack(by_x, 1), np.stack(by_y, 1)], 2)
-
-
-def slopes_at(x: Floats, y: Floats) -> tuple[Floats, Floats]:
-    """The six quadratic shape functions at points (Q,), (Q, 6), and derivatives (Q, 6, 2)."""
-    return _shapes(x, y, 6), _slopes(x, y, 6)
+        slopes = np.array([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]])
+        return np.stack([1.0 - x - y, x, y], 1), np.broadcast_to(slopes, (len(x), 3, 2))
+    values, slopes = triangle_shapes(np.stack([x, y]))
+    return values.T, slopes.transpose(2, 1, 0)
 
 
 def quadrature() -> tuple[Floats, Floats]:
@@ -120,7 +104,7 @@ class Patch:
         self._nodes = space.nodes
         (x, y), weight = quadrature()
         size = np.linalg.norm(area_vectors(space.nodes[self._corners], x, y), axis=2) * weight
-        shapes = _shapes(x, y, self._corners.shape[1])
+        shapes, _ = slopes_at(x, y, self._corners.shape[1])
         self._mass = np.einsum("pq,qi,qj->pij", size, shapes, shapes)
         self.area = float(size.sum())
 
@@ -162,5 +146,5 @@ def resultants(nodes: Floats, forces: Floats, z: float = 0.0) -> Floats:
 
 def area_vectors(x: Floats, at_x: Floats, at_y: Floats) -> Floats:
     """Cross products (F, Q, 3) of the tangents of facets with nodes x (F, K, 3) at Q points."""
-    tangents = np.einsum("qfc,tfa->tqca", _slopes(at_x, at_y, x.shape[1]), x)
+    tangents = np.einsum("qfc,tfa->tqca", slopes_at(at_x, at_y, x.shape[1])[1], x)
     return np.cross(tangents[:, :, 0], tangents[:, :, 1])

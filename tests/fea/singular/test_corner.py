@@ -15,9 +15,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from fea.singular.williams import Side, antiplane_exponent, plane_eigenvalue, plane_exponent
-from geometry import ArgumentError
 from tests.support.each import each
-from tests.support.errors import raises
 
 Complex = NDArray[np.complex128]
 Floats = NDArray[np.float64]
@@ -161,17 +159,3 @@ def test_equal_sides_are_singular_at_inner_corners_only(sides: tuple[Side, Side]
 )
 def test_torsion(angle: int, sides: tuple[Side, Side], exponent: float) -> None:
     assert antiplane_exponent(math.radians(angle), *sides) == pytest.approx(exponent, abs=1e-14)
-
-
-@each("omega", [0.0, -1.0, 6.3, math.nan])
-def test_impossible_angles_are_refused(omega: float) -> None:
-    with raises(ArgumentError, "out-of-range", "angle"):
-        plane_exponent(omega, 0.3, "free", "free")
-    with raises(ArgumentError, "out-of-range", "angle"):
-        antiplane_exponent(omega, "free", "free")
-
-
-@each("nu", [-1.0, 0.5, math.nan])
-def test_impossible_ratios_are_refused(nu: float) -> None:
-    with raises(ArgumentError, "out-of-range", "Poisson"):
-        plane_exponent(math.pi, nu, "clamped", "free")

@@ -25,11 +25,10 @@ from fea.support.contact.contact import ContactProblem
 from fea.support.contact.resolution import Resolution
 from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
-from geometry import ArgumentError, Pin, Segment
+from geometry import Pin, Segment
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 from geometry.mesh.sizing import Grade
 from tests.support.each import each, sampled
-from tests.support.errors import raises
 
 Complex = NDArray[np.complex128]
 
@@ -165,18 +164,6 @@ def test_none_is_stronger_for_any(
     counted = zeros_between(0.1, L - 0.02, angle, *bodies)
     assume(counted is not None)
     assert counted == 0
-
-
-@each("angle", [0.0, -1.0, math.pi, math.nan])
-def test_angles_that_cannot_be(angle: float) -> None:
-    with raises(ArgumentError, "out-of-range", "angle"):
-        edge_exponent(1.0, 1.0, angle)
-
-
-@each("both", [(0.0, 0.0), (-1.0, 2.0), (1.0, math.inf), (math.nan, 1.0)])
-def test_compliances_that_cannot_be(both: tuple[float, float]) -> None:
-    with raises(ArgumentError, "not-positive", "compliances"):
-        edge_exponent(*both)
 
 
 def graded_rings() -> Floats:
