@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from loads.forces.acting import Load
+from loads.forces.corners import corners_of
 from loads.forces.inverse_dynamics import Dynamics
 from loads.forces.power_balance import ledger
 from loads.forces.reactions import Reactions
@@ -220,9 +220,7 @@ def _dense(course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamic
     times = np.concatenate([d.motion.times for d in first])
     start, once = np.unique(times, return_index=True)
     known = np.concatenate([columns(d) for d in first])[once]
-    corners = np.concatenate(
-        [course.corners, _reversals(course, start), _kinks(course, samples.applied, start)]
-    )
+    corners = corners_of(course, samples.applied, start)
     quantities = resolved(
         start, lambda times: columns(solve(times)), corners, groups=groups.tolist(), known=known
     )
@@ -279,59 +277,6 @@ def efforts(
         )
         for k in range(D)
     )
-
-
-def _reversals(course: Course, samples: Floats) -> Floats:
-    """Times at which a slider or pin with friction reverses, (N,) s: its friction jumps there.
-
-    samples: (T,) s, times between which sliding speeds are resolved.
-    """
-    linkage = course.loops.linkage
-    first = course.loops.frames - 1
-    slides = [first + k for k, s in enumerate(linkage.sliders) if s.friction]
-    rubbing = [(j, c) for j, c in linkage.connections if c.friction]
-    if not (slides or rubbing) or not course.pace:
-        return np.empty(0)
-
-    def speeds(times: Floats) -> Floats:
-        motion = course.at(times)
-        spins = [motion.turning(j, c)[:, None] * linkage.length_scale for j, c in rubbing]
-        return np.concatenate([motion.v[:, slides], *spins], axis=1) / course.pace
-
-    history = resolved(samples, speeds, course.corners)
-    out = [history.times[(history.values == 0.0).any(axis=1)]]
-    out += [history.crossings(k) for k in range(len(slides) + len(rubbing))]
-    return np.unique(np.concatenate(out))
-
-
-def _kinks(course: Course, loads: Sequence[Load], samples: Floats) -> Floats:
-    """Times of a course at which any of the loads has a kink or a jump, s.
-
-    samples: (T,) s, times between which the measures of the loads are resolved.
-    """
-    kinks = [k for load in loads for k in load.kinks]
-    switches = [t for load in loads for t in load.switches]
-    if not kinks:
-        return np.array(switches)
-
-    def measured(times: Floats) -> Floats:
-        motion = course.at(times)
-        return np.stack([k.measure(motion)[k.rate] for k in kinks], axis=1)
-
-    measures = resolved(samples, measured, np.array([*course.corners, *switches]))
-    out = [np.array(switches)]
-    for j, kink in enumerate(kinks):
-        x = measures.values[:, j]
-        for level in kink.curve.knots(float(x.min()), float(x.max())):
-            out += [measures.crossings(j, level), measures.times[_touches(x - level)]]
-    return np.unique(np.concatenate(out))
-
-
-def _touches(deviation: Floats) -> np.ndarray:
-    """Mask of the values (N,) that are zero, except inside an interval at zero."""
-    at = deviation == 0.0
-    rests = np.concatenate([[True], at[:-1]]) & np.concatenate([at[1:], [True]])
-    return np.asarray(at & ~rests)
 
 
 def _postures(course: Course, times: Floats) -> tuple[dict[tuple[str, str], Extremum], Extremum]:

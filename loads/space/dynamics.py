@@ -90,7 +90,7 @@ class SpaceDynamics:
         rubbing = np.zeros(len(motion))
         for k, joint in enumerate(linkage.joints):
             if joint.friction:
-                rubbing += self.friction[part, k] * turning_speed(motion, k)
+                rubbing += self.friction[part, k] * motion.turning(k)
         given = self.power[part].sum(axis=1) + power(motion, self.loads) + weight + rubbing
         return np.asarray(given - kinetic)
 
@@ -234,7 +234,7 @@ class _Balance:
             for body, sign in ((joint.moving, -1.0), (joint.base, 1.0)):
                 if (b := linkage.index[body]) < len(linkage.bodies):
                     couples[:, b] += sign * axis
-            speed = turning_speed(motion, k) * linkage.length_scale
+            speed = motion.turning(k) * linkage.length_scale
             against = np.where(np.abs(speed) > MIN_TURNING_SPEED * motion.pace, -np.sign(speed), 0)
             required = self.equations.generalised(motion.pose, forces, couples)
             yield _Source(f"joint {joint.name}", True, k, joint.friction * against, required)
@@ -324,11 +324,3 @@ class _Balance:
             moments=-wrenches[..., 3:],
             turn=np.zeros(wrenches.shape[:2]),
         )
-
-
-def turning_speed(motion: SpaceMotion, k: int) -> Floats:
-    """Angular velocity of the moving body of joint k against its base about the axis, (T,)."""
-    joint = motion.linkage.joints[k]
-    axis = motion.rotation(joint.base) @ axes_of(joint)["w"]
-    relative = motion.spin(joint.moving) - motion.spin(joint.base)
-    return np.asarray(np.einsum("ti,ti->t", axis, relative))

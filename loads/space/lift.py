@@ -15,11 +15,12 @@ from dataclasses import replace
 import numpy as np
 
 from loads.forces.acting import Applied, Load, Spring, Varying
-from loads.forces.measures import Distance, Position
+from loads.forces.measures import Clock, Distance, Position
 from loads.linkage.gears import side_weight
 from loads.linkage.linkage import Linkage, LinkageError
 from loads.linkage.parts import GROUND, Body, Joint, Point, Slider, Teeth, Turn
-from loads.space.acting import MeasuredFactor, SpaceForce, SpaceLoad, SpaceSpring
+from loads.motion.motion import Motion
+from loads.space.acting import Coordinate, SpaceForce, SpaceLoad, SpaceSpring
 from loads.space.linkage import (
     BodyAngle,
     Inertia,
@@ -187,13 +188,13 @@ class _Lift:
         )
         if load.times is None:
             return [], force
-        measure, acts = load.times.measure, (load.begin, load.end)
+        measure = load.times.measure
         if not isinstance(measure, Distance | Position):
-            return [], replace(force, times=MeasuredFactor(None, load.times.curve, *acts))
+            return [], replace(force, times=Varying(Clock(), load.times.curve))
         coordinates, name = self._coordinate(self._unused(load.times), measure)
-        return coordinates, replace(force, times=MeasuredFactor(name, load.times.curve, *acts))
+        return coordinates, replace(force, times=Varying(Coordinate(name), load.times.curve))
 
-    def _unused(self, times: Varying) -> str:
+    def _unused(self, times: Varying[Motion]) -> str:
         """A name of a load's coordinate that no other has."""
         return f"argument {id(times)}"
 

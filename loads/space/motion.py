@@ -12,7 +12,7 @@ from loads.linkage.drives import Law
 from loads.motion.least_squares import Factors
 from loads.motion.mobility import require_driven
 from loads.motion.motion import Followed, Instants
-from loads.space.conditions import Rates
+from loads.space.conditions import Rates, axes_of
 from loads.space.equations import SpaceEquations
 from loads.space.linkage import SpaceLinkage, Vector
 from loads.space.pose import SpacePose
@@ -67,6 +67,22 @@ class SpaceMotion(Instants[SpaceEquations]):
     def spin_rate(self, body: str) -> Floats:
         """Angular acceleration of a body, world axes, (T, 3) rad/s^2."""
         return np.asarray(self.accelerations.spin[:, self.linkage.index[body]])
+
+    def turning(self, k: int) -> Floats:
+        """Angular velocity of the moving body of joint k against its base about the axis, (T,)."""
+        joint = self.linkage.joints[k]
+        axis = self.rotation(joint.base) @ axes_of(joint)["w"]
+        relative = self.spin(joint.moving) - self.spin(joint.base)
+        return np.asarray(np.einsum("ti,ti->t", axis, relative))
+
+    @property
+    def rubbing(self) -> Floats:
+        """Speeds (T, N) m/s of joints with friction, their turns times the length scale."""
+        which = [k for k, joint in enumerate(self.linkage.joints) if joint.friction]
+        turns = [self.turning(k)[:, None] for k in which]
+        return np.concatenate([np.zeros((len(self), 0)), *turns], axis=1) * (
+            self.linkage.length_scale
+        )
 
     def place(self, body: str, drawn: Vector) -> Floats:
         """Position (T, 3) m of a body's point, as drawn (m)."""

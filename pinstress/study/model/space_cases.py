@@ -10,9 +10,9 @@ from itertools import chain
 import numpy as np
 
 from loads import Effort, Law, PeakForces, Reactions, StateDrive
+from loads.forces.corners import corners_of
 from loads.forces.holding import OPENING_FORCE_TOLERANCE, require_pressed
 from loads.space.acting import SpaceLoad
-from loads.space.corners import corners_of
 from loads.space.dynamics import SpaceDynamics, space_reactions
 from loads.space.ground import BodyMomenta, GroundInertia, body_momenta
 from loads.space.holding import held, held_as_drawn
@@ -148,7 +148,9 @@ class MovedInSpace:
     @cached_property
     def corners(self) -> Floats:
         """Times at which a force may jump or has a kink, s."""
-        return corners_of(self.course, self.loads)
+        course = self.course
+        nodes = np.unique([course.first, *course.path.nodes, course.last])
+        return corners_of(course, self.loads, nodes)
 
     def solved(self, samples: int, extremes: bool) -> InSpace:
         """Return the case at equally spaced instants; where asked, with its extremes."""

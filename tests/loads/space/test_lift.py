@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from loads import Dynamics, LinkageError, Slider, StateDrive
+from loads.forces.corners import Kinks
 from loads.space.acting import SpaceLoad, SpacePush
 from loads.space.dynamics import SpaceDynamics, space_reactions
 from loads.space.lift import lamina, lift
@@ -46,6 +47,8 @@ class _Known:
 
     name: str
     force: Floats
+    kinks: tuple[Kinks[SpaceMotion], ...] = ()
+    switches: tuple[float, ...] = ()
 
     def pushes(self, motion: SpaceMotion) -> Iterator[SpacePush]:
         return iter(())
