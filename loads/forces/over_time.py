@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from loads.forces.corners import corners_of
 from loads.forces.inverse_dynamics import Dynamics
 from loads.forces.power_balance import ledger
 from loads.forces.reactions import Reactions
-from loads.motion.motion import Course, Motion
+from loads.motion.motion import Course, Followed, Instants
 from loads.motion.refine import Resolved, resolved
 from loads.motion.transmission_angles import transmission_angles
 from pinbase.arrays import Floats
@@ -23,6 +24,9 @@ MEAN_ROUND_OFF = 1e-8  # of the largest: a mean below it is zero
 # Of a maximum: where the value solved at its instant is this close to the interpolated one, the
 # solved one is reported. It differs where the quantity jumps, and the maximum is a one-sided limit.
 AGREEMENT_TOLERANCE = 1e-5
+
+Angles = dict[tuple[str, str], Floats]
+M = TypeVar("M", bound=Instants[Any])
 
 
 @dataclass(frozen=True)
@@ -180,7 +184,10 @@ def over_time(course: Course, solve: Callable[[Floats], Dynamics], samples: Dyna
     d = _dense(course, solve, samples)
     largest = peaks(d.quantities, lambda times: solve(times).reactions, [d.forces])
     between = solve(d.quantities.nodes)
-    angles, condition = _postures(course, between.motion.times)
+    angles, condition = lowest_angles(
+        course, between.motion.times, transmission_angles, lambda motion: motion.condition
+    )
+    assert condition is not None
     positions = np.concatenate([samples.course[0], between.course[0]])
     strokes = np.ptp(positions, axis=0)
     drives = DriveHistory(d.quantities, d.effort, d.power)
@@ -279,26 +286,37 @@ def efforts(
     )
 
 
-def _postures(course: Course, times: Floats) -> tuple[dict[tuple[str, str], Extremum], Extremum]:
+def lowest_angles(
+    course: Followed[M],
+    times: Floats,
+    angles: Callable[[M], Angles],
+    condition: Callable[[M], Floats] | None = None,
+) -> tuple[dict[tuple[str, str], Extremum], Extremum | None]:
     """Smallest transmission angles by link and joint, and the largest condition number.
 
     times: (T,) s, as dense as the forces require.
+    angles: transmission angles (T,) rad, by link and joint.
+    condition: condition numbers (T,); None: they are not wanted.
     """
     dense = course.at(times)
-    keys = [k for k, v in transmission_angles(dense).items() if np.isfinite(v).any()]
+    keys = [k for k, v in angles(dense).items() if np.isfinite(v).any()]
+    if not keys and condition is None:
+        return {}, None
 
-    def columns(motion: Motion) -> Floats:
+    def columns(motion: M) -> Floats:
         """Squared sines, which have no kinks, and the reciprocal of the condition number."""
-        angles = transmission_angles(motion)
+        known = angles(motion)
         best = np.full(len(motion), 0.5 * np.pi)  # where a link has no transmission angle
-        sines = [np.sin(np.nan_to_num(angles.get(k, best), nan=0.5 * np.pi)) ** 2 for k in keys]
-        return np.stack([*sines, 1.0 / motion.condition], axis=1)
+        sines = [np.sin(np.nan_to_num(known.get(k, best), nan=0.5 * np.pi)) ** 2 for k in keys]
+        return np.stack([*sines, *([] if condition is None else [1.0 / condition(motion)])], axis=1)
 
     history = resolved(times, lambda t: columns(course.at(t)), course.corners, known=columns(dense))
     when = history.largest(np.negative)[1]
     values = np.diagonal(columns(course.at(when)))
-    angles = {
+    lowest = {
         key: Extremum(float(np.arcsin(np.sqrt(min(value, 1.0)))), float(time))
         for key, value, time in zip(keys, values, when, strict=False)
     }
-    return angles, Extremum(float(1.0 / values[-1]), float(when[-1]))
+    if condition is None:
+        return lowest, None
+    return lowest, Extremum(float(1.0 / values[-1]), float(when[-1]))

@@ -37,11 +37,13 @@ class SpaceOverTime:
 
     drives: in the linkage's order.
     violation: largest violation of the power balance, of the largest power of any drive.
+    nodes: (N,) s, instants between which little happens.
     """
 
     peaks: PeakForces
     drives: tuple[Effort, ...]
     violation: float
+    nodes: Floats
 
 
 def space_over_time(
@@ -99,7 +101,10 @@ def space_over_time(
     largest = float(_largest(first, "power").max(initial=least_power)) or 1.0
     violation = max(float(np.abs(s.dynamics.imbalance).max()) for s in first) / largest
     return SpaceOverTime(
-        peaks(history, lambda t: solve(t).reactions, [force, moment]), drives, violation
+        peaks(history, lambda t: solve(t).reactions, [force, moment]),
+        drives,
+        violation,
+        history.nodes,
     )
 
 
