@@ -252,7 +252,7 @@ class _Balance:
                 if (b := linkage.index[body]) < len(linkage.bodies):
                     forces[:, b] += sign * normal
                     couples[:, b] += sign * np.cross(at - pose.centre[:, b], normal)
-            share = np.full(len(motion), np.tan(teeth.pressure_angle))
+            share = np.full(len(motion), teeth.spread)
             required = self.equations.generalised(pose, forces, couples)
             yield _Source(f"teeth {ratio.name}", False, g, share, required)
 

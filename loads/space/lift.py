@@ -9,6 +9,7 @@ lamina, alike about all axes in its plane: half of it about each, the least that
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
@@ -161,9 +162,9 @@ class _Lift:
             teeth.bodies,
             teeth.carrier,
             (*teeth.at, z),
+            (-teeth.normal[1], teeth.normal[0], 0.0),
             (*teeth.normal, 0.0),
-            AXIS,
-            teeth.pressure_angle,
+            math.tan(teeth.pressure_angle),
         )
         return angles, Ratio(teeth.name, tuple(names), tuple(weights), contact)
 

@@ -132,16 +132,18 @@ class ToothContact:
     bodies: the force is that on the first.
     carrier: body in which the pitch point is fixed.
     at: pitch point as drawn, m.
-    normal: direction as drawn, out of the first body into the second. axis: of the gears.
-    pressure_angle: rad; the teeth also push apart by its tangent.
+    along: the force as drawn per newton along the pitch circles; of oblique teeth it has a part
+    along them, where they do not slide.
+    normal: unit vector as drawn, out of the first body into the second.
+    spread: the force by which the teeth push apart, per newton along the pitch circles.
     """
 
     bodies: tuple[str, str]
     carrier: str
     at: Vector
+    along: Vector
     normal: Vector
-    axis: Vector
-    pressure_angle: float = 0.0
+    spread: float = 0.0
 
 
 @dataclass(frozen=True)
