@@ -13,6 +13,7 @@ from loads.space.linkage import RIGHT_ANGLE_TOLERANCE
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.drives import LawTable, require_few_turns
 from pinstress.study.schema.forces import LineLawTable, TorsionLawTable
+from pinstress.study.schema.gears import SpaceGearTable, SpaceRackTable
 from pinstress.study.schema.mechanism import (
     BarTable,
     LinkStiffnessTable,
@@ -42,10 +43,6 @@ from pinstress.study.schema.types import (
 MAX_COSINE_OF_SKEW = math.cos(math.radians(1.0))
 PLANAR_PARTS = {  # of a mechanism, and what stands for them in space
     "slider": 'use a joint of kind = "prismatic" between its two bodies',
-    "gear": "give each of the two bodies a drive, their laws in the ratio of the teeth, and load "
-    "both with the force between the teeth, which drives do not exert on bearings",
-    "rack": "give each of the two bodies a drive, their laws in the ratio of the gear's radius, "
-    "and load both with the force between the teeth, which drives do not exert on bearings",
     "point": "remove it: bodies.csv has the motion of every body",
 }
 
@@ -404,6 +401,10 @@ class SpaceMechanismTable(StrictTable):
     drive: Annotated[list[AnySpaceDrive], ONE_OR_SEVERAL] = []
     """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom; none
     for a structure, and where `hold` names the locks of every case."""
+    gear: dict[str, SpaceGearTable] = {}
+    """Pairs of gears by name, which is also that of the force between their teeth."""
+    rack: dict[str, SpaceRackTable] = {}
+    """Racks with their gears by name, which is also that of the force between their teeth."""
     stop: dict[str, SpaceStopTable] = {}
     """Stops and locks by name."""
     spring: dict[str, SpaceSpringTable] = {}
