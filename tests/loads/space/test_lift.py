@@ -76,7 +76,9 @@ def _cases(study: Study) -> Iterator[tuple[str, Dynamics]]:
 def _in_space(study: Study, name: str, planar: Dynamics) -> SpaceDynamics:
     motion = planar.motion
     smooth = tuple(replace(s, friction=0.0) for s in motion.linkage.sliders)
-    flat = replace(motion.linkage, sliders=smooth)
+    hold = {a.name for a in planar.actuators}  # a rule applies where all its members do
+    parallel = tuple(rule for rule in motion.linkage.parallel if hold >= {*rule.members})
+    flat = replace(motion.linkage, sliders=smooth, parallel=parallel)
     lifted, loads = lift(flat, planar.applied)
     driven = {*flat.driven, *(name for rule in flat.parallel for name in rule.members)}
     known: list[SpaceLoad] = [
