@@ -5,22 +5,25 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
+from loads.forces.corners import Kinks, Unsmooth
 from loads.forces.curve import ForceTable
 from loads.forces.measures import Distance, Measure, Position
 from loads.linkage.linkage import LinkageError
 from loads.linkage.parts import Point, Slider, Turn
 from loads.motion.complex_points import cross, number
-from loads.motion.motion import Motion
+from loads.motion.motion import Instants, Motion
 from loads.motion.planar_equations import is_particle
 from pinbase.arrays import Complex, Floats, Mask
 
 SWITCH_TIME_TOLERANCE = 1e-12  # relative: an instant this close to a switch coincides with it
 MIN_POINT_DISTANCE = 1e-12  # of the length scale: points this close have no line between them
 MAX_PARTICLE_ARM = 1e-4  # of the length scale: a force that passes a particle so near acts at it
+
+M = TypeVar("M", bound=Instants[Any])
 
 
 @dataclass(frozen=True)
@@ -38,33 +41,11 @@ class Push:
     couple: Floats
 
 
-@dataclass(frozen=True)
-class Kinks:
-    """Values of a measure at which a force is not smooth, the knots of a curve.
-
-    rate: whether they are values of the measure's rate instead.
-    """
-
-    measure: Measure
-    curve: ForceTable
-    rate: bool = False
-
-
-class Load(Protocol):
+class Load(Unsmooth[Kinks[Motion]], Protocol):
     """A load on a linkage, known at every instant of a motion."""
 
     def pushes(self, motion: Motion) -> Iterator[Push]:
         """The load's actions on each item at every instant."""
-        ...
-
-    @property
-    def kinks(self) -> tuple[Kinks, ...]:
-        """The values of its measures at which the load is not smooth."""
-        ...
-
-    @property
-    def switches(self) -> tuple[float, ...]:
-        """Times at which the load jumps, s."""
         ...
 
 
@@ -79,15 +60,35 @@ def acts(times: Floats, begin: float, end: float) -> Mask:
 
 
 @dataclass(frozen=True)
-class Varying:
+class Varying(Generic[M]):
     """A factor tabulated over a measure."""
 
-    measure: Measure
+    measure: Measure[M]
     curve: ForceTable
 
-    def __call__(self, motion: Motion) -> Floats:
-        """The factor at every instant, (T,)."""
-        return self.curve(self.measure(motion)[0])
+    @property
+    def kinks(self) -> tuple[Kinks[M], ...]:
+        """The rows of the table."""
+        return (Kinks(self.measure, self.curve),)
+
+
+def factor(motion: M, times: Varying[M] | None, begin: float, end: float) -> Floats:
+    """Factor of a load at every instant, (T,); at a switch that just before it.
+
+    times: its table; None: 1.
+    begin, end: times between which the load acts, s; its table need not cover others.
+    """
+    on, out = acts(motion.times, begin, end), np.zeros(len(motion))
+    if times is None:
+        out[on] = 1.0
+    elif on.any():
+        out[on] = times.curve(times.measure(motion)[0][on])
+    return out
+
+
+def switches(*times: float) -> tuple[float, ...]:
+    """Those times at which a load begins or ends that are finite, s."""
+    return tuple(t for t in times if math.isfinite(t))
 
 
 @dataclass(frozen=True)
@@ -107,7 +108,7 @@ class Applied:
     force: Point = (0.0, 0.0)
     couple: float = 0.0
     follows: bool = False
-    times: Varying | None = None
+    times: Varying[Motion] | None = None
     begin: float = -math.inf
     end: float = math.inf
 
@@ -122,23 +123,18 @@ class Applied:
         yield Push(self.body, self.at, self.along(motion), self.couple * self.size(motion))
 
     @property
-    def kinks(self) -> tuple[Kinks, ...]:
+    def kinks(self) -> tuple[Kinks[Motion], ...]:
         """The rows of the factor's table."""
-        return () if self.times is None else (Kinks(self.times.measure, self.times.curve),)
+        return () if self.times is None else self.times.kinks
 
     @property
     def switches(self) -> tuple[float, ...]:
         """Times at which the load begins and ends, s."""
-        return tuple(t for t in (self.begin, self.end) if math.isfinite(t))
+        return switches(self.begin, self.end)
 
     def size(self, motion: Motion) -> Floats:
         """Factor of force and couple at every instant, (T,)."""
-        on, factor = acts(motion.times, self.begin, self.end), np.zeros(len(motion))
-        if self.times is None:
-            factor[on] = 1.0
-        elif on.any():  # its table need not cover the time in which it does not act
-            factor[on] = self.times.curve(self.times.measure(motion)[0][on])
-        return factor
+        return factor(motion, self.times, self.begin, self.end)
 
 
 @dataclass(frozen=True)
@@ -167,7 +163,7 @@ class ForceLaw:
             out = out + self.table(x)
         return out if self.damper is None else out + self.damper(rate)
 
-    def kinks(self, measure: Measure) -> tuple[Kinks, ...]:
+    def kinks(self, measure: Measure[M]) -> tuple[Kinks[M], ...]:
         """The rows of the tables, as values of `measure`."""
         tables = ((self.table, False), (self.damper, True))
         return tuple(Kinks(measure, curve, rate) for curve, rate in tables if curve is not None)
@@ -185,7 +181,7 @@ class Spring:
     law: ForceLaw
 
     @property
-    def kinks(self) -> tuple[Kinks, ...]:
+    def kinks(self) -> tuple[Kinks[Motion], ...]:
         """The rows of the law's tables."""
         return self.law.kinks(self.between)
 

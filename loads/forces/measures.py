@@ -3,27 +3,29 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
 from loads.linkage.parts import Point, Slider, Turn
 from loads.motion.complex_points import number
-from loads.motion.motion import Motion
+from loads.motion.motion import Instants, Motion
 from pinbase.arrays import Floats
 
+M = TypeVar("M", contravariant=True)  # a Motion or SpaceMotion
 
-class Measure(Protocol):
+
+class Measure(Protocol[M]):
     """A quantity of a motion; called, it gives value and rate at every instant, (T,) each, SI."""
 
-    def __call__(self, motion: Motion) -> tuple[Floats, Floats]: ...
+    def __call__(self, motion: M) -> tuple[Floats, Floats]: ...
 
 
 @dataclass(frozen=True)
 class Clock:
     """Time, s."""
 
-    def __call__(self, motion: Motion) -> tuple[Floats, Floats]:
+    def __call__(self, motion: Instants[Any]) -> tuple[Floats, Floats]:
         """Values and rates."""
         return motion.times, np.ones(len(motion))
 

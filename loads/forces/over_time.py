@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, TypeVar
 
 import numpy as np
 
-from loads.forces.acting import Load
+from loads.forces.corners import corners_of
 from loads.forces.inverse_dynamics import Dynamics
 from loads.forces.power_balance import ledger
 from loads.forces.reactions import Reactions
-from loads.motion.motion import Course, Motion
+from loads.motion.motion import Course, Followed, Instants
 from loads.motion.refine import Resolved, resolved
 from loads.motion.transmission_angles import transmission_angles
 from pinbase.arrays import Floats
@@ -23,6 +24,9 @@ MEAN_ROUND_OFF = 1e-8  # of the largest: a mean below it is zero
 # Of a maximum: where the value solved at its instant is this close to the interpolated one, the
 # solved one is reported. It differs where the quantity jumps, and the maximum is a one-sided limit.
 AGREEMENT_TOLERANCE = 1e-5
+
+Angles = dict[tuple[str, str], Floats]
+M = TypeVar("M", bound=Instants[Any])
 
 
 @dataclass(frozen=True)
@@ -180,7 +184,10 @@ def over_time(course: Course, solve: Callable[[Floats], Dynamics], samples: Dyna
     d = _dense(course, solve, samples)
     largest = peaks(d.quantities, lambda times: solve(times).reactions, [d.forces])
     between = solve(d.quantities.nodes)
-    angles, condition = _postures(course, between.motion.times)
+    angles, condition = lowest_angles(
+        course, between.motion.times, transmission_angles, lambda motion: motion.condition
+    )
+    assert condition is not None
     positions = np.concatenate([samples.course[0], between.course[0]])
     strokes = np.ptp(positions, axis=0)
     drives = DriveHistory(d.quantities, d.effort, d.power)
@@ -220,9 +227,7 @@ def _dense(course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamic
     times = np.concatenate([d.motion.times for d in first])
     start, once = np.unique(times, return_index=True)
     known = np.concatenate([columns(d) for d in first])[once]
-    corners = np.concatenate(
-        [course.corners, _reversals(course, start), _kinks(course, samples.applied, start)]
-    )
+    corners = corners_of(course, samples.applied, start)
     quantities = resolved(
         start, lambda times: columns(solve(times)), corners, groups=groups.tolist(), known=known
     )
@@ -281,79 +286,37 @@ def efforts(
     )
 
 
-def _reversals(course: Course, samples: Floats) -> Floats:
-    """Times at which a slider or pin with friction reverses, (N,) s: its friction jumps there.
-
-    samples: (T,) s, times between which sliding speeds are resolved.
-    """
-    linkage = course.loops.linkage
-    first = course.loops.frames - 1
-    slides = [first + k for k, s in enumerate(linkage.sliders) if s.friction]
-    rubbing = [(j, c) for j, c in linkage.connections if c.friction]
-    if not (slides or rubbing) or not course.pace:
-        return np.empty(0)
-
-    def speeds(times: Floats) -> Floats:
-        motion = course.at(times)
-        spins = [motion.turning(j, c)[:, None] * linkage.length_scale for j, c in rubbing]
-        return np.concatenate([motion.v[:, slides], *spins], axis=1) / course.pace
-
-    history = resolved(samples, speeds, course.corners)
-    out = [history.times[(history.values == 0.0).any(axis=1)]]
-    out += [history.crossings(k) for k in range(len(slides) + len(rubbing))]
-    return np.unique(np.concatenate(out))
-
-
-def _kinks(course: Course, loads: Sequence[Load], samples: Floats) -> Floats:
-    """Times of a course at which any of the loads has a kink or a jump, s.
-
-    samples: (T,) s, times between which the measures of the loads are resolved.
-    """
-    kinks = [k for load in loads for k in load.kinks]
-    switches = [t for load in loads for t in load.switches]
-    if not kinks:
-        return np.array(switches)
-
-    def measured(times: Floats) -> Floats:
-        motion = course.at(times)
-        return np.stack([k.measure(motion)[k.rate] for k in kinks], axis=1)
-
-    measures = resolved(samples, measured, np.array([*course.corners, *switches]))
-    out = [np.array(switches)]
-    for j, kink in enumerate(kinks):
-        x = measures.values[:, j]
-        for level in kink.curve.knots(float(x.min()), float(x.max())):
-            out += [measures.crossings(j, level), measures.times[_touches(x - level)]]
-    return np.unique(np.concatenate(out))
-
-
-def _touches(deviation: Floats) -> np.ndarray:
-    """Mask of the values (N,) that are zero, except inside an interval at zero."""
-    at = deviation == 0.0
-    rests = np.concatenate([[True], at[:-1]]) & np.concatenate([at[1:], [True]])
-    return np.asarray(at & ~rests)
-
-
-def _postures(course: Course, times: Floats) -> tuple[dict[tuple[str, str], Extremum], Extremum]:
+def lowest_angles(
+    course: Followed[M],
+    times: Floats,
+    angles: Callable[[M], Angles],
+    condition: Callable[[M], Floats] | None = None,
+) -> tuple[dict[tuple[str, str], Extremum], Extremum | None]:
     """Smallest transmission angles by link and joint, and the largest condition number.
 
     times: (T,) s, as dense as the forces require.
+    angles: transmission angles (T,) rad, by link and joint.
+    condition: condition numbers (T,); None: they are not wanted.
     """
     dense = course.at(times)
-    keys = [k for k, v in transmission_angles(dense).items() if np.isfinite(v).any()]
+    keys = [k for k, v in angles(dense).items() if np.isfinite(v).any()]
+    if not keys and condition is None:
+        return {}, None
 
-    def columns(motion: Motion) -> Floats:
+    def columns(motion: M) -> Floats:
         """Squared sines, which have no kinks, and the reciprocal of the condition number."""
-        angles = transmission_angles(motion)
+        known = angles(motion)
         best = np.full(len(motion), 0.5 * np.pi)  # where a link has no transmission angle
-        sines = [np.sin(np.nan_to_num(angles.get(k, best), nan=0.5 * np.pi)) ** 2 for k in keys]
-        return np.stack([*sines, 1.0 / motion.condition], axis=1)
+        sines = [np.sin(np.nan_to_num(known.get(k, best), nan=0.5 * np.pi)) ** 2 for k in keys]
+        return np.stack([*sines, *([] if condition is None else [1.0 / condition(motion)])], axis=1)
 
     history = resolved(times, lambda t: columns(course.at(t)), course.corners, known=columns(dense))
     when = history.largest(np.negative)[1]
     values = np.diagonal(columns(course.at(when)))
-    angles = {
+    lowest = {
         key: Extremum(float(np.arcsin(np.sqrt(min(value, 1.0)))), float(time))
         for key, value, time in zip(keys, values, when, strict=False)
     }
-    return angles, Extremum(float(1.0 / values[-1]), float(when[-1]))
+    if condition is None:
+        return lowest, None
+    return lowest, Extremum(float(1.0 / values[-1]), float(when[-1]))

@@ -169,6 +169,18 @@ class Motion(Instants[PlanarEquations]):
         carrier = self.linkage.carrier(joint)
         return self.angular_velocity(connection.body) - self.angular_velocity(carrier)
 
+    @property
+    def rubbing(self) -> Floats:
+        """Speeds (T, N) m/s of sliders and pins with friction, turns times the length scale."""
+        first = self.loops.frames - 1
+        slides = [first + k for k, s in enumerate(self.linkage.sliders) if s.friction]
+        turns = [
+            self.turning(j, c)[:, None] * self.linkage.length_scale
+            for j, c in self.linkage.connections
+            if c.friction
+        ]
+        return np.concatenate([self.v[:, slides], *turns], axis=1)
+
     def _angular(self, coordinates: Floats, item: str) -> Floats:
         """The column of an item's angle, (T,), of coordinates or rates (T, n)."""
         f = self.loops.frame[self.linkage.index[item]]

@@ -8,6 +8,8 @@ joint (a dead point). For a four-bar it is the textbooks' angle between coupler 
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
+
 import numpy as np
 
 from loads.linkage.linkage import Linkage
@@ -39,7 +41,9 @@ def transmission_angles(motion: Motion) -> dict[tuple[str, str], Floats]:
         for body, ends in _links(motion, rates, still).items():
             angles = _angles(motion, rates, body, ends)
             for joint, angle in zip(ends, angles, strict=True):
-                if _moved_by(linkage, beside, body, joint, still | {body}, drivers):
+                other = next(j for j in ends if j != joint)
+                either = _bodies(joint), _bodies(other)
+                if moves_end(beside, *either, still | {body}, drivers):
                     key = (body, joint.name)
                     out[key] = np.minimum(out[key], angle) if key in out else angle
     return out
@@ -109,28 +113,31 @@ def _spin(motion: Motion, rates: Floats, body: str) -> Floats:
     return rates[:, f - 1] if f else np.zeros(len(rates))
 
 
-def _moved_by(
-    linkage: Linkage,
-    beside: dict[str, set[str]],
-    link: str,
-    end: Joint,
+def moves_end(
+    beside: Mapping[str, set[str]],
+    end: Sequence[str],
+    other: Sequence[str],
     blocked: set[str],
     drivers: tuple[str, str],
 ) -> bool:
-    """Whether a link moves the bodies at this end.
+    """Whether a link moves the bodies at an end.
 
     It does if the drive does not reach them in another way, or reaches both ends of the link.
-    blocked: the link, and the bodies at rest.
+    beside: the bodies that are connected with each body.
+    end, other: the bodies at the two ends. blocked: the link, and the bodies at rest.
     """
-    other = next(j for j in linkage.joints_on(link) if j != end)
-    return not _reached(beside, end, blocked, drivers) or _reached(beside, other, blocked, drivers)
+    reached = (_reached(beside, bodies, blocked, drivers) for bodies in (end, other))
+    return not next(reached) or next(reached)
 
 
 def _reached(
-    beside: dict[str, set[str]], end: Joint, blocked: set[str], drivers: tuple[str, str]
+    beside: Mapping[str, set[str]],
+    bodies: Sequence[str],
+    blocked: set[str],
+    drivers: tuple[str, str],
 ) -> bool:
-    """Whether the drive reaches a joint without passing through blocked bodies."""
-    seen, queue = set(blocked), _bodies(end)
+    """Whether the drive reaches any of the bodies without passing through blocked ones."""
+    seen, queue = set(blocked), [*bodies]
     while queue:
         body = queue.pop()
         if body in seen:
@@ -147,6 +154,11 @@ def _neighbours(linkage: Linkage) -> dict[str, set[str]]:
     groups = [_bodies(joint) for joint in linkage.joints]
     groups += [[s.base, s.moving] for s in linkage.sliders]
     groups += [[*t.bodies] for t in linkage.teeth] + [[*g] for g in linkage.rigid.values()]
+    return neighbours(groups)
+
+
+def neighbours(groups: Iterable[Sequence[str]]) -> dict[str, set[str]]:
+    """The bodies that share a group with each body."""
     beside: dict[str, set[str]] = {}
     for group in groups:
         for body in group:

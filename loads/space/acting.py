@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
-from loads.forces.acting import ForceLaw, acts
-from loads.forces.curve import ForceTable
+from loads.forces.acting import ForceLaw, Varying, factor, switches
+from loads.forces.corners import Kinks, Unsmooth
 from loads.space.linkage import Vector
 from loads.space.motion import SpaceMotion
 from pinbase.arrays import Floats
@@ -30,7 +30,7 @@ class SpacePush:
     couple: Floats
 
 
-class SpaceLoad(Protocol):
+class SpaceLoad(Unsmooth[Kinks[SpaceMotion]], Protocol):
     """A load on a linkage in space, known at every instant of a motion."""
 
     def pushes(self, motion: SpaceMotion) -> Iterator[SpacePush]:
@@ -43,26 +43,15 @@ class SpaceLoad(Protocol):
 
 
 @dataclass(frozen=True)
-class MeasuredFactor:
-    """A factor tabulated over time, or over a measured coordinate.
+class Coordinate:
+    """A measured coordinate, on which a force can depend."""
 
-    measured: its name; None: time.
-    begin, end: times between which it matters, s.
-    """
+    name: str
 
-    measured: str | None
-    table: ForceTable
-    begin: float = -math.inf
-    end: float = math.inf
-
-    def __call__(self, motion: SpaceMotion) -> Floats:
-        """The factor at every instant, (T,). Raises: LinkageError outside the table."""
-        on = acts(motion.times, self.begin, self.end)
-        at = motion.times if self.measured is None else motion.coordinate(self.measured)[0]
-        factor = np.zeros(len(motion))
-        if on.any():
-            factor[on] = self.table(at[on])
-        return factor
+    def __call__(self, motion: SpaceMotion) -> tuple[Floats, Floats]:
+        """Values and rates."""
+        value, rate, _ = motion.coordinate(self.name)
+        return value, rate
 
 
 @dataclass(frozen=True)
@@ -73,7 +62,7 @@ class SpaceForce:
     force, couple: N and N m.
     follows: whether both turn with the body (they are then stated as drawn); otherwise their
     directions are fixed in the world.
-    times: gives a factor of force and couple, (T,); None: 1.
+    times: factor of force and couple; None: 1.
     begin, end: times between which the load acts, s.
     """
 
@@ -82,14 +71,13 @@ class SpaceForce:
     force: Vector = (0.0, 0.0, 0.0)
     couple: Vector = (0.0, 0.0, 0.0)
     follows: bool = False
-    times: Callable[[SpaceMotion], Floats] | None = None
+    times: Varying[SpaceMotion] | None = None
     begin: float = -math.inf
     end: float = math.inf
 
     def pushes(self, motion: SpaceMotion) -> Iterator[SpacePush]:
         """The force and couple at every instant; at a switch, those just before it."""
-        on = acts(motion.times, self.begin, self.end)
-        size = np.where(on, 1.0 if self.times is None else self.times(motion), 0.0)
+        size = factor(motion, self.times, self.begin, self.end)
         force, couple = (size[:, None] * np.array(v) for v in (self.force, self.couple))
         if self.follows:
             turn = motion.rotation(self.body)
@@ -99,6 +87,16 @@ class SpaceForce:
     def along_measured(self, motion: SpaceMotion) -> Iterator[tuple[str, Floats]]:
         """Nothing: the force acts on a body."""
         return iter(())
+
+    @property
+    def kinks(self) -> tuple[Kinks[SpaceMotion], ...]:
+        """The rows of the factor's table."""
+        return () if self.times is None else self.times.kinks
+
+    @property
+    def switches(self) -> tuple[float, ...]:
+        """Times at which the load begins and ends, s."""
+        return switches(self.begin, self.end)
 
 
 @dataclass(frozen=True)
@@ -120,6 +118,16 @@ class SpaceSpring:
         """Its force (N) or couple (N m), (T,)."""
         value, rate, _ = motion.coordinate(self.measured)
         yield self.measured, self.law(value, rate)
+
+    @property
+    def kinks(self) -> tuple[Kinks[SpaceMotion], ...]:
+        """The rows of the law's tables."""
+        return self.law.kinks(Coordinate(self.measured))
+
+    @property
+    def switches(self) -> tuple[float, ...]:
+        """No times: a spring acts always."""
+        return ()
 
 
 def power(motion: SpaceMotion, loads: tuple[SpaceLoad, ...]) -> Floats:

@@ -37,7 +37,8 @@ class SpaceDynamics:
 
     reactions: of the moving body of every joint on its base (the pin), world axes, moments about
     the joint's point.
-    drive: (T, D) forces, N, positive where they increase a length; torques, N m, right-handed.
+    drive: (T, A) forces of the actuators, N, positive where they increase a length; torques, N m,
+    right-handed.
     friction: (T, J) N m, couple of the base on the moving body about the axis.
     loads: what acts besides gravity.
     shared: joints whose wrenches follow from sharing rules or stiffness.
@@ -57,8 +58,8 @@ class SpaceDynamics:
 
     @property
     def power(self) -> Floats:
-        """Power of every drive, (T, D) W."""
-        return self.drive * self.motion.speeds
+        """Power of every actuator, (T, A) W."""
+        return self.drive * self.motion.actuated[1]
 
     @property
     def condition(self) -> tuple[float, float]:
@@ -90,7 +91,7 @@ class SpaceDynamics:
         rubbing = np.zeros(len(motion))
         for k, joint in enumerate(linkage.joints):
             if joint.friction:
-                rubbing += self.friction[part, k] * turning_speed(motion, k)
+                rubbing += self.friction[part, k] * motion.turning(k)
         given = self.power[part].sum(axis=1) + power(motion, self.loads) + weight + rubbing
         return np.asarray(given - kinetic)
 
@@ -185,7 +186,8 @@ class _Balance:
                 (friction if source.rubs else spread)[:, source.which] = amount
         first = self.equations.guides
         reactions = self._reactions(f, spread, case, timed)
-        return reactions, f[:, first:] * self.equations.drive_scale, friction
+        drive = (self.motion.weights @ f[:, first:, None])[..., 0]
+        return reactions, drive, friction
 
     def _shared(self, linkage: SpaceLinkage, f: Floats) -> Floats:
         """Multipliers with the sets in equilibrium by themselves that rules and links demand."""
@@ -234,7 +236,7 @@ class _Balance:
             for body, sign in ((joint.moving, -1.0), (joint.base, 1.0)):
                 if (b := linkage.index[body]) < len(linkage.bodies):
                     couples[:, b] += sign * axis
-            speed = turning_speed(motion, k) * linkage.length_scale
+            speed = motion.turning(k) * linkage.length_scale
             against = np.where(np.abs(speed) > MIN_TURNING_SPEED * motion.pace, -np.sign(speed), 0)
             required = self.equations.generalised(motion.pose, forces, couples)
             yield _Source(f"joint {joint.name}", True, k, joint.friction * against, required)
@@ -252,7 +254,7 @@ class _Balance:
                 if (b := linkage.index[body]) < len(linkage.bodies):
                     forces[:, b] += sign * normal
                     couples[:, b] += sign * np.cross(at - pose.centre[:, b], normal)
-            share = np.full(len(motion), np.tan(teeth.pressure_angle))
+            share = np.full(len(motion), teeth.spread)
             required = self.equations.generalised(pose, forces, couples)
             yield _Source(f"teeth {ratio.name}", False, g, share, required)
 
@@ -324,11 +326,3 @@ class _Balance:
             moments=-wrenches[..., 3:],
             turn=np.zeros(wrenches.shape[:2]),
         )
-
-
-def turning_speed(motion: SpaceMotion, k: int) -> Floats:
-    """Angular velocity of the moving body of joint k against its base about the axis, (T,)."""
-    joint = motion.linkage.joints[k]
-    axis = motion.rotation(joint.base) @ axes_of(joint)["w"]
-    relative = motion.spin(joint.moving) - motion.spin(joint.base)
-    return np.asarray(np.einsum("ti,ti->t", axis, relative))

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loads.forces.corners import Kinks
 from loads.space.acting import SpacePush
 from loads.space.linkage import Vector, unit
 from loads.space.motion import SpaceMotion
@@ -164,3 +165,13 @@ class GroundInertia:
     def along_measured(self, motion: SpaceMotion) -> Iterator[tuple[str, Floats]]:
         """Nothing: the ground's motion acts on bodies."""
         return iter(())
+
+    @property
+    def kinks(self) -> tuple[Kinks[SpaceMotion], ...]:
+        """None: the ground moves smoothly."""
+        return ()
+
+    @property
+    def switches(self) -> tuple[float, ...]:
+        """None: the ground moves throughout."""
+        return ()

@@ -9,17 +9,19 @@ lamina, alike about all axes in its plane: half of it about each, the least that
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from loads.forces.acting import Applied, Load, Spring, Varying
-from loads.forces.measures import Distance, Position
+from loads.forces.measures import Clock, Distance, Position
 from loads.linkage.gears import side_weight
 from loads.linkage.linkage import Linkage, LinkageError
 from loads.linkage.parts import GROUND, Body, Joint, Point, Slider, Teeth, Turn
-from loads.space.acting import MeasuredFactor, SpaceForce, SpaceLoad, SpaceSpring
+from loads.motion.motion import Motion
+from loads.space.acting import Coordinate, SpaceForce, SpaceLoad, SpaceSpring
 from loads.space.linkage import (
     BodyAngle,
     Inertia,
@@ -46,13 +48,10 @@ def lift(linkage: Linkage, loads: Sequence[Load] = (), offsets: Offsets | None =
     offsets: where links lie along z; by default all in the plane z = 0. Loads are in the planes of
     their bodies.
 
-    Raises: LinkageError for what linkages in space do not have: friction of sliders, and rules by
-    which drives in parallel divide their force.
+    Raises: LinkageError for what linkages in space do not have: friction of sliders.
     """
     if any(s.friction for s in linkage.sliders):
         raise LinkageError("sliders with friction cannot be lifted into space", "not-lifted")
-    if linkage.parallel:
-        raise LinkageError("drives in parallel cannot be lifted into space", "not-lifted")
     return _Lift(linkage, offsets or Offsets()).all(loads)
 
 
@@ -90,6 +89,7 @@ class _Lift:
             gravity=(*linkage.gravity, 0.0),
             ratios=tuple(ratios),
             sharing=linkage.sharing,
+            parallel=linkage.parallel,
         )
         return in_space, tuple(lifted_loads)
 
@@ -160,9 +160,9 @@ class _Lift:
             teeth.bodies,
             teeth.carrier,
             (*teeth.at, z),
+            (-teeth.normal[1], teeth.normal[0], 0.0),
             (*teeth.normal, 0.0),
-            AXIS,
-            teeth.pressure_angle,
+            math.tan(teeth.pressure_angle),
         )
         return angles, Ratio(teeth.name, tuple(names), tuple(weights), contact)
 
@@ -187,13 +187,13 @@ class _Lift:
         )
         if load.times is None:
             return [], force
-        measure, acts = load.times.measure, (load.begin, load.end)
+        measure = load.times.measure
         if not isinstance(measure, Distance | Position):
-            return [], replace(force, times=MeasuredFactor(None, load.times.curve, *acts))
+            return [], replace(force, times=Varying(Clock(), load.times.curve))
         coordinates, name = self._coordinate(self._unused(load.times), measure)
-        return coordinates, replace(force, times=MeasuredFactor(name, load.times.curve, *acts))
+        return coordinates, replace(force, times=Varying(Coordinate(name), load.times.curve))
 
-    def _unused(self, times: Varying) -> str:
+    def _unused(self, times: Varying[Motion]) -> str:
         """A name of a load's coordinate that no other has."""
         return f"argument {id(times)}"
 

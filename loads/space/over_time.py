@@ -37,11 +37,13 @@ class SpaceOverTime:
 
     drives: in the linkage's order.
     violation: largest violation of the power balance, of the largest power of any drive.
+    nodes: (N,) s, instants between which little happens.
     """
 
     peaks: PeakForces
     drives: tuple[Effort, ...]
     violation: float
+    nodes: Floats
 
 
 def space_over_time(
@@ -87,7 +89,7 @@ def space_over_time(
     history = resolved(
         times, lambda t: columns(solve(t)), corners, groups=groups.tolist(), known=known
     )
-    positions = np.concatenate([s.dynamics.motion.drives for s in first])
+    positions = np.concatenate([s.dynamics.motion.actuated[0] for s in first])
     strokes = np.ptp(positions, axis=0)
     drives = efforts(
         DriveHistory(history, effort, power),
@@ -99,7 +101,10 @@ def space_over_time(
     largest = float(_largest(first, "power").max(initial=least_power)) or 1.0
     violation = max(float(np.abs(s.dynamics.imbalance).max()) for s in first) / largest
     return SpaceOverTime(
-        peaks(history, lambda t: solve(t).reactions, [force, moment]), drives, violation
+        peaks(history, lambda t: solve(t).reactions, [force, moment]),
+        drives,
+        violation,
+        history.nodes,
     )
 
 

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 
-from loads.space.linkage import SpaceLinkage, unit
+from loads.space.linkage import SpaceLinkage
 from loads.space.pose import BODY_COORDINATES, SpacePose, turning
 from pinbase.arrays import Floats
 
 
 def pitch_points(linkage: SpaceLinkage, pose: SpacePose) -> list[tuple[Floats, Floats, Floats]]:
-    """Pitch point (m), direction along the pitch circles, and normal of all teeth, (T, 3) each."""
+    """Pitch point (m), force per newton along the pitch circles, and normal of all teeth, (T, 3)
+    each.
+    """
     out = []
     for _, _, teeth in linkage.teeth:
         k = linkage.index[teeth.carrier]
-        normal, axis, turn = unit(teeth.normal), unit(teeth.axis), pose.rotation[:, k]
+        turn = pose.rotation[:, k]
         at = pose.centre[:, k] + pose.arm(k, teeth.at)
-        out.append((at, turn @ np.cross(axis, normal), turn @ normal))
+        out.append((at, turn @ np.array(teeth.along), turn @ np.array(teeth.normal)))
     return out
 
 
@@ -28,15 +30,15 @@ def write_tooth_rows(linkage: SpaceLinkage, pose: SpacePose, scale: Floats, J: F
     """
     turns = turning(pose.turn)
     points = pitch_points(linkage, pose)
-    for (k, _, teeth), (at, tangent, _) in zip(linkage.teeth, points, strict=True):
+    for (k, _, teeth), (at, along, _) in zip(linkage.teeth, points, strict=True):
         J[:, k] = 0.0
         for body, sign in zip(teeth.bodies, (1.0, -1.0), strict=True):
             if (b := linkage.index[body]) == len(linkage.bodies):
                 continue  # the ground does not move
             columns = slice(BODY_COORDINATES * b, BODY_COORDINATES * (b + 1))
-            couple = np.cross(at - pose.centre[:, b], tangent)
+            couple = np.cross(at - pose.centre[:, b], along)
             on_parameters = np.einsum("tj,tjk->tk", couple, turns[:, b])
-            by_body = np.concatenate([tangent, on_parameters], axis=1) / scale[columns]
+            by_body = np.concatenate([along, on_parameters], axis=1) / scale[columns]
             J[:, k, columns] += sign * by_body
 
 
@@ -48,8 +50,8 @@ def tooth_forces(
     f: (T, ratios) N, multipliers of the ratios. spread: (T, G) N, by which the teeth push apart.
     """
     out = np.zeros((len(f), len(linkage.teeth), 3))
-    for g, (_, tangent, normal) in enumerate(pitch_points(linkage, pose)):
-        out[:, g] = f[:, linkage.teeth[g][0], None] * tangent
+    for g, (_, along, normal) in enumerate(pitch_points(linkage, pose)):
+        out[:, g] = f[:, linkage.teeth[g][0], None] * along
         if spread is not None:
             out[:, g] -= spread[:, g, None] * normal
     return out

@@ -119,7 +119,52 @@ class AppliedForce:
 
 
 @dataclass(frozen=True)
-class LinkageMotion:
+class Posture:
+    """How well the links of a linkage transmit in one case, at T instants (one, without time, when
+    it is at rest).
+
+    transmission: by link and joint, (T,) degrees; 90 is best, 0 is a dead point.
+    extremes: over the motion, between the instants too; None: over the instants alone.
+    """
+
+    case: str
+    time: Times | None
+    transmission: dict[str, Floats]
+    extremes: Extremes | None = field(default=None, kw_only=True)
+
+    @property
+    def poorest(self) -> dict[str, tuple[float, float | None]]:
+        """The smallest transmission angle of each link and joint that has one, and its time."""
+        if self.extremes:
+            return dict(self.extremes.transmission)
+        angles = {k: v for k, v in self.transmission.items() if np.isfinite(v).any()}
+        return {k: self._sampled(v, int(np.nanargmin(v))) for k, v in angles.items()}
+
+    def _sampled(self, values: Floats, at: int) -> tuple[float, float | None]:
+        return float(values[at]), None if self.time is None else float(self.time[at])
+
+
+@dataclass(frozen=True)
+class SpacePosture(Posture):
+    """That of a linkage in space.
+
+    condition, condition_time: largest condition number of its equations, and its time.
+    violation: the largest difference of the balance of powers over the largest power of a drive;
+    None at rest.
+    """
+
+    condition: float
+    condition_time: Time | None
+    violation: float | None
+
+    @property
+    def worst_condition(self) -> tuple[float, float | None]:
+        """The largest condition number, and its time."""
+        return self.condition, self.condition_time
+
+
+@dataclass(frozen=True)
+class LinkageMotion(Posture):
     """The motion of a linkage in one case, at T instants (one, without time, when it is at rest).
 
     links: for each of B bodies the joints on it, in drawing order.
@@ -133,17 +178,13 @@ class LinkageMotion:
     slides: by slider, its two ends (T, 2, 2). pitch: curves of gears and racks.
     springs: by spring or damper between two points, its ends (T, 2, 2).
     connections: (name, body, joint) in the order of the case's ReactionTable.
-    transmission: by link and joint, (T,) degrees; 90 is best, 0 is a dead point.
     condition: (T,), condition number of the loop equations.
     shaking_force: (T, 2). shaking_moment: (T,), about the joint `shaking_about`; both act from the
     linkage on its ground.
     slider_forces: by slider, from the base on the moving body. paths: of named points.
-    extremes: over the motion, between the instants too; None: over the instants alone.
     applied, aside: the forces of the case's loads in the plane and across it.
     """
 
-    case: str
-    time: Times | None
     bodies: tuple[str, ...]
     links: tuple[tuple[str, ...], ...]
     centre: Lengths
@@ -159,7 +200,6 @@ class LinkageMotion:
     joint_acceleration: Accelerations
     slides: dict[str, Lengths]
     connections: tuple[tuple[str, str, str], ...]
-    transmission: dict[str, Floats]
     condition: Floats
     shaking_force: Forces
     shaking_moment: Energies
@@ -167,19 +207,15 @@ class LinkageMotion:
     ledger: PowerLedger
     slider_forces: dict[str, GuideForces] = field(default_factory=dict)
     paths: dict[str, PointPath] = field(default_factory=dict)
-    extremes: Extremes | None = None
     pitch: tuple[PitchCurve, ...] = ()
     springs: dict[str, Lengths] = field(default_factory=dict)
     applied: tuple[AppliedForce, ...] = ()
     aside: tuple[AppliedForce, ...] = ()
 
     @property
-    def poorest(self) -> dict[str, tuple[float, float | None]]:
-        """The smallest transmission angle of each link and joint that has one, and its time."""
-        if self.extremes:
-            return dict(self.extremes.transmission)
-        angles = {k: v for k, v in self.transmission.items() if np.isfinite(v).any()}
-        return {k: self._sampled(v, int(np.nanargmin(v))) for k, v in angles.items()}
+    def violation(self) -> float:
+        """The largest difference of the balance of powers over its largest term."""
+        return self.ledger.violation
 
     @property
     def worst_condition(self) -> tuple[float, float | None]:
@@ -187,9 +223,6 @@ class LinkageMotion:
         if self.extremes:
             return self.extremes.condition
         return self._sampled(self.condition, int(np.argmax(self.condition)))
-
-    def _sampled(self, values: Floats, at: int) -> tuple[float, float | None]:
-        return float(values[at]), None if self.time is None else float(self.time[at])
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,7 @@ from reports.data.motion import (
     BodyMotion,
     LinkageMotion,
     MotionCheck,
+    SpacePosture,
 )
 from reports.data.row import LandingRange, PinResult, Units
 from reports.data.sensitivities import PinSensitivities
@@ -162,7 +163,8 @@ class NoSuchRow(KeyError):
 class Results:
     """All results of a run, without the fields inside pins (those are written pin by pin).
 
-    pins: the rows. stated: the requirements of [[require]]. space: motions of linkages in space.
+    pins: the rows. stated: the requirements of [[require]].
+    space, space_postures: motions of linkages in space, and how well they transmit.
     spectrum_margins: of checks over all cases of a pin, as fatigue.
     """
 
@@ -178,6 +180,7 @@ class Results:
     drive: tuple[DriveTable, ...] = ()
     motion: tuple[LinkageMotion, ...] = ()
     space: tuple[Skeleton, ...] = ()
+    space_postures: tuple[SpacePosture, ...] = ()
     beam_check: BeamCheck | None = None
     motion_check: MotionCheck | None = None
     published: tuple[PublishedValue, ...] = ()
@@ -228,6 +231,11 @@ class Results:
     def skeletons(self) -> tuple[Skeleton, ...]:
         """The parts of every motion that are drawn, planar or in space."""
         return (*map(planar_skeleton, self.motion), *self.space)
+
+    @property
+    def postures(self) -> tuple[LinkageMotion | SpacePosture, ...]:
+        """How well every linkage transmits, planar or in space."""
+        return (*self.motion, *self.space_postures)
 
     @property
     def margins(self) -> tuple[PinMargin, ...]:

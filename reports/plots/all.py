@@ -10,7 +10,7 @@ from reports.data.results import Results
 from reports.data.row import PinResult
 from reports.plots.loads.histories import drive_plot, drop_plots, motion_plot
 from reports.plots.loads.linkage import linkage_plot
-from reports.plots.loads.motion import motion_plots
+from reports.plots.loads.motion import motion_plots, transmission_plots
 from reports.plots.loads.reactions import bars, reaction_plot
 from reports.plots.spec import Plot
 from reports.plots.strength.fatigue import collective_plot, history_plot
@@ -45,6 +45,8 @@ def _mechanics(results: Results) -> Iterator[Plot]:
     for motion in results.motion:
         yield linkage_plot(motion, units)
         yield from motion_plots(motion, units)
+    for posture in results.space_postures:
+        yield from transmission_plots(posture, units)
     if results.motion_check is not None:
         yield motion_plot(results.motion_check, units)
 

@@ -8,7 +8,7 @@ from typing import Any
 from reports.data.results import Results
 from reports.tables.column import Table
 from reports.tables.loads.drop import drop_table
-from reports.tables.loads.linkage import linkage_tables
+from reports.tables.loads.linkage import linkage_tables, transmission_table
 from reports.tables.loads.motion import (
     beam_check_table,
     bodies_table,
@@ -84,6 +84,8 @@ def load_tables(results: Results, *, empty: bool = False) -> list[Table[Any]]:
     tables.append(bodies_table(results))
     tables.append(wear_table(results))
     tables.append(wheel_table(results))
+    if not (empty or results.motion):
+        tables.append(transmission_table(results))
     # All tables of a linkage, so that every run has the same files.
     full = [table for table in tables if empty or len(table)]
     return full + (linkage_tables(results) if empty or results.motion else [])

@@ -98,7 +98,7 @@ def write_json(results: Results, path: Path) -> None:
 
 def _loads(results: Results, table: ReactionTable) -> dict[str, Any]:
     """Return the loads of one case: maximum forces, drives and checks."""
-    moved = next((m for m in results.motion if m.case == table.case), None)
+    posture = next((p for p in results.postures if p.case == table.case), None)
     return {
         "case": table.case,
         "note": table.note,
@@ -107,8 +107,12 @@ def _loads(results: Results, table: ReactionTable) -> dict[str, Any]:
         "largest_forces": [json_of(PEAK, peak) for peak in table.largest],
         "drives": [json_of(DRIVE, drive) for drive in results.drive if drive.case == table.case],
         "unresolved": plain(table.unresolved),
-        "power_violation": finite(moved.ledger.violation) if moved else None,
-        "largest_condition": finite(moved.worst_condition[0]) if moved else None,
+        "power_violation": finite(posture.violation) if posture else None,
+        "largest_condition": finite(posture.worst_condition[0]) if posture else None,
+        "least_transmission": [
+            {"link": link, "degrees": finite(low), "time": finite(time)}
+            for link, (low, time) in (posture.poorest if posture else {}).items()
+        ],
     }
 
 

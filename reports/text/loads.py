@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from reports.data.mechanics import PeakReaction, ReactionTable
-from reports.data.motion import MIN_TRANSMISSION_ANGLE
+from reports.data.motion import MIN_TRANSMISSION_ANGLE, LinkageMotion
 from reports.data.results import Results
 from reports.format.numbers import DASH, engineering, short
 from reports.tables.column import Column, Table, read_only
@@ -91,12 +91,13 @@ def remarks(results: Results) -> list[str]:
                 f"{d.case}: drive {d.name} without friction, maximum {what} "
                 f"{engineering(d.effort.frictionless)} {unit}"
             )
-    for m in results.motion:
-        at_rest = m.time is None and not m.ledger.drives.any()
+    for m in results.postures:
+        still = not (isinstance(m, LinkageMotion) and m.ledger.drives.any())
+        at_rest = m.violation is None or (m.time is None and still)
         lines.append(
             f"{m.case}: condition number {engineering(m.worst_condition[0], 3)}"
             if at_rest
-            else f"{m.case}: power balance error {m.ledger.violation:.1e}; maximum condition "
+            else f"{m.case}: power balance error {m.violation:.1e}; maximum condition "
             f"number {engineering(m.worst_condition[0], 3)}"
         )
         for link, (low, _) in m.poorest.items():

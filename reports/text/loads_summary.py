@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from reports.data.mechanics import DriveTable, PeakReaction, ReactionTable
-from reports.data.motion import MIN_TRANSMISSION_ANGLE, LinkageMotion
+from reports.data.motion import MIN_TRANSMISSION_ANGLE, LinkageMotion, SpacePosture
 from reports.data.results import Results
 from reports.format.files import markdown
 from reports.format.numbers import engineering, short
@@ -49,8 +49,8 @@ def _part(table: ReactionTable, results: Results) -> LoadsPart:
         notes.append(f"The forces are {unresolved(table, results.units.time)}.")
     if table.shared:
         notes.append(f"Divided by the study's sharing rule: {', '.join(table.shared)}.")
-    for motion in results.motion:
-        notes += _checks(motion, results) if motion.case == table.case else []
+    for posture in results.postures:
+        notes += _checks(posture, results) if posture.case == table.case else []
     grids = [_forces(table, drives, results), *([_drives(drives, results)] if drives else [])]
     for drop in results.drops:
         if drop.case == table.case:
@@ -109,16 +109,16 @@ def _drives(drives: list[DriveTable], results: Results) -> Grid:
     return Table("drives", columns, drives).grid(results.units)
 
 
-def _checks(motion: LinkageMotion, results: Results) -> list[str]:
+def _checks(posture: LinkageMotion | SpacePosture, results: Results) -> list[str]:
     def when(time: float | None) -> str:
         return "" if time is None else f" at {short(float(f'{time:.6g}'))} {results.units.time}"
 
     lines = []
-    if motion.time is not None:
+    if posture.time is not None and posture.violation is not None:
         lines.append(
-            f"Power balance error, relative to the largest power: {motion.ledger.violation:.1e}."
+            f"Power balance error, relative to the largest power: {posture.violation:.1e}."
         )
-    if angles := motion.poorest:
+    if angles := posture.poorest:
         link = min(angles, key=lambda name: angles[name][0])
         low, at = angles[link]
         warning = (
@@ -127,6 +127,6 @@ def _checks(motion: LinkageMotion, results: Results) -> list[str]:
             else ""
         )
         lines.append(f"Minimum transmission angle: {least_angle(low)}°, {link}{when(at)}{warning}.")
-    worst, at = motion.worst_condition
+    worst, at = posture.worst_condition
     lines.append(f"Maximum condition number: {engineering(worst, 3)}{when(at)}.")
     return lines

@@ -44,8 +44,12 @@ WITHOUT_DIMENSION = {
     "LinkageMotion.angle",  # degrees, and rad
     "LinkageMotion.angular_velocity",
     "LinkageMotion.angular_acceleration",
-    "LinkageMotion.transmission",
     "LinkageMotion.condition",
+    "LinkageMotion.transmission",
+    "Posture.transmission",
+    "SpacePosture.transmission",
+    "SpacePosture.condition",
+    "SpacePosture.violation",
     "Skeleton.axes",  # unit vectors
     "LandingRange.safety_factor",
     "LandingRange.error",

@@ -22,6 +22,7 @@ from pinstress.analysis.mechanics.gather_space import (
     drives_in_space,
     note_in_space,
     positions_in_space,
+    posture_in_space,
     shown_positions,
     skeleton_in_space,
 )
@@ -47,6 +48,9 @@ def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -
         ),
         "motion": tuple(linkage_motion(study, n, loads[n]) for n in dynamics),
         "space": tuple(skeleton_in_space(study, n, c.space) for n, c in loads.items() if c.space),
+        "space_postures": tuple(
+            posture_in_space(study, n, c.space) for n, c in loads.items() if c.space
+        ),
         "motion_check": motion_check(study, loads, published),
         "published": published_values(study, loads, published),
         "drops": tuple(drop_record(study, n, c) for n, c in loads.items() if c.landing),

@@ -2,28 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import fields
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, replace
 
 import numpy as np
 
 from loads import Effort
+from loads.space.transmission import transmission_angles_in_space
 from pinbase.arrays import Floats
 from pinstress.analysis.mechanics.space_skeleton import space_skeleton
-from pinstress.study.model.mechanism.drives import drive_tables, offsets
+from pinstress.study.model.mechanism.drives import offsets
 from pinstress.study.model.mechanism.space import pin_axes, space_mechanism
 from pinstress.study.model.space_cases import InSpace
 from pinstress.study.reading.file import Study
-from pinstress.study.schema.drives import drive_name
 from reports.data.mechanics import DriveEffort, DriveTable
-from reports.data.motion import BodyMotion
+from reports.data.motion import BodyMotion, Extremes, SpacePosture
 from reports.data.skeleton import Skeleton
-from reports.format.numbers import engineering
 
 NEGLIGIBLE_RANGE = 1e-3  # of the largest force of the case: a smaller range is not reported
 ROUND_OFF = 1e-12  # of the largest of all drives
 MAX_BODY_LINES = 200_000  # of the table of bodies, 50 MB; a longer one is not written
-NO_TABLES = "In space: no tables of transmission angles and of sliding on pins are written."
+NO_TABLES = "In space: no table of sliding on pins is written."
 
 
 def shown_positions(study: Study, positions: Floats, moved: Sequence[tuple[str, bool]]) -> Floats:
@@ -91,24 +90,23 @@ def _without_round_off(values: Floats) -> Floats:
     return np.where(np.abs(values) > least, values, 0.0)
 
 
-def _names(study: Study, solved: InSpace) -> list[tuple[str, bool]]:
+def _names(solved: InSpace) -> list[tuple[str, bool]]:
     """Return the name of all that drives or holds the linkage, and whether it slides."""
-    if solved.held is not None:
-        return [*solved.held]
-    return [(drive_name(drive), drive.slides) for drive in drive_tables(study)]
+    equations = solved.dynamics.motion.equations
+    return [(name, equations.slides(name)) for name in equations.actuators]
 
 
 def positions_in_space(study: Study, solved: InSpace) -> Floats:
     """Return the displayed positions (T, D)."""
-    return shown_positions(study, solved.dynamics.motion.drives, _names(study, solved))
+    return shown_positions(study, solved.dynamics.motion.actuated[0], _names(solved))
 
 
 def drives_in_space(study: Study, case: str, solved: InSpace) -> list[DriveTable]:
     """Return the table of every drive of a case in space."""
     dynamics = solved.dynamics
-    motion, exerted = dynamics.motion, (dynamics.drive, dynamics.power)
-    course = (positions_in_space(study, solved), motion.speeds, motion.rates)
-    times, moved, smooth = dynamics.reactions.times, _names(study, solved), solved.frictionless
+    exerted = dynamics.drive, dynamics.power
+    course = (positions_in_space(study, solved), *dynamics.motion.actuated[1:])
+    times, moved, smooth = dynamics.reactions.times, _names(solved), solved.frictionless
     free = smooth.drives if smooth else None
     return drives(case, moved, times, course, exerted, solved.energies, solved.efforts, free)
 
@@ -161,20 +159,39 @@ def skeleton_in_space(study: Study, case: str, solved: InSpace) -> Skeleton:
 
 def note_in_space(study: Study, solved: InSpace) -> str:
     """Return the note of a case: its impulses, what its forces depend on, and what is left out."""
-    told = solved.note, _range(study, solved), _posture(solved)
+    told = solved.note, _range(study, solved)
     return " ".join(filter(None, (*told, NO_TABLES, _no_bodies(study, solved))))
 
 
-def _posture(solved: InSpace) -> str:
-    """Return sentences on how near the linkage comes to a dead point, and on the power balance."""
+def posture_in_space(study: Study, case: str, solved: InSpace) -> SpacePosture:
+    """Return how well the links of a case transmit; of very long motions no angles."""
+    joints = space_mechanism(study).joint
+    pins = {connection: name for name, joint in joints.items() for connection in joint.connections}
+    motion, times = solved.dynamics.motion, solved.dynamics.reactions.times
+    few = _body_lines(study, solved) <= MAX_BODY_LINES and solved.held is None
+    angles = transmission_angles_in_space(motion) if few else {}
     condition, at = solved.dynamics.condition
-    number = engineering(condition, 3)
-    if solved.violation is None:
-        return f"Condition number {number}."
-    return (
-        f"Maximum condition number {number} at {engineering(at)} s; power balance error "
-        f"{solved.violation:.1e}."
+    posture = SpacePosture(
+        case,
+        times,
+        {_link(pins, key): np.degrees(angle) for key, angle in angles.items()},
+        condition,
+        None if times is None else at,
+        solved.violation,
     )
+    if not solved.transmission:
+        return posture
+    lowest = {
+        _link(pins, key): (float(np.degrees(low.value)), low.time)
+        for key, low in solved.transmission.items()
+    }
+    return replace(posture, extremes=Extremes(lowest, (condition, at)))
+
+
+def _link(pins: Mapping[str, str], key: tuple[str, str]) -> str:
+    """Return the name of a link at a joint. pins: joints of the study by connection."""
+    link, joint = key
+    return f"{link} at {pins.get(joint, joint)}"
 
 
 def _range(study: Study, solved: InSpace) -> str:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -10,14 +11,17 @@ import numpy as np
 from loads.linkage.parts import GROUND
 from loads.space.acting import SpaceSpring
 from loads.space.dynamics import SpaceDynamics
+from loads.space.gears import vector
 from loads.space.kinds import KINDS
-from loads.space.linkage import PointDistance, SpaceJoint, SpaceLinkage
+from loads.space.linkage import BodyAngle, PointDistance, SpaceJoint, SpaceLinkage
 from loads.space.motion import SpaceMotion
 from pinbase.arrays import Floats
 from pinbase.grouped import grouped
-from reports.data.motion import AppliedForce
+from reports.data.motion import AppliedForce, PitchCurve
 from reports.data.skeleton import AppliedCouple, Skeleton, Vector
 
+CHORDS = 24  # of a pitch circle
+MIN_SINE = 1e-6  # of the angle between a gear's axis and the normal of its pitch cone
 MIN_STEM = 1e-6  # of the linkage's size: from the only joint of a body to its centre of mass
 
 
@@ -33,14 +37,19 @@ def space_skeleton(
     motion = dynamics.motion
     drawn = [joint for joint in motion.linkage.joints if joint.name in pins]
     on = grouped((pins[joint.name], joint) for joint in drawn)
-    names = tuple(on)
+    meshing = motion.linkage.teeth
+    names = (*on, *(ratio.name for _, ratio, _ in meshing))
     links, still = _links(drawn, pins), _grounded(motion.linkage)
     bodies = tuple(
         body.name
         for body in motion.linkage.bodies
         if links.get(body.name) and body.name not in still
     )
-    position = np.stack([_place(motion, joints[0]) for joints in on.values()], axis=1)
+    places = [_place(motion, joints[0]) for joints in on.values()]
+    places += [motion.place(teeth.carrier, teeth.at) for _, _, teeth in meshing]
+    position = np.stack(places, axis=1)
+    directions = [_axis(motion, js[0].base, axes.get(name)) for name, js in on.items()]
+    directions += [np.zeros((len(motion), 3))] * len(meshing)
     index = [motion.linkage.index[body] for body in bodies]
     centre = motion.pose.centre[:, index]
     return Skeleton(
@@ -54,8 +63,11 @@ def space_skeleton(
             name for name, joints in on.items() if any({j.base, j.moving} & still for j in joints)
         ),
         position=position,
-        axes=np.stack([_axis(motion, js[0].base, axes.get(name)) for name, js in on.items()], 1),
-        connections=tuple((joint.name, joint.moving, pins[joint.name]) for joint in drawn),
+        axes=np.stack(directions, axis=1),
+        connections=(
+            *((joint.name, joint.moving, pins[joint.name]) for joint in drawn),
+            *((ratio.name, teeth.bodies[0], ratio.name) for _, ratio, teeth in meshing),
+        ),
         stems=tuple(
             body
             for b, body in enumerate(bodies)
@@ -75,9 +87,36 @@ def space_skeleton(
             for measured in motion.linkage.measured
             if measured.name == load.measured and isinstance(measured, PointDistance)
         },
+        pitch=tuple(_pitch_lines(motion)),
         **_applied(dynamics, bodies),
         up=_up(motion.linkage.gravity),
     )
+
+
+def _pitch_lines(motion: SpaceMotion) -> Iterator[PitchCurve]:
+    """Yield the pitch circles of gears as chords with a radius, which turn with them."""
+    linkage = motion.linkage
+    angles = {m.name: m for m in linkage.measured if isinstance(m, BodyAngle)}
+    for _, ratio, teeth in linkage.teeth:
+        for name, weight, body in zip(ratio.measured, ratio.weights, teeth.bodies, strict=True):
+            if name not in angles:
+                continue  # a rack
+            axis, at = np.array(angles[name].axis), np.array(teeth.at)
+            tangent = np.cross(axis, teeth.normal)
+            if np.linalg.norm(tangent) < MIN_SINE:  # a crown gear
+                tangent = np.array(teeth.along)
+            tangent = tangent / np.linalg.norm(tangent)
+            radius = abs(weight) * np.cross(tangent, axis)
+            if radius @ np.cross(teeth.along, axis) * weight < 0.0:
+                radius = -radius
+            if body == teeth.bodies[1]:
+                radius = -radius
+            across, turns = np.cross(axis, radius), np.linspace(0.0, 2.0 * np.pi, CHORDS + 1)
+            rim = np.cos(turns)[:, None] * radius + np.sin(turns)[:, None] * across
+            corners = [motion.place(body, vector(at - radius + corner)) for corner in rim]
+            hub = motion.place(body, vector(at - radius))
+            for start, end in [*pairwise(corners), (hub, corners[0])]:
+                yield PitchCurve(body, np.stack([start, end], axis=1), False)
 
 
 def _ends(motion: SpaceMotion, between: PointDistance) -> Floats:

@@ -10,15 +10,17 @@ from itertools import chain
 import numpy as np
 
 from loads import Effort, Law, PeakForces, Reactions, StateDrive
+from loads.forces.corners import corners_of
 from loads.forces.holding import OPENING_FORCE_TOLERANCE, require_pressed
+from loads.forces.over_time import Extremum, lowest_angles
 from loads.space.acting import SpaceLoad
-from loads.space.corners import corners_of
 from loads.space.dynamics import SpaceDynamics, space_reactions
 from loads.space.ground import BodyMomenta, GroundInertia, body_momenta
 from loads.space.holding import held, held_as_drawn
 from loads.space.linkage import SpaceLinkage
 from loads.space.motion import SpaceCourse, space_move
 from loads.space.over_time import SpaceOverTime, space_over_time
+from loads.space.transmission import transmission_angles_in_space
 from pinbase.arrays import Floats
 from pinstress.study.model.ground import Grounded
 from pinstress.study.model.impulses import impulse_notes
@@ -34,6 +36,7 @@ from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import InstantCase, MotionCase, StaticCase
 from pinstress.study.schema.landing import GroundCase
 
+MAX_POSTURES = 200_000  # bodies times instants of which transmission angles are sought
 POWER_BALANCE = 1e-6  # of the largest power of a drive: a larger violation is noted
 
 
@@ -50,6 +53,7 @@ class InSpace:
     others: the reactions with other stiffness of links, by what is different.
     held: by what it is held, and whether that slides; None: by its drives.
     violation: of the power balance over the whole motion, of the largest power of a drive.
+    transmission: smallest transmission angles (rad) over it by link and joint of the linkage.
     """
 
     dynamics: SpaceDynamics
@@ -63,6 +67,7 @@ class InSpace:
     others: Mapping[str, Reactions] = field(default_factory=dict)
     held: tuple[tuple[str, bool], ...] | None = None
     violation: float | None = None
+    transmission: Mapping[tuple[str, str], Extremum] = field(default_factory=dict)
 
     @property
     def gravity(self) -> Floats:
@@ -148,7 +153,9 @@ class MovedInSpace:
     @cached_property
     def corners(self) -> Floats:
         """Times at which a force may jump or has a kink, s."""
-        return corners_of(self.course, self.loads)
+        course = self.course
+        nodes = np.unique([course.first, *course.path.nodes, course.last])
+        return corners_of(course, self.loads, nodes)
 
     def solved(self, samples: int, extremes: bool) -> InSpace:
         """Return the case at equally spaced instants; where asked, with its extremes."""
@@ -158,6 +165,9 @@ class MovedInSpace:
             self.solve(self.course.path.nodes)
             return solved
         over = self._over(solved)
+        lowest: dict[tuple[str, str], Extremum] = {}
+        if len(self.course.space.linkage.bodies) * len(over.nodes) <= MAX_POSTURES:
+            lowest, _ = lowest_angles(self.course, over.nodes, transmission_angles_in_space)
         free = None
         if any(joint.friction for joint in self.course.space.linkage.joints):
             smooth = replace(self, friction=False)
@@ -171,6 +181,7 @@ class MovedInSpace:
             efforts=over.drives,
             frictionless=free,
             violation=over.violation,
+            transmission=lowest,
             note=note.strip(),
         )
 
@@ -221,8 +232,9 @@ def at_rest_in_space(
     else:
         motion = space_move(linkage, [StateDrive(*values) for values in states], np.zeros(1))
         motion = held(motion, hold) if hold else motion
-    lengths = motion.equations.along_lengths
-    held_by = tuple(zip(hold, lengths, strict=True)) if hold else None
+    equations = motion.equations
+    by = [(name, equations.slides(name)) for name in equations.actuators]
+    held_by = tuple(by) if hold else None
     springs, pins = springs_in_space(study, linkage), pins_in_space(study, linkage)
     ground: GroundInertia | None = None
     if isinstance(case, GroundCase):
@@ -252,7 +264,8 @@ def _require_closed(
 ) -> None:
     """Raise LinkageError where a stop would have to pull."""
     stops, forces = space_mechanism(study).stop, dynamics.drive
-    scale = dynamics.motion.equations.drive_scale  # forces that are comparable
+    units = [dynamics.motion.equations.unit_of(name) for name, _ in held_by]
+    scale = np.array(units)  # forces that are comparable
     least = OPENING_FORCE_TOLERANCE * float(np.abs(forces / scale).max())
     for k, (name, slides) in enumerate(held_by):
         if name in stops:

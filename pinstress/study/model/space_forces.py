@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from loads.space.acting import MeasuredFactor, SpaceForce, SpaceSpring
+from loads import Clock, Measure, Varying
+from loads.space.acting import Coordinate, SpaceForce, SpaceSpring
 from loads.space.ground import GroundInertia, TurningGround
 from loads.space.linkage import SpaceLinkage, Vector
+from loads.space.motion import SpaceMotion
 from pinbase.keys import key_part
 from pinstress.study.model.impulses import nominal_size
 from pinstress.study.model.mechanism.forces import (
@@ -96,7 +98,9 @@ def load_in_space(
     begin = table.begin or -math.inf  # at its start a load acts already
     end = math.inf if table.end is None else table.end
 
-    def acting(force: Vector, couple: Vector, factor: MeasuredFactor | None = None) -> SpaceForce:
+    def acting(
+        force: Vector, couple: Vector, factor: Varying[SpaceMotion] | None = None
+    ) -> SpaceForce:
         return SpaceForce(table.body, at, force, couple, table.follows, factor, begin, end)
 
     couple = table.moments
@@ -106,7 +110,7 @@ def load_in_space(
         law: ForceLawTable | None = getattr(table, key)
         if law is not None and direction is not None:
             where = f"case.{key_part(case)}.apply[{number + 1}].{key}"
-            factor = _factor(study, where, law, value, (begin, end))
+            factor = _factor(study, where, law, value)
             one = along(direction, 1.0)
             force, couple = (one, NOTHING) if value == "force" else (NOTHING, one)
             out.append(acting(force, couple, factor))
@@ -127,17 +131,18 @@ def along(direction: Sequence[float], size: float) -> Vector:
 
 
 def _factor(
-    study: Study, where: str, law: ForceLawTable, value: str, acts: tuple[float, float]
-) -> MeasuredFactor | None:
+    study: Study, where: str, law: ForceLawTable, value: str
+) -> Varying[SpaceMotion] | None:
+    measure: Measure[SpaceMotion] = Clock()
     if law.length_between is not None:
-        measured: str | None = length_name(law.length_between)
+        measure = Coordinate(length_name(law.length_between))
         x = column(study, "length", "length")
     elif law.position_of is not None:
-        measured = law.position_of
-        drive = next(d for d in space_mechanism(study).drive if drive_name(d) == measured)
+        measure = Coordinate(law.position_of)
+        drive = next(d for d in space_mechanism(study).drive if drive_name(d) == law.position_of)
         slides = drive.slides
         x = column(study, "position", "length") if slides else angle_column("position_deg")
     else:
-        measured, x = None, column(study, "time", "time")
+        x = column(study, "time", "time")
     table = curve(study, where, law, x, (value, value))
-    return None if table is None else MeasuredFactor(measured, table, *acts)
+    return None if table is None else Varying(measure, table)

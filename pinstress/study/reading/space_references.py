@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
+from loads.space.kinds import Kind
 from pinbase.keys import key_part
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.names import known_name, known_names, two_bodies
+from pinstress.study.schema.drives import drive_name
 from pinstress.study.schema.landing import DropCase, GroundCase
 from pinstress.study.schema.shown import as_text, listed
 from pinstress.study.schema.space import (
@@ -41,8 +43,25 @@ def of_space(mechanism: SpaceMechanismTable) -> Iterator[Wrong]:
         yield from known_name(where, "body", name, mechanism.body)
     known = partial(known_names, mechanism, "mechanism")
     yield from known("joint.fixed_in joint.connections body.welded_to", "body", bodies)
-    yield from known("body.bar.joints drive.between spring.joints", "joint", mechanism.joint)
-    yield from known("sharing.connections", "connection", names)
+    yield from known(
+        "body.bar.joints drive.between spring.joints stop.between", "joint", mechanism.joint
+    )
+    forces = [*names, *mechanism.gear, *mechanism.rack]
+    yield from known("sharing.connections", "connection, gear or rack", forces)
+    actuators = dict.fromkeys([*map(drive_name, mechanism.drive), *mechanism.stop])
+    yield from known("sharing.parallel", "drive or stop", actuators)
+    yield from known("rack.pinion", "body", mechanism.body)
+    yield from known("gear.joints rack.joint", "joint", mechanism.joint)
+    for name, gear in mechanism.gear.items():
+        where = f"mechanism.gear.{key_part(name)}"
+        yield from two_bodies(where, gear.bodies, bodies)
+        for at in gear.joints:
+            yield from _of_kind(f"{where}.joints", mechanism, at, "revolute")
+    for name, rack in mechanism.rack.items():
+        where = f"mechanism.rack.{key_part(name)}"
+        yield from known_name(f"{where}.slide", "joint", rack.slide, mechanism.joint)
+        yield from _of_kind(f"{where}.joint", mechanism, rack.joint, "revolute")
+        yield from _of_kind(f"{where}.slide", mechanism, rack.slide, "prismatic")
     for i, drive in enumerate(mechanism.drive, 1):
         where = "mechanism.drive" + (f"[{i}]" if len(mechanism.drive) > 1 else "")
         match drive:
@@ -62,10 +81,19 @@ def of_space(mechanism: SpaceMechanismTable) -> Iterator[Wrong]:
         yield from _moved(where, mechanism, torsion.joint, torsion.connection, False)
     for name, stop in mechanism.stop.items():
         where = f"mechanism.stop.{key_part(name)}"
+        yield from two_bodies(where, stop.bodies, bodies)
         if stop.joint is not None:
             yield from _moved(f"{where}.joint", mechanism, stop.joint, stop.connection, False)
         elif stop.slide is not None:
             yield from _moved(f"{where}.slide", mechanism, stop.slide, stop.connection, True)
+
+
+def _of_kind(where: str, mechanism: SpaceMechanismTable, name: str, kind: Kind) -> Iterator[Wrong]:
+    """Yield an error for a joint of another kind than teeth need."""
+    joint = mechanism.joint.get(name)
+    if joint is not None and joint.kind != kind:
+        text = f"{where}: joint {name} is {joint.kind}; teeth need one that is {kind}"
+        yield Wrong(text, code="joint-kind")
 
 
 def _moved(

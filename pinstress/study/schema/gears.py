@@ -8,6 +8,7 @@ from pydantic import AfterValidator, Field, model_validator
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.types import (
     Angle,
+    Point3,
     PositiveLength,
     Side,
     StrictTable,
@@ -63,17 +64,13 @@ class GearTable(StrictTable):
         return self
 
 
-class RackTable(StrictTable):
-    """A gear and a rack: one of the two bodies of a slider is the rack, the other has the joint on
-    which the gear turns.
-    """
+class PinionTable(StrictTable):
+    """The gear that meshes with a rack."""
 
     pinion: str
     """The body that is the gear."""
     joint: str
     """The joint at its centre."""
-    slider: str
-    """The slider that guides the rack on the body with that joint, or that body on the rack."""
     side: Side
     """On which side of the gear's centre the rack is, looking along the slider's direction."""
     radius: PositiveLength | None = None
@@ -87,3 +84,70 @@ class RackTable(StrictTable):
 
     _one_size = exactly_one("either radius, or teeth and module", "radius", "teeth")
     _whole_size = both_or_none("teeth", "module")
+
+    @property
+    def pitch_radius(self) -> float:
+        """Radius of the pitch circle, m."""
+        return self.radius or 0.5 * (self.module or 0.0) * (self.teeth or 0)
+
+
+class RackTable(PinionTable):
+    """A gear and a rack: one of the two bodies of a slider is the rack, the other has the joint on
+    which the gear turns.
+    """
+
+    slider: str
+    """The slider that guides the rack on the body with that joint, or that body on the rack."""
+
+
+def _below_60(value: float) -> float:
+    if abs(value) > math.radians(60.0):
+        raise ArgumentError("must be between -60 and 60 deg", "out-of-range")
+    return value
+
+
+HelixAngle = Annotated[Angle, AfterValidator(_below_60)]
+
+
+class SpaceGearTable(GearTable):
+    """Two bodies whose teeth mesh, each turning on a revolute joint that a third body, the carrier,
+    shares with it: spur or helical gears where the joints are parallel, bevel gears where their
+    axes meet.
+    """
+
+    joints: tuple[str, str]
+    """The revolute joint of each. What is on both joints is the carrier: the ground, or the arm of
+    a planetary train."""
+    radii: tuple[PositiveLength, PositiveLength] | None = None
+    """Radii of the pitch circles, of bevel gears in the middle of the teeth. Those of parallel axes
+    must touch."""
+    module: PositiveLength | None = None
+    """Module of the teeth: of parallel axes it only checks their distance, of bevel gears it gives
+    the size in the middle of the teeth."""
+    at: Point3 | None = None
+    """A point in the middle of the teeth that meet: of parallel axes its place along them counts
+    (default: midway between the joints), of bevel gears the side and, without radii and module, the
+    distance from where the axes meet."""
+    helix_angle: HelixAngle = 0.0
+    """Helix angle (of bevel gears spiral angle) of the first gear, positive right-handed. The
+    pressure angle is that across the teeth."""
+
+
+class SpaceRackTable(PinionTable):
+    """A gear and a rack: one of the two bodies of a prismatic joint is the rack, the other has the
+    revolute joint on which the gear turns.
+    """
+
+    joint: str
+    """The revolute joint of the gear, at a right angle to the rack."""
+    side: Side
+    """On which side of the gear's centre the rack is, looking along the axis of the prismatic joint
+    with that of the gear's joint upwards."""
+    slide: str
+    """The prismatic joint that guides the rack on the body with that joint, or that body on the
+    rack."""
+    at: Point3 | None = None
+    """A point in the middle of the teeth that meet, of which the place along the gear's axis
+    counts. Default: the joint."""
+    helix_angle: HelixAngle = 0.0
+    """Helix angle of the gear, positive right-handed."""

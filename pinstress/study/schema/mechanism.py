@@ -34,6 +34,7 @@ from pinstress.study.schema.types import (
     Weight,
     both_or_none,
     exactly_one,
+    of_usual_length,
     require_one,
 )
 
@@ -201,7 +202,7 @@ class SliderTable(StrictTable):
     def _not_zero(cls, value: tuple[float, float] | None) -> tuple[float, float] | None:
         if value is not None and not any(value):
             raise ArgumentError("must not be zero", "no-direction")
-        return value
+        return value if value is None else of_usual_length(value)
 
 
 AnyDrive = Annotated[
@@ -221,7 +222,8 @@ class SharingTable(StrictTable):
     connections: Annotated[list[str], Field(min_length=1)] | None = None
     """The redundant connections, gears and racks. Give either `connections` or `parallel`."""
     parallel: Annotated[list[str], Field(min_length=2)] | None = None
-    """Drives, sliders or stops in parallel; exactly one of them is driven."""
+    """Drives, sliders or stops in parallel (in space drives or stops); exactly one of them is
+    driven."""
     stiffness: Ratios | None = None
     """Stiffness of each; only the ratios matter."""
     areas: Ratios | None = None

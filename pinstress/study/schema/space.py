@@ -13,10 +13,11 @@ from loads.space.linkage import RIGHT_ANGLE_TOLERANCE
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.drives import LawTable, require_few_turns
 from pinstress.study.schema.forces import LineLawTable, TorsionLawTable
+from pinstress.study.schema.gears import SpaceGearTable, SpaceRackTable
 from pinstress.study.schema.mechanism import (
     BarTable,
     LinkStiffnessTable,
-    Ratios,
+    SharingTable,
     require_single_mass,
 )
 from pinstress.study.schema.types import (
@@ -42,10 +43,6 @@ from pinstress.study.schema.types import (
 MAX_COSINE_OF_SKEW = math.cos(math.radians(1.0))
 PLANAR_PARTS = {  # of a mechanism, and what stands for them in space
     "slider": 'use a joint of kind = "prismatic" between its two bodies',
-    "gear": "give each of the two bodies a drive, their laws in the ratio of the teeth, and load "
-    "both with the force between the teeth, which drives do not exert on bearings",
-    "rack": "give each of the two bodies a drive, their laws in the ratio of the gear's radius, "
-    "and load both with the force between the teeth, which drives do not exert on bearings",
     "point": "remove it: bodies.csv has the motion of every body",
 }
 
@@ -356,35 +353,29 @@ class SpaceTorsionSpringTable(TorsionLawTable):
 
 
 class SpaceStopTable(StrictTable):
-    """A lock or stop of a joint, which can keep it as it is in cases whose `hold` names it."""
+    """A lock or stop of a joint or of a distance, which can keep it as it is in cases whose `hold`
+    names it.
+    """
 
     joint: str | None = None
-    """The revolute or cylindrical joint whose angle it keeps. Give either `joint` or `slide`."""
+    """The revolute or cylindrical joint whose angle it keeps. Give one of `joint`, `slide` or
+    `between`."""
     slide: str | None = None
     """The prismatic or cylindrical joint whose travel it keeps."""
     connection: str | None = None
     """Which of its connections. Default: the only one that moves on the pin."""
+    between: tuple[JointOrPoint3, JointOrPoint3] | None = None
+    """The points of two bodies whose distance it keeps, joints or [x, y, z]; pins are not loaded at
+    these joints."""
+    bodies: tuple[str, str] | None = None
+    """The two bodies of `between`; one may be "ground"."""
     carries: Sign = "both"
     """Couples about the joint's axis, right-handed, or forces along it, on the body of the
-    connection, that it can carry: "both" for a lock, one sign for a stop, which opens under the
-    other."""
+    connection, or forces that push points apart, that it can carry: "both" for a lock, one sign for
+    a stop, which opens under the other."""
 
-    _one = exactly_one("either joint or slide", "joint", "slide")
-
-
-class SpaceSharingTable(StrictTable):
-    """Springs in parallel, by which redundant connections share their load."""
-
-    connections: Annotated[list[str], Field(min_length=1)]
-    """The redundant connections."""
-    stiffness: Ratios
-    """Stiffness of each; only the ratios matter."""
-
-    @model_validator(mode="after")
-    def _one_for_each(self) -> "SpaceSharingTable":
-        if len(self.connections) != len(self.stiffness):
-            raise ArgumentError("give one number for each name", "lengths-differ")
-        return self
+    _one = exactly_one("one of joint, slide or between", "joint", "slide", "between")
+    _ends = both_or_none("bodies", "between")
 
 
 class SpaceMechanismTable(StrictTable):
@@ -404,14 +395,19 @@ class SpaceMechanismTable(StrictTable):
     drive: Annotated[list[AnySpaceDrive], ONE_OR_SEVERAL] = []
     """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom; none
     for a structure, and where `hold` names the locks of every case."""
+    gear: dict[str, SpaceGearTable] = {}
+    """Pairs of gears by name, which is also that of the force between their teeth."""
+    rack: dict[str, SpaceRackTable] = {}
+    """Racks with their gears by name, which is also that of the force between their teeth."""
     stop: dict[str, SpaceStopTable] = {}
     """Stops and locks by name."""
     spring: dict[str, SpaceSpringTable] = {}
     """Springs and dampers by name; they act in all cases."""
     torsion_spring: dict[str, SpaceTorsionSpringTable] = {}
     """Torsion springs and dampers by name; they act in all cases."""
-    sharing: list[SpaceSharingTable] = []
-    """Redundant connections, and how they share their load. Default: by the stiffness of links."""
+    sharing: list[SharingTable] = []
+    """Redundant connections, and how they share their load (default: by the stiffness of links);
+    and drives in parallel."""
     link_stiffness: dict[str, SpaceLinkStiffnessTable] = {}
     """Sections of links, by body, by which they share what statics and `sharing` leave open. Those
     of which none is stated are as stiff as the mean of the others, and rows have a range over each

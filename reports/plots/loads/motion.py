@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from reports.data.motion import MIN_TRANSMISSION_ANGLE, LinkageMotion
+from pinbase.dimensions import Floats
+from reports.data.motion import MIN_TRANSMISSION_ANGLE, LinkageMotion, Posture
 from reports.data.row import Units
 from reports.format.file_names import plot_name
 from reports.format.numbers import ten_to
@@ -23,7 +24,7 @@ def motion_plots(motion: LinkageMotion, units: Units) -> Iterator[Plot]:
         return
     time = Abscissa(f"time [{units.time}]", motion.time)
     yield from _bodies(motion, time, units)
-    yield _transmission(motion, time)
+    yield from transmission_plots(motion, units)
     yield _shaking(motion, time, units)
     yield _ledger(motion, time, units)
 
@@ -62,20 +63,18 @@ def _turning(motion: LinkageMotion) -> list[int]:
     ]
 
 
-def _transmission(motion: LinkageMotion, time: Abscissa) -> Plot:
-    angles = {n: v for n, v in motion.transmission.items() if np.isfinite(v).any()}
-    known = np.isfinite(motion.condition) & (motion.condition > 0.0)
-    condition = np.where(known, motion.condition, np.nan)
-    top = max(1.3 * float(np.nanmax(condition, initial=1.0)), 10.0)
-    panels = [
-        Panel(
-            "condition number of the loop equations [1], logarithmic",
-            {"": condition},
-            scale={"type": "log", "domain": [1.0, top], "clamp": True},
-            zero=False,
-        )
-    ]
-    title = f"{motion.case}: transmission angles and conditioning"
+def transmission_plots(posture: Posture, units: Units) -> Iterator[Plot]:
+    """Yield the plot of transmission angles, and in a plane the condition number.
+
+    There is none at rest, and none in space where no link has an angle.
+    """
+    angles = {n: v for n, v in posture.transmission.items() if np.isfinite(v).any()}
+    planar = isinstance(posture, LinkageMotion)
+    if posture.time is None or not (angles or planar):
+        return
+    time = Abscissa(f"time [{units.time}]", posture.time)
+    panels = [_conditioning(posture.condition)] if isinstance(posture, LinkageMotion) else []
+    title = f"{posture.case}: transmission angles{' and conditioning' if planar else ''}"
     caption = title
     if angles:
         limits = {"domain": [0.0, 92.0]}
@@ -86,7 +85,18 @@ def _transmission(motion: LinkageMotion, time: Abscissa) -> Plot:
             f"; shaded: below {MIN_TRANSMISSION_ANGLE:.0f} deg, where forces increase rapidly"
         )
     spec = curves(title, time, panels)
-    return Plot(plot_name("transmission", motion.case), caption, spec)
+    yield Plot(plot_name("transmission", posture.case), caption, spec)
+
+
+def _conditioning(values: Floats) -> Panel:
+    condition = np.where(np.isfinite(values) & (values > 0.0), values, np.nan)
+    top = max(1.3 * float(np.nanmax(condition, initial=1.0)), 10.0)
+    return Panel(
+        "condition number of the loop equations [1], logarithmic",
+        {"": condition},
+        scale={"type": "log", "domain": [1.0, top], "clamp": True},
+        zero=False,
+    )
 
 
 def _poor() -> Spec:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from pinbase.dimensions import Floats
-from reports.data.motion import LinkageMotion
+from reports.data.motion import LinkageMotion, Posture
 from reports.data.results import Results
 from reports.tables.column import ArrayTable, Column, Table, fields
 
@@ -62,10 +62,6 @@ JOINT_COLUMNS = [
     *_xy(("vx", "vy"), "joint_velocity", "velocity"),
     *_xy(("ax", "ay"), "joint_acceleration", "acceleration"),
 ]
-TRANSMISSION_COLUMNS = [
-    *_columns("link", lambda m: m.transmission),
-    _of_each("degrees", lambda m: [*m.transmission.values()], "degrees"),
-]
 CHECK_COLUMNS: list[Column[LinkageMotion]] = [
     *fields("case"),
     *fields("time", "time"),
@@ -97,15 +93,29 @@ PATH_COLUMNS = [
 def linkage_tables(results: Results) -> list[Table[LinkageMotion]]:
     """Return the tables of the linkage over all cases.
 
-    They are motion, joints, transmission, linkage, sliders and, where points are named, paths.
+    They are motion, joints, transmission (also in space), linkage, sliders and, where points are
+    named, paths.
     """
     paths = {"paths": PATH_COLUMNS} if any(m.paths for m in results.motion) else {}
     every = {
         "motion": BODY_COLUMNS,
         "joints": JOINT_COLUMNS,
-        "transmission": TRANSMISSION_COLUMNS,
         "linkage": CHECK_COLUMNS,
         "sliders": SLIDER_COLUMNS,
         **paths,
     }
-    return [ArrayTable(name, columns, results.motion) for name, columns in every.items()]
+    tables = [ArrayTable(name, columns, results.motion) for name, columns in every.items()]
+    return [*tables[:2], transmission_table(results), *tables[2:]]
+
+
+def transmission_table(results: Results) -> Table[Any]:
+    """Return the transmission angles of all cases, in the plane and in space."""
+    columns: list[Column[Posture]] = [
+        *fields("case"),
+        Column(
+            "time", lambda p: None if p.time is None else p.time.repeat(len(p.transmission)), "time"
+        ),
+        Column("link", lambda p: [*p.transmission] * (1 if p.time is None else len(p.time))),
+        _of_each("degrees", lambda p: [*p.transmission.values()], "degrees"),
+    ]
+    return ArrayTable("transmission", columns, results.postures)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from loads import LinkageError
 from pinstress.study.model.mechanism.joint_layout import Point
+from pinstress.study.reading.file import Study
 from pinstress.study.schema.mechanism import MechanismTable
 
 
@@ -45,3 +46,8 @@ def joints_on(mechanism: MechanismTable, body: str) -> list[str]:
     """Return the joints at which a body turns or of which it carries the pin."""
     joints = mechanism.joint.items()
     return [name for name, j in joints if body in (j.fixed_in, *j.connections.values())]
+
+
+def shown_length(study: Study, length: float) -> str:
+    """Return a length (m) as text in the study's unit."""
+    return f"{length / study.system.factor('length'):.4g} {study.system.length}"

@@ -16,6 +16,7 @@ from loads import (
     Linkage,
     LinkageError,
     Measure,
+    Motion,
     Position,
     Slider,
     Spring,
@@ -212,7 +213,7 @@ def load(
 
 def _varying(
     study: Study, where: str, law: ForceLawTable | None, mechanism: Linkage, value: str
-) -> Varying | None:
+) -> Varying[Motion] | None:
     if law is None:
         return None
     measure, x = _argument(study, law, mechanism)
@@ -220,7 +221,9 @@ def _varying(
     return None if table is None else Varying(measure, table)
 
 
-def _argument(study: Study, law: ForceLawTable, mechanism: Linkage) -> tuple[Measure, TableColumn]:
+def _argument(
+    study: Study, law: ForceLawTable, mechanism: Linkage
+) -> tuple[Measure[Motion], TableColumn]:
     if law.length_between is not None:
         joints = [mechanism.joint(name) for name in law.length_between]
         (a, b), (p, q) = (mechanism.carrier(j) for j in joints), (j.at for j in joints)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from loads import Gear, LinkageError, Rack, Slider, Teeth, gear_pair, rack_and_pinion
 from pinstress.study.model.mechanism.drawing import Drawing
@@ -30,22 +31,33 @@ def gears(name: str, table: GearTable, drawing: Drawing) -> Teeth:
             "no-carrier",
             key,
         )
-    sizes = table.teeth or table.radii or (1.0, 1.0)
-    sign = (1.0, 1.0)
-    if table.internal:
-        sign = (-1.0, 1.0) if sizes[0] > sizes[1] else (1.0, -1.0)
-    radii = (sign[0] * sizes[0], sign[1] * sizes[1])
+    radii = sizes_of(table)
     centres = (drawing.at[table.joints[0]], drawing.at[table.joints[1]])
-    if table.teeth is None or table.module is not None:
-        unit = 1.0 if table.module is None else 0.5 * table.module
-        _require_reach(name, math.dist(*centres), abs(unit * sum(radii)), drawing)
+    require_reach(name, table, math.dist(*centres), drawing.shown)
     pair = (Gear(table.bodies[0], table.joints[0]), Gear(table.bodies[1], table.joints[1]))
     return gear_pair(name, pair, carriers[0], centres, radii, table.pressure_angle)
 
 
-def _require_reach(name: str, distance: float, needed: float, drawing: Drawing) -> None:
+def sizes_of(table: GearTable) -> tuple[float, float]:
+    """Return the pitch radii of gears, or numbers of teeth; negative for a ring."""
+    first, second = table.teeth or table.radii or (1.0, 1.0)
+    if not table.internal:
+        return first, second
+    return (-first, second) if first > second else (first, -second)
+
+
+def require_reach(
+    name: str, table: GearTable, distance: float, shown: Callable[[float], str]
+) -> None:
+    """Raise LinkageError where pitch circles of stated size do not touch.
+
+    distance: of the centres, m. shown: gives a length (m) as text.
+    """
+    if table.teeth is not None and table.module is None:
+        return
+    unit = 1.0 if table.module is None else 0.5 * table.module
+    needed = abs(unit * sum(sizes_of(table)))
     if abs(needed - distance) > CENTRE_DISTANCE_TOLERANCE * distance:
-        shown = drawing.shown
         raise LinkageError(
             f"gear {name}: the pitch circles touch when their centres are {shown(needed)} apart, "
             f"but the joints are {shown(distance)} apart; correct one of them (of gears with "
@@ -73,8 +85,7 @@ def rack(name: str, table: RackTable, drawing: Drawing, sliders: tuple[Slider, .
             key,
         )
     toothed = pair[1] if carriers[0] == pair[0] else pair[0]
-    radius = table.radius or 0.5 * (table.module or 0.0) * (table.teeth or 0)
-    x, y = slider.axis
+    radius, (x, y) = table.pitch_radius, slider.axis
     left = radius if table.side == "left" else -radius
     sides = (Gear(table.pinion, table.joint), Rack(toothed, slider.name))
     centre, to_rack = drawing.at[table.joint], (-left * y, left * x)

@@ -18,8 +18,6 @@ from loads import (
     Joint,
     Linkage,
     LinkageError,
-    Parallel,
-    Sharing,
     Slider,
     Teeth,
     Turn,
@@ -28,8 +26,13 @@ from loads.linkage.mass_properties import flat_bar, round_bar
 from loads.motion.mobility import Mobility, mobility, require_determined
 from loads.space.linkage import SpaceLinkage
 from pinbase.keys import key_part
-from pinstress.study.model.mechanism.drawing import Drawing, joints_on
-from pinstress.study.model.mechanism.drives import drive_table, mechanism_of
+from pinstress.study.model.mechanism.drawing import Drawing, joints_on, shown_length
+from pinstress.study.model.mechanism.drives import (
+    drive_table,
+    mechanism_of,
+    parallel_rules,
+    sharing_rules,
+)
 from pinstress.study.model.mechanism.fit import Fitting, reach
 from pinstress.study.model.mechanism.gears import gears, rack
 from pinstress.study.model.mechanism.joint_layout import Point, places
@@ -52,7 +55,6 @@ from pinstress.study.schema.drives import RotaryDrive, drive_name
 from pinstress.study.schema.mechanism import (
     BodyTable,
     MechanismTable,
-    SharingTable,
     SliderTable,
     StopTable,
 )
@@ -106,7 +108,7 @@ def _in_a_plane(
     study: Study, mechanism: MechanismTable, damage: Damage | None
 ) -> tuple[Linkage | None, list[Wrong]]:
     """Return the linkage of a planar mechanism; arguments as of `contradictions`."""
-    shown = partial(_shown, study)
+    shown = partial(shown_length, study)
     at, errors = places(mechanism, shown)
     damage = Damage({}) if damage is None else damage
     wrong = [Wrong(str(error), code=error.code) for error in errors if not damage]
@@ -125,10 +127,6 @@ def _in_a_plane(
     return None, wrong
 
 
-def _shown(study: Study, length: float) -> str:
-    return f"{length / study.system.factor('length'):.4g} {study.system.length}"
-
-
 def _fitting(study: Study, drawing: Drawing, drawn: Linkage) -> Fitting:
     def draw(at: Mapping[str, Point]) -> Linkage:
         moved = _assembled(study, replace(drawing, at=dict(at)))
@@ -141,7 +139,7 @@ def _fitting(study: Study, drawing: Drawing, drawn: Linkage) -> Fitting:
 
 def _as_drawn(study: Study, mechanism: MechanismTable) -> Fitting:
     """Return a valid mechanism as drawn, for movements of its joints."""
-    shown = partial(_shown, study)
+    shown = partial(shown_length, study)
     drawing = Drawing(mechanism, places(mechanism, shown)[0], shown)
     drawn = _assembled(study, drawing)
     assert isinstance(drawn, Linkage)
@@ -153,7 +151,7 @@ def fit_note(study: Study) -> tuple[str, ...]:
     mechanism = study.table.mechanism
     if not isinstance(mechanism, MechanismTable) or mechanism.fit_within is None:
         return ()
-    return _as_drawn(study, mechanism).note(partial(_shown, study))
+    return _as_drawn(study, mechanism).note(partial(shown_length, study))
 
 
 def fit_offer(study: Study, error: CodedError) -> str:
@@ -165,7 +163,7 @@ def fit_offer(study: Study, error: CodedError) -> str:
     if not unfit or not isinstance(mechanism, MechanismTable) or mechanism.fit_within is not None:
         return ""
     fitting = _as_drawn(study, mechanism)
-    return fitting.offer(partial(_shown, study), study.system.factor("length"))
+    return fitting.offer(partial(shown_length, study), study.system.factor("length"))
 
 
 # Codes of contradictions of a part that hold whatever else is missing of the mechanism; of bodies,
@@ -310,12 +308,8 @@ def _linkage(
         turns=(*turns, *(_stop(*item) for item in mechanism.stop.items())),
         driven=tuple(drive_name(d) for d in mechanism.drive),
         gravity=mechanism.gravity,
-        sharing=tuple(
-            Sharing(tuple(s.connections), tuple(s.stiffness or ()))
-            for s in mechanism.sharing
-            if s.connections is not None
-        ),
-        parallel=tuple(_parallel(s) for s in mechanism.sharing if s.parallel is not None),
+        sharing=sharing_rules(mechanism.sharing),
+        parallel=parallel_rules(mechanism.sharing),
         teeth=teeth,
     )
     try:
@@ -342,12 +336,6 @@ def _turn_by_any_angle(drive: RotaryDrive) -> Turn:
 def _stop(name: str, stop: StopTable) -> Turn:
     base, body = stop.bodies
     return Turn(name, body, 0.0, base, stop.carries)
-
-
-def _parallel(rule: SharingTable) -> Parallel:
-    by_area = rule.areas is not None
-    shares = rule.areas if rule.areas is not None else rule.stiffness or []
-    return Parallel(tuple(rule.parallel or ()), tuple(shares), "areas" if by_area else "stiffness")
 
 
 def _slider(drawing: Drawing, name: str, s: SliderTable) -> Slider:

@@ -10,10 +10,10 @@ from functools import partial
 import numpy as np
 
 from loads import LinkageError
-from loads.linkage.parts import Sharing
 from loads.motion.mobility import Mobility, freedom_of, idle_sharing, require_driven
 from loads.space.conditions import directions
 from loads.space.equations import SpaceEquations
+from loads.space.gears import Mesh
 from loads.space.linkage import (
     BodyAngle,
     Inertia,
@@ -30,13 +30,14 @@ from loads.space.stiffness import LinkStiffness
 from pinbase.arrays import Floats
 from pinbase.keys import key_part
 from pinstress.study.model.clevis import middle_of
-from pinstress.study.model.mechanism.drives import mechanism_of
+from pinstress.study.model.mechanism.drives import mechanism_of, parallel_rules, sharing_rules
 from pinstress.study.model.mechanism.masses import (
     STANDARD_GRAVITY,
     body_mass,
     friction_circle,
     pin_mass,
 )
+from pinstress.study.model.mechanism.space_gears import gear_in_space, rack_of, teeth_axes
 from pinstress.study.model.mechanism.stiffness import RIGID, stated_stiffness
 from pinstress.study.model.pins import pin
 from pinstress.study.reading.errors import Wrong
@@ -60,10 +61,11 @@ MIN_ACROSS = 1.0 - math.cos(math.radians(1.0))  # part across a bar of a directi
 
 @dataclass(frozen=True)
 class SpacePin:
-    """The place of the pin of a connection, and its axes.
+    """The place of the pin of a connection, or of teeth, and its axes.
 
-    joint: number of its joint in the linkage. carrier: the body that carries the pin, or GROUND.
-    at: the joint's point as drawn, m. axes: (3, 3), the pin's axes as drawn, as columns.
+    joint: number of its force in the linkage. carrier: the body that carries the pin, or GROUND.
+    at: the joint's point as drawn, m. axes: (3, 3), the pin's axes as drawn, as columns; of teeth
+    out of the first gear, along its pitch circle, and across both.
     """
 
     joint: int
@@ -95,6 +97,13 @@ def space_contradictions(study: Study) -> tuple[SpaceLinkage | None, list[Wrong]
             mass = pin_mass(study, name, joint.weight, g)
             bodies.append(RigidBody(pin_body(name), mass, joint.at))
         joints += _joints(name, joint, _bands(study, name, joint))
+    teeth = list[Mesh]()
+    for make, tables in ((gear_in_space, mechanism.gear), (rack_of, mechanism.rack)):
+        for name in tables:
+            try:
+                teeth.append(make(study, mechanism, name))
+            except LinkageError as error:
+                wrong.append(error)
     centres = {body.name: body.centre for body in bodies}
     joints += [
         SpaceJoint(f"weld of {name}", "fixed", body.welded_to, name, centres[name])
@@ -107,13 +116,12 @@ def space_contradictions(study: Study) -> tuple[SpaceLinkage | None, list[Wrong]
         return SpaceLinkage(
             tuple(bodies),
             tuple(joints),
-            tuple(_measured(study, mechanism)),
+            (*_measured(study, mechanism), *(m for measured, _ in teeth for m in measured)),
             tuple(drive_name(drive) for drive in mechanism.drive),
             mechanism.gravity,
-            sharing=tuple(
-                Sharing(tuple(rule.connections), tuple(rule.stiffness))
-                for rule in mechanism.sharing
-            ),
+            tuple(ratio for _, ratio in teeth),
+            sharing=sharing_rules(mechanism.sharing),
+            parallel=parallel_rules(mechanism.sharing),
             stiffness=_stiffness(mechanism, bodies, joints),
         ), []
     except LinkageError as error:
@@ -153,14 +161,18 @@ def determined_in_space(study: Study, linkage: SpaceLinkage, held: bool) -> Mobi
 
 
 def pins_in_space(study: Study, linkage: SpaceLinkage) -> dict[str, SpacePin]:
-    """Return the pin of every connection of the study's mechanism."""
+    """Return the pin of every connection of the study's mechanism, then the places of teeth."""
     mechanism = space_mechanism(study)
     of = {c: joint for joint in mechanism.joint.values() for c in joint.connections}
+    teeth = {
+        ratio.name: SpacePin(len(linkage.joints) + k, t.carrier, t.at, teeth_axes(t))
+        for k, (_, ratio, t) in enumerate(linkage.teeth)
+    }
     return {
         joint.name: SpacePin(k, joint.base, joint.at, pin_axes(of[joint.name]))
         for k, joint in enumerate(linkage.joints)
         if joint.name in of
-    }
+    } | teeth
 
 
 def pin_axes(joint: SpaceJointTable) -> Floats:
@@ -330,6 +342,8 @@ def _measured(study: Study, mechanism: SpaceMechanismTable) -> Iterator[Measured
             yield _angle(mechanism, name, stop.joint, stop.connection)
         elif stop.slide is not None:
             yield JointTravel(name, _connection(mechanism, stop.slide, stop.connection))
+        elif stop.between is not None and stop.bodies is not None:
+            yield _span(mechanism, name, stop.bodies, stop.between)
     lengths: dict[str, tuple[str, str]] = {}
     for case in study.table.case.values():
         for load in case.apply if isinstance(case, MechanismCase) else ():

@@ -9,8 +9,15 @@ import numpy as np
 import pytest
 
 from pinstress import load_study
-from pinstress.analysis.mechanics.gather_space import note_in_space
+from pinstress.analysis.mechanics.gather_loads import mechanics
 from pinstress.analysis.plan import all_loads
+from pinstress.study.reading.published_tables import Published
+from reports.data.results import Results
+from reports.data.row import SI
+from reports.plots.all import all_plots
+from reports.tables.all import load_tables
+from reports.tables.json_results import to_json
+from reports.text.loads import remarks
 from tests.pinstress.study.model.test_space import solved, written
 
 FOUR_BAR = """
@@ -146,14 +153,30 @@ def test_a_linkage_of_parallel_axes_is_that_in_the_plane(tmp_path: Path) -> None
     assert space.space.efforts[0].rms == pytest.approx(plane.over.drives[0].rms, rel=1e-6)
 
 
-def test_the_note_says_how_near_the_linkage_comes_to_a_dead_point(tmp_path: Path) -> None:
-    """The crank turns towards the line of coupler and rocker, where it cannot drive them."""
+def test_a_case_says_how_near_the_linkage_comes_to_a_dead_point(tmp_path: Path) -> None:
+    """The crank turns towards the line of coupler and rocker, where it cannot drive them: the same
+    transmission angle as in the plane, in tables, on the page and on the terminal.
+    """
+    plane = load_study(written(tmp_path, FOUR_BAR))
+    made = mechanics(plane, all_loads(plane, ["move"]), Published())
     study = load_study(written(tmp_path, _in_space(FOUR_BAR)))
-    found = all_loads(study, ["move"])["move"].space
-    assert found is not None
-    condition, at = found.dynamics.condition
+    loads = all_loads(study, ["move"])
+    parts = mechanics(study, loads, Published())
+    (posture,), (flat,) = parts["space_postures"], made["motion"]
+    condition, at = posture.worst_condition
     assert condition > 5.0
-    assert at in found.dynamics.motion.times
-    note = note_in_space(study, found)
-    assert f"Maximum condition number {condition:.3g} at " in note
-    assert re.search(r"power balance error \d\.\de-\d\d", note)
+    assert at in posture.time
+    assert posture.violation < 1e-12
+    assert [*posture.transmission] == [*flat.transmission] == ["coupler at Q"]
+    angles = posture.transmission["coupler at Q"]
+    assert angles == pytest.approx(flat.transmission["coupler at Q"], abs=1e-7)
+    low, when = posture.poorest["coupler at Q"]
+    assert (low, when) == pytest.approx(flat.poorest["coupler at Q"], abs=1e-6)
+    results = Results("", "", "", SI, None, 0.02, (), **parts)
+    table = next(t for t in load_tables(results) if t.name == "transmission")
+    assert len(table) == len(angles)
+    (case,) = to_json(results)["loads"]
+    assert case["least_transmission"][0]["degrees"] == low
+    assert case["largest_condition"] == condition
+    assert any("maximum condition number" in line for line in remarks(results))
+    assert "transmission.move" in all_plots(results)
