@@ -7,7 +7,7 @@ that are in equilibrium by themselves are shared by rules and by the stiffness o
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -21,6 +21,7 @@ from loads.space.linkage import SpaceLinkage
 from loads.space.motion import SpaceMotion
 from loads.space.sharing import (
     RedundantSets,
+    groups,
     others,
     redundant_sets,
     shared,
@@ -113,14 +114,21 @@ def space_reactions(
 
     Raises: JammingError.
     """
-    parts = [  # without their own motions, whose matrices would otherwise stay in memory
-        replace(
-            _Balance(part, tuple(loads), friction).dynamics(case, timed, variants), motion=motion
-        )
-        for part in motion.parts
-    ]
-    whole: SpaceDynamics = joined(parts)
-    return whole
+
+    def solved(over: Mapping[str, SpaceLinkage]) -> SpaceDynamics:
+        parts = [  # without their own motions, whose matrices would otherwise stay in memory
+            replace(
+                _Balance(part, tuple(loads), friction).dynamics(case, timed, over), motion=motion
+            )
+            for part in motion.parts
+        ]
+        whole: SpaceDynamics = joined(parts)
+        return whole
+
+    linkage, stressed = motion.linkage, motion.mobility.shared
+    whole = solved(others(linkage, stressed) if variants else {})
+    more = groups(linkage, stressed, whole.range) if whole.range else {}
+    return replace(whole, range=whole.range | solved(more).range) if more else whole
 
 
 @dataclass(frozen=True)
@@ -149,16 +157,16 @@ class _Balance:
         self.sources = [*self._teeth(), *(self._rubbing() if friction else ())]
         self.shared = motion.mobility.shared
 
-    def dynamics(self, case: str, timed: bool, variants: bool) -> SpaceDynamics:
-        """Wrenches and drive forces; arguments as of `space_reactions`."""
+    def dynamics(self, case: str, timed: bool, over: Mapping[str, SpaceLinkage]) -> SpaceDynamics:
+        """Wrenches and drive forces; arguments as of `space_reactions`.
+
+        over: linkages with other stiffness of links, by what is different.
+        """
         required = self._required()
         f = self.motion.force_factors.solve_transposed(required)
         reactions, drive, friction = self._solved(self.linkage, f, case, timed)
-        spare = variants and self.motion.force_factors.spare
-        range_ = {
-            text: self._solved(other, f, case, timed)[0]
-            for text, other in (others(self.linkage, self.shared) if spare else {}).items()
-        }
+        every = over if self.motion.force_factors.spare else {}
+        range_ = {text: self._solved(x, f, case, timed)[0] for text, x in every.items()}
         return SpaceDynamics(
             reactions,
             drive,

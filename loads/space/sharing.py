@@ -4,22 +4,24 @@ With more conditions than freedoms some sets of wrenches are in equilibrium by t
 the amounts follow in two steps: the linkage's rules, by which named joints share like springs; then
 least complementary energy of the links, each a beam from its centre of mass to each of its joints.
 Links whose stiffness is not stated are as stiff as the mean of the others, and the result is one of
-several: each of them is also taken a tenth and ten times as stiff, then all in torsion.
+several: each of them is also taken a tenth and ten times as stiff, then all in torsion, then groups
+of them that are ten times as stiff as the rest.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from loads.forces.reactions import Reactions
 from loads.linkage.linkage import LinkageError
 from loads.linkage.parts import GROUND
 from loads.space.equations import SpaceEquations
 from loads.space.linkage import SpaceLinkage
 from loads.space.pose import SpacePose
-from loads.space.stiffness import LinkStiffness, cantilever, complete, variations
+from loads.space.stiffness import LinkStiffness, cantilever, complete, variations, worst_groups
 from pinbase.arrays import Floats
 
 STIFFNESS_RATIO = 10.0  # of a link whose stiffness is not stated, up and down
@@ -55,6 +57,25 @@ def others(linkage: SpaceLinkage, stressed: tuple[str, ...]) -> dict[str, SpaceL
     """
     loose = unstated(linkage, stressed)
     each = variations(stiffness_of(linkage), loose, STIFFNESS_RATIO)
+    return {text: replace(linkage, stiffness=stiffness) for text, stiffness in each.items()}
+
+
+def groups(
+    linkage: SpaceLinkage, stressed: tuple[str, ...], reactions: Mapping[str, Reactions]
+) -> dict[str, SpaceLinkage]:
+    """The same linkage with groups of links stiffer than the rest, those that raise the force or
+    the moment of a joint most.
+
+    reactions: of each of `others`, by its text.
+    """
+    loads = {
+        text: np.concatenate(
+            [np.linalg.norm(x, axis=-1).max(axis=0) for x in (r.forces, r.moments)]
+        )
+        for text, r in reactions.items()
+    }
+    loose = unstated(linkage, stressed)
+    each = worst_groups(stiffness_of(linkage), loose, STIFFNESS_RATIO, loads)
     return {text: replace(linkage, stiffness=stiffness) for text, stiffness in each.items()}
 
 

@@ -59,9 +59,9 @@ force = [0, 0, 100]
 RIGID = "[mechanism.link_stiffness.beam]\nrigid = true\n"
 
 
-def _loads(folder: Path, more: str = "", at: float = 0.0) -> CaseLoads:
+def _loads(folder: Path, more: str = "", at: float = 0.0, arms: str = ARMS) -> CaseLoads:
     path = folder / "arms.toml"
-    path.write_text(ARMS.replace("AT", repr(at)) + more, encoding="utf-8")
+    path.write_text(arms.replace("AT", repr(at)) + more, encoding="utf-8")
     return all_loads(load_study(path), ["push"])["push"]
 
 
@@ -130,12 +130,40 @@ def test_links_of_no_stated_stiffness_are_varied(tmp_path: Path) -> None:
     found = _loads(tmp_path, RIGID)
     ways = [(name, how) for how in ("stiffer", "more flexible") for name in ("left", "right")]
     assert {f"{name} 10 times {how}" for name, how in ways} < {what for what, _ in found.shared}
-    assert len(found.shared) == 6
+    alone = [what for what, _ in found.shared if "than the rest" not in what]
+    assert len(alone) == 6
     on_a = [x.reactions.force("A1")[0, 2] for _, x in found.shared]
     for _, x in found.shared:
         total = x.reactions.force("A1") + x.reactions.force("B1")
         assert total[0] == pytest.approx([0.0, 0.0, 100.0], abs=1e-6)
     assert min(on_a) < 35.0 < 65.0 < max(on_a)
+
+
+def test_groups_of_links_in_space_raise_what_one_alone_does_not(tmp_path: Path) -> None:
+    """Three arms, pushed at the one in the middle: the moment on A1 is a fifth larger with a stiff
+    left arm and a stiff beam than with either.
+    """
+    third = """
+[mechanism.joint.E]
+at = [0.7, 0, 0]
+axis = [0, 0, 1]
+fixed_in = "ground"
+connections = { E1 = "third" }
+[mechanism.joint.F]
+at = [0.7, 1, 0]
+axis = [0, 0, 1]
+fixed_in = "beam"
+connections = { F1 = "third" }
+[mechanism.body.third]
+mass = 1
+"""
+    arms = ARMS.replace("beam = { mass = 1 }", "beam = { mass = 1, centre = [0, 1, 0] }")
+    found = _loads(tmp_path, third, 0.5, arms)
+    k = found.reactions.connections.index("A1")
+    on_a = {what: np.linalg.norm(x.reactions.moments[0, k]) for what, x in found.shared}
+    alone = max(moment for what, moment in on_a.items() if "than the rest" not in what)
+    both = on_a["left, beam 10 times stiffer than the rest"]
+    assert both == max(on_a.values()) > 1.15 * alone
 
 
 @each(
