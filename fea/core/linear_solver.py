@@ -55,17 +55,18 @@ class Analysis:
         self._cholmod = _Cholmod(pattern, order) if has_cholmod() else None
         self._factor = self._cholmod.factor if self._cholmod else partial(_superlu, order=order)
 
-    def factorize(self, K: sp.csr_matrix, check: bool = True) -> Solve:
+    def factorize(self, K: sp.csr_matrix, check: bool = True, kept: bool = False) -> Solve:
         """A function that solves K x = b for b (n,) or (n, k).
 
-        It must not be called after another matrix has been factored.
-        check: whether it checks what it returns.
+        It must not be called after another matrix has been factored, unless the factor is kept.
+        check: whether it checks what it returns. kept: whether it has a factor of its own, which
+        takes a part of a factorisation more, and its memory.
 
         Raises: SolveError when K is not positive definite (an unconstrained body), and from the
         returned function when a solution does not satisfy the equations, or when K is so nearly
         singular that round-off changes it by more than a thousandth.
         """
-        solve = self._factor(K)
+        solve = self._factor(K, kept=True) if kept else self._factor(K)
         if not check:
             return solve
 
@@ -159,6 +160,12 @@ class ConstrainedSystem:
         with self._lock:
             return self._analysis.work(held, forces)
 
+    def kept(self, K: sp.csr_matrix, free: Floats) -> Solve:
+        """A function that solves as `solve`, also after other matrices; K is changed."""
+        with self._lock:
+            solve = self._analysis.factorize(self._constrained(K, free), kept=True)
+        return lambda forces: solve(forces * free[:, None])
+
     def factorize(self, K: sp.csr_matrix, free: Floats) -> Solve:
         """A function that solves for forces that are zero on constrained unknowns, unchecked."""
         return self._analysis.factorize(self._constrained(K, free), check=False)
@@ -201,21 +208,23 @@ class _Cholmod:
         )
         self._matrix = spmatrix(1.0, *lower, pattern.shape)
         cholmod.options["supernodal"] = 2  # L L^T, which fails on a matrix that is not definite
-        self._factor = cholmod.symbolic(self._matrix, *(() if order is None else (matrix(order),)))
+        self._order = () if order is None else (matrix(order),)
+        self._factor = cholmod.symbolic(self._matrix, *self._order)
 
-    def factor(self, K: sp.csr_matrix) -> Solve:
+    def factor(self, K: sp.csr_matrix, kept: bool = False) -> Solve:
         from cvxopt import cholmod, matrix
 
         K = K if K.has_sorted_indices else K.sorted_indices()
         self._matrix.V = matrix(K.data[self._upper])
+        factor = cholmod.symbolic(self._matrix, *self._order) if kept else self._factor
         try:
-            cholmod.numeric(self._matrix, self._factor)
+            cholmod.numeric(self._matrix, factor)
         except ArithmeticError:
             raise SolveError(INDEFINITE_MESSAGE, "not-positive-definite") from None
 
         def solve(b: Floats) -> Floats:
             x = matrix(np.asfortranarray(b.reshape(len(b), -1)))
-            cholmod.solve(self._factor, x)
+            cholmod.solve(factor, x)
             return np.array(x).reshape(b.shape)
 
         return solve
@@ -256,8 +265,8 @@ def _dissection(K: sp.csr_matrix, node: Ints) -> Ints | None:
     return np.argsort(rank[node], kind="stable")
 
 
-def _superlu(K: sp.csr_matrix, order: Ints | None = None) -> Solve:
-    """A function that solves with SuperLU's factors of K.
+def _superlu(K: sp.csr_matrix, order: Ints | None = None, kept: bool = True) -> Solve:
+    """A function that solves with SuperLU's factors of K, which are always kept.
 
     Its pivots may have any sign, so of a matrix that is not definite it reports only what a
     negative diagonal shows; the rest is found by whoever checks the solution.

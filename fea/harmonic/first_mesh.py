@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from fea.core.linear_solver import Solve
 from fea.core.pin_loads import UnitLoad
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.model import HarmonicModel
@@ -21,12 +22,13 @@ class FirstMesh:
     Patterns of pressures are solved as they come. They are a few hundred, where single rings with
     all their harmonics, of which any pattern could be superposed, are thousands. Fields are read
     once, and belong to these loads alone: what was read together is the same to the last bit only
-    where the loads are.
+    where the loads are. Factors of the mesh are kept, since most calls bring few new patterns.
     """
 
     def __init__(self, memo: Memo | None = None) -> None:
         self._memo = memo or Memo()
         self._fields: dict[Key, MeridianFields] = {}
+        self._solvers: dict[Key, dict[int, Solve]] = {}  # by harmonic
 
     def fields(
         self, make: Callable[[], HarmonicModel], key: Key, request: UnitFields
@@ -42,6 +44,6 @@ class FirstMesh:
             model = self._memo.get(("model", *key), make)
             if known is not None:
                 known.derived.clear()  # they are replaced, and what is derived has their size
-            fields = model.solve(new, read, ends)
+            fields = model.solve(new, read, ends, self._solvers.setdefault(key, {}))
             known = self._fields[key] = fields if known is None else known.joined(fields)
         return known

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 import scipy.sparse as sp
 
-from fea.core.linear_solver import ConstrainedSystem, SolveError
+from fea.core.linear_solver import ConstrainedSystem, Solve, SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
 from fea.core.tractions import (
@@ -66,6 +66,11 @@ class HarmonicBody:
         if moved is None:
             return system.solve(K, free, forces)
         return system.solve(K, free, forces - K @ moved) + moved
+
+    def solver(self, n: int) -> Solve:
+        """A function that gives the unknowns of harmonic n under forces as often as is wanted."""
+        system, K, free = self._equations(n)
+        return system.kept(K, free)
 
     def work(self, n: int, forces: Floats) -> Floats:
         """Works (K, K) of forces (unknowns, K) of harmonic n on the displacements under each."""
@@ -180,11 +185,13 @@ class HarmonicModel(HarmonicBody):
         loads: tuple[UnitLoad, ...],
         extra: Floats = NO_POINTS,
         ends: Iterable[tuple[float, float]] = (),
+        solvers: dict[int, Solve] | None = None,
     ) -> MeridianFields:
         """The unit fields of loads.
 
         extra: (P, 2) m, further points inside the section.
         ends: (r, z), m, ends of pressures on its outline.
+        solvers: of harmonics, kept for the next loads; None: they are not.
 
         Raises: SolveError when the pin is not constrained or a check fails.
         """
@@ -193,7 +200,13 @@ class HarmonicModel(HarmonicBody):
         tractions = np.zeros((*self.outline.nodes.shape, 3, len(loads)))
         for n, (here, on_nodes, on_edges) in forces.items():
             harmonics[here] = n
-            u[:, :, here] = polar(self.displace(n, on_nodes, self._shifted(n, loads, here)))
+            moved = self._shifted(n, loads, here)
+            if solvers is None or moved is not None:
+                u[:, :, here] = polar(self.displace(n, on_nodes, moved))
+            else:
+                if n not in solvers:
+                    solvers[n] = self.solver(n)
+                u[:, :, here] = polar(solvers[n](on_nodes))
             applied[:, :, here] = polar(on_nodes) * [[0.5], [0.5], [1.0]]
             tractions[..., here] = on_edges
         read = self._reading(extra, tuple(ends))

@@ -26,7 +26,7 @@ Mesh = tuple[tuple[Measured, ...], Ratio]
 
 
 @dataclass(frozen=True)
-class Wheel:
+class GearWheel:
     """A gear on its carrier.
 
     body: with the teeth. centre: a point of its axis as drawn, m. axis: unit vector as drawn, (3,).
@@ -60,7 +60,7 @@ class _Place:
 
 def gears_in_space(
     name: str,
-    wheels: tuple[Wheel, Wheel],
+    wheels: tuple[GearWheel, GearWheel],
     carrier: str,
     sizes: tuple[float, float],
     radius: float | None,
@@ -100,7 +100,7 @@ def gears_in_space(
 
 def rack_in_space(
     name: str,
-    pinion: Wheel,
+    pinion: GearWheel,
     rack: tuple[str, str, Floats],
     carrier: str,
     radius: float,
@@ -142,7 +142,7 @@ def rack_in_space(
     )
 
 
-def axes_distance(first: Wheel, second: Wheel) -> float | None:
+def axes_distance(first: GearWheel, second: GearWheel) -> float | None:
     """The distance of two parallel axes, m; None where they are not parallel."""
     if _cross(first, second):
         return None
@@ -150,13 +150,13 @@ def axes_distance(first: Wheel, second: Wheel) -> float | None:
     return float(np.linalg.norm(np.cross(first.axis, apart)))
 
 
-def _cross(first: Wheel, second: Wheel) -> bool:
+def _cross(first: GearWheel, second: GearWheel) -> bool:
     """Whether two axes are not parallel."""
     return float(np.linalg.norm(np.cross(first.axis, second.axis))) > PARALLEL
 
 
 def _on_cylinders(
-    name: str, wheels: tuple[Wheel, Wheel], sizes: tuple[float, float], at: Vector | None
+    name: str, wheels: tuple[GearWheel, GearWheel], sizes: tuple[float, float], at: Vector | None
 ) -> _Place:
     """The place of the teeth of parallel axes, at which the pitch circles touch."""
     axis = wheels[0].axis
@@ -180,7 +180,7 @@ def _on_cylinders(
 
 def _on_cones(
     name: str,
-    wheels: tuple[Wheel, Wheel],
+    wheels: tuple[GearWheel, GearWheel],
     sizes: tuple[float, float],
     radius: float | None,
     at: Vector | None,
@@ -222,11 +222,11 @@ def _on_cones(
     return _Place(tip + reach * line, along, line, np.cross(along, line))
 
 
-def _centres(wheels: tuple[Wheel, Wheel]) -> tuple[Vector, Vector]:
+def _centres(wheels: tuple[GearWheel, GearWheel]) -> tuple[Vector, Vector]:
     return wheels[0].centre, wheels[1].centre
 
 
-def _meeting(name: str, wheels: tuple[Wheel, Wheel]) -> Floats:
+def _meeting(name: str, wheels: tuple[GearWheel, GearWheel]) -> Floats:
     """The point at which two axes meet, (3,) m."""
     a, b = (wheel.axis for wheel in wheels)
     first, second = (np.array(wheel.centre) for wheel in wheels)

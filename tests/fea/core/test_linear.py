@@ -7,7 +7,7 @@ import pytest
 import scipy.sparse as sp
 
 from fea.core import linear_solver as linear
-from fea.core.linear_solver import SolveError, factorize
+from fea.core.linear_solver import ConstrainedSystem, SolveError, factorize
 from fea.core.material import Material
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import clamped_nodes
@@ -126,3 +126,14 @@ def test_superlu_tells_a_singular_matrix(monkeypatch: pytest.MonkeyPatch) -> Non
     K = sp.csr_matrix(np.array([[1.0, -1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 1.0]]))
     with raises(SolveError, "singular-matrix"):
         factorize(K, np.arange(3))
+
+
+def test_a_factor_that_is_kept_solves_after_another_matrix() -> None:
+    K = sp.csr_matrix(np.diag([2.0, 3.0, 4.0]) + 0.5)
+    system, free = ConstrainedSystem(K.copy()), np.array([1.0, 0.0, 1.0])
+    forces = np.array([[1.0], [5.0], [2.0]])
+    expected = system.solve(K.copy(), free, forces)
+    solve = system.kept(K.copy(), free)
+    system.solve(7.0 * K, np.ones(3), forces)
+    assert np.array_equal(solve(forces), expected)
+    assert expected[1, 0] == 0.0

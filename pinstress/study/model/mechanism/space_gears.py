@@ -9,8 +9,8 @@ import numpy as np
 from loads import LinkageError
 from loads.space.gears import (
     Flanks,
+    GearWheel,
     Mesh,
-    Wheel,
     axes_distance,
     gears_in_space,
     rack_in_space,
@@ -119,7 +119,9 @@ def _on(mechanism: SpaceMechanismTable, joint: str) -> Sequence[str]:
     return [*([j.fixed_in] if j.fixed_in else []), *j.connections.values()]
 
 
-def _wheel(mechanism: SpaceMechanismTable, body: str, joint: str, key: tuple[str, str]) -> Wheel:
+def _wheel(
+    mechanism: SpaceMechanismTable, body: str, joint: str, key: tuple[str, str]
+) -> GearWheel:
     """Return a gear about its joint. Raises: LinkageError where it is not on the joint."""
     if body not in (on := _on(mechanism, joint)):
         raise LinkageError(
@@ -130,4 +132,4 @@ def _wheel(mechanism: SpaceMechanismTable, body: str, joint: str, key: tuple[str
         )
     table = mechanism.joint[joint]
     assert table.axis is not None
-    return Wheel(body, table.at, unit(table.axis))
+    return GearWheel(body, table.at, unit(table.axis))
