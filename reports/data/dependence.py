@@ -19,6 +19,7 @@ from reports.data.row import Dependence, LandingRange, PinResult, SharingRange
 
 BENEATH_CONTACT: Literal["beneath"] = "beneath"
 WITH_ERROR = "with its error"  # of what lies beneath, which exceeds what is permitted only with it
+SEVERAL_TOGETHER = "several properties together"  # of a joint
 IMPULSE_RANGES_TOGETHER = "impulse time, velocity change and pulse together"
 # A pin that is loose at the temperature of the case: strong enough, and retained by nothing known.
 PRESS_FIT, LOST_FIT = "press fit", "press fit lost in"
@@ -259,9 +260,13 @@ def _over_joint(
         yield Dependence(what, value, "joint", factor)
     if contact is None or not judged.safe or contact.upper_end > judged.permitted:
         return
-    for v in _alone_first([v for v in deep if v not in turning]):
+    beneath = _alone_first([v for v in deep if v not in turning])
+    if any(v.what == TOGETHER for v in turning):  # which says enough
+        beneath = [v for v in beneath if v.what != TOGETHER]
+    for v in beneath:
         end = _upper_end(contact, v)
         what = f"{v.what} {v.value}" if v.length is None else v.what
+        what = SEVERAL_TOGETHER if v.what == TOGETHER else what
         yield Dependence(
             BENEATH_CONTACT, what, "joint", judged.strength / end,
             given=given if v.length is not None else None, at=v.length,

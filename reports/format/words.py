@@ -8,7 +8,7 @@ from dataclasses import replace
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
 from fea.support.records import TOGETHER
 from reports.data.decision import worst_first
-from reports.data.dependence import BENEATH_CONTACT, PRESS_FIT
+from reports.data.dependence import BENEATH_CONTACT, PRESS_FIT, SEVERAL_TOGETHER
 from reports.data.headline import JudgedCheck, worst_checks
 from reports.data.results import Results
 from reports.data.row import Dependence, PinResult, Units
@@ -178,8 +178,10 @@ def _dependence(d: Dependence, units: Units) -> str:
     what, value = (
         (f"beneath contact at {d.value}", "") if d.what == BENEATH_CONTACT else (d.what, d.value)
     )
+    if what == TOGETHER and d.over == "joint":
+        return SEVERAL_TOGETHER  # the table of the range has their values
     if d.at is None:
-        return " ".join(filter(None, (value, what) if what == TOGETHER else (what, value)))
+        return f"{what} {value}".strip()
     unit = unit_name(d.dimension, units)
     flips = d.at if d.flips_at is None else d.flips_at
     side = "" if d.given is None else "above " if d.at > d.given else "below "

@@ -93,7 +93,7 @@ def test_properties_of_a_joint_that_change_an_outcome_only_together() -> None:
     assert d.factor == pytest.approx(2.0 / 1.56)
     assert flips(both, UNITS) == "the joint values together"
     assert over_words(both.depends_on) == "joint"
-    assert "(stiffness times 0.5, tilt free together)" in but_words(both.depends_on, UNITS)
+    assert "(several properties together)" in but_words(both.depends_on, UNITS)
     assert [x.what for x in open_values(both)] == ["stiffness", "tilt"]
     # What one changes alone is named, not the others with it.
     stiffer = of(("tilt", "free", 1.4), (TOGETHER, "stiffness times 0.5, tilt free", 1.7))
