@@ -38,6 +38,7 @@ from reports.text.certainty import (
     range_words,
     skipped_checks,
 )
+from reports.text.load_path import names
 from reports.text.overview import actions, decisions, why
 from reports.text.summary import ALL_CONVERGED, caveats
 
@@ -95,7 +96,7 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "why": why(results, lines, MAX_PEAKS, places=by_check),
         "why_title": "Why they fail" if _fails(lines) else "Why",
         "actions": [*steps.repairs, *steps.remarks],
-        "nothing": _nothing(lines),
+        "nothing": nothing_to_change(lines),
         "command": steps.command,
         "curve": draw_factor_curve(lines[0], results.units.length) if lines else None,
         "accuracy": [*_accurate(lines, results), *certainty(lines), *measure_first(unknown, lines)],
@@ -168,12 +169,17 @@ def _accurate(lines: Sequence[PinLine], results: Results) -> list[str]:
     return [" ".join(told)] if told else []
 
 
-def _nothing(lines: Sequence[PinLine]) -> str:
+def nothing_to_change(lines: Sequence[PinLine]) -> str:
     """Return the sentence of the card without any change."""
     if lines and lines[0].outcome in GOOD:
         return "Nothing: every pin meets its requirements."
     if any(line.row.max_von_mises is None for line in lines):
         return "First let the pin be solved: the card beside this one says what it lacks."
+    if open_ := [x for x in lines if x.outcome == DEPENDS]:
+        pins = list(dict.fromkeys(x.pin for x in open_))
+        text = f"Narrow the ranges on which {names(pins)} depend{'s' * (len(pins) == 1)}"
+        sized = any(x.diameter and x.diameter.whatever for x in open_)
+        return f"{text}{', or take the diameter over the open range' * sized}."
     return "No change is known; the table of each pin has what was found."
 
 

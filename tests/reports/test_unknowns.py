@@ -20,6 +20,7 @@ from reports.data.results import Results
 from reports.data.row import PinResult, Units
 from reports.data.unknowns import factor_spread, open_values, unknowns
 from reports.format.words import but_words, over_words
+from reports.page.overview import nothing_to_change
 from reports.text.certainty import (
     certainty,
     excess_stress,
@@ -218,3 +219,12 @@ def test_a_row_that_may_lose_all_its_stress_hides_no_other() -> None:
         "Nothing open changes an outcome alone; tilt matters most (factor of A 6.92 to 10.0)."
     ]
     assert unknowns(rows[1:])[0].ratio == math.inf
+
+
+def test_what_to_do_about_a_pin_that_depends_is_to_narrow_its_ranges(results: Results) -> None:
+    """The page said that no change is known."""
+    rows = [with_values(pin(1.7, (0.9, 1.3)), pin=name) for name in "CD"]
+    lines = pin_lines(replace(results, pins=(rows[0],), spectrum_margins=()))
+    assert nothing_to_change(lines).startswith("Narrow the ranges on which C depends")
+    both = pin_lines(replace(results, pins=tuple(rows), spectrum_margins=()))
+    assert nothing_to_change(both).startswith("Narrow the ranges on which C and D depend")
