@@ -34,6 +34,7 @@ class StressPanel:
         self.right = self.left + self.scale * length
         self.top, self.foot = top + KEY_HEIGHT, top + KEY_HEIGHT + PANEL_HEIGHT
         self.highest = HEADROOM_FACTOR * along.top
+        self.key_end = self.left  # of the words above the panel
 
     def x(self, z: float) -> float:
         """The abscissa of a place on the pin."""
@@ -72,6 +73,7 @@ class StressPanel:
                              f'stroke-width="1.4" fill="none"/>')  # fmt: skip
                 parts.append(text(x + 20.0, y, name, anchor="start"))
                 x += 20.0 + wide(name) + 4.0
+        self.key_end = x + wide(f"[{unit}]")
         return [*parts, text(x, y, f"[{unit}]", anchor="start")]
 
     def _curve(self, z: Floats, stress: Floats, style: str) -> list[str]:
@@ -93,10 +95,13 @@ class StressPanel:
         words = f"allowed {engineering(allowed)}"
         x, below, maximum, anchor = self._label()
         end = x + wide(maximum) if anchor == "start" else x
-        meets = end > self.right - 2.0 - wide(words) and abs(below - (y - 3.0)) < LETTER_HEIGHT
+        start, at = self.right - 2.0 - wide(words), y - 3.0
+        if self.key_end > start and at - (self.top - 6.0) < LETTER_HEIGHT:  # where the key stands
+            at = y + LETTER_HEIGHT
+        meets = end > start and abs(below - at) < LETTER_HEIGHT
         style = 'class="allowed" stroke-dasharray="2 3"'
         return [line(self.left, y, self.right, y, style, ZONE_COLOUR),
-                text(self.right - 2.0, below + LETTER_HEIGHT if meets else y - 3.0, words,
+                text(self.right - 2.0, below + LETTER_HEIGHT if meets else at, words,
                      halo=True, anchor="end")]  # fmt: skip
 
     def _label(self) -> tuple[float, float, str, str]:

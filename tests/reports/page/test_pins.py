@@ -212,6 +212,15 @@ def test_the_allowed_stress_and_the_maximum_are_not_written_on_one_another(maxim
     assert abs(rows["max"][1] - rows["allowed"][1]) >= 11.0
 
 
+def test_the_allowed_stress_is_not_written_on_the_key_of_a_short_pin() -> None:
+    known = (np.array([0.0, 20.0]), np.array([0.0, 280.0]))
+    along = StressAlong("c", 0.0, (), (known,), known, (), 20.0, 280.0, 300.0)
+    svg = "".join(StressPanel(along, (40.0, 1.6, 58.0), 0.0).draw("MPa"))
+    (key,) = re.findall(r'y="([^"]*)"[^>]*>section<', svg)
+    (allowed,) = re.findall(r'y="([^"]*)"[^>]*>allowed ', svg)
+    assert float(allowed) - float(key) >= 12.0
+
+
 def test_lugs_are_drawn_to_scale() -> None:
     """Width, gap and diameters of lugs and bushing, in the scale of the pin, about its axis."""
     svg = draw_pin(in_lugs_of(5.0, bushing=0.25), UNITS)
