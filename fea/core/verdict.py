@@ -13,6 +13,7 @@ from fea.core.linear_solver import SolveError
 from fea.core.mesh_history import MeshHistory
 from fea.core.mesh_result import MeshMaximum
 from fea.core.peak import (
+    NO_BOUND,
     NO_REASON,
     ErrorParts,
     Maximum,
@@ -70,6 +71,11 @@ class Evidence:
     governing: PinLoads | None = None
     imbalance: tuple[float, float] | None = None
     solids: tuple[tuple[float, float], ...] = ()
+
+    @property
+    def unbounded(self) -> bool:
+        """Whether nothing is known of the error."""
+        return self.doubt is not None and not NO_BOUND.isdisjoint(self.doubt.codes)
 
     def with_parts(self, **parts: Stress) -> Evidence:
         """The evidence with more parts of the error, Pa, by their names in ErrorParts."""

@@ -64,7 +64,7 @@ def _by_section(
         parts=section.parts,
         location=at.location,
         governing=section.loads if links is None else links,
-        doubt=None,
+        doubt=surface.doubt if surface.unbounded else None,
         omissions=Reason("", surface.omissions.codes),
     )
     if at_surface.verdict != "singular":

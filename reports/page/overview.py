@@ -18,6 +18,7 @@ from reports.format.ranges import factor_range
 from reports.format.words import headline
 from reports.page.factor_curve import draw_factor_curve
 from reports.page.linkage_drawing import draw_linkage
+from reports.page.linkage_panel import Instant
 from reports.page.pin_marks import governing_instant, pin_marks
 from reports.tables.strength.overview import (
     FactorAxis,
@@ -68,7 +69,8 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
     axis = factor_axis(lines)
     columns = _columns(pins)
     steps = actions(results, lines)
-    linkage = _linkage(results, lines, anchors)
+    at = governing_instant(results, lines)
+    linkage = at and _linkage(results, lines, anchors, at)
     by_check = any(check_words(line) != DASH for line in lines)
     matrix = matrix_rows(requirement_rows(results))
     return {
@@ -79,7 +81,7 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "pins": list(columns),
         "linkage": linkage,
         "drawing": "" if linkage else drawing,
-        "caption": _caption(results, lines) if linkage else "",
+        "caption": _caption(results, at.skeleton.case) if at else "",
         "case": lines[0].case if lines else "",
         "same_case": len({line.case for line in lines}) == 1,
         "long_names": any(len(x) > LONG_NAME for x in (*pins, *(line.case for line in lines))),
@@ -105,23 +107,22 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
     }
 
 
-def _linkage(results: Results, lines: Sequence[PinLine], anchors: Mapping[str, str]) -> str | None:
-    at = governing_instant(results, lines)
-    if at is None:
-        return None
+def _linkage(
+    results: Results, lines: Sequence[PinLine], anchors: Mapping[str, str], at: Instant
+) -> str:
     title = f"Linkage in case {at.skeleton.case}; each pin with its factor of safety"
     return draw_linkage(
         at, pin_marks(at, lines, anchors), title, results.units.force, results.units.length
     )
 
 
-def _caption(results: Results, lines: Sequence[PinLine]) -> str:
-    """Return what the signs in the drawing of the linkage mean."""
+def _caption(results: Results, case: str) -> str:
+    """Return what the signs in the drawing of the linkage in a case mean."""
     text = (
-        f"Case {lines[0].row.case}. Number: factor. Width: force. Arrow: applied load. Triangle: "
+        f"Case {case}. Number: factor. Width: force. Arrow: applied load. Triangle: "
         "frame, with its force."
     )
-    if any(x.aside for x in results.motion if x.case == lines[0].row.case):
+    if any(x.aside for x in results.motion if x.case == case):
         text += " Ring: load towards the reader (dot) or away (cross)."
     return f"{text} Dash-dotted: axis of a pin." if results.space else text
 

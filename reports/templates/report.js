@@ -59,8 +59,11 @@ const folds = [...document.querySelectorAll("details.fold")];
 const unfold = document.getElementById("unfold");
 const folded = () => folds.some((part) => !part.open);
 const named = () => { unfold.textContent = folded() ? "Open all parts" : "Close all parts"; };
+const decoded = (text) => {
+  try { return decodeURIComponent(text); } catch { return text; } // "50%"
+};
 const reveal = () => {
-  const target = location.hash && document.getElementById(decodeURIComponent(location.hash.slice(1)));
+  const target = location.hash && document.getElementById(decoded(location.hash.slice(1)));
   if (!target) return;
   for (let part = target.closest("details"); part; part = part.parentElement.closest("details")) {
     part.open = true;

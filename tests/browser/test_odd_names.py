@@ -33,3 +33,11 @@ def test_the_pin_is_drawn(page: Any) -> None:
     root = view(page, PIN)
     assert PIN in canvas(root).get_attribute("aria-label")
     assert colours(page, root) > 1000
+
+
+def test_an_address_with_a_per_cent_sign_stops_no_script(page: Any, odd_run: Path) -> None:
+    """It cannot be decoded, which ended all that follows: buttons, frames, plots."""
+    page.get("about:blank")
+    page.get(f"{(odd_run / 'report.html').as_uri()}#50%")
+    assert page.find_element("id", "shade").text in ("Dark", "Light")
+    assert errors(page) == []

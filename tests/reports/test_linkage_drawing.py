@@ -67,6 +67,16 @@ def test_pins_stand_at_their_joints(results: Results) -> None:
     assert drawing.get("role") == "group"
 
 
+def test_the_caption_names_the_case_that_is_drawn(results: Results) -> None:
+    """It named that of the worst pin, of which a case of given forces has no linkage."""
+    worst = pin_lines(results)[0].row.case
+    motion = tuple(x for x in results.motion if x.case != worst)
+    (drawn,) = {x.case for x in motion}
+    screen = overview_part(replace(results, motion=motion), {}, "")
+    assert f"Linkage in case {drawn};" in screen["linkage"]
+    assert screen["caption"].startswith(f"Case {drawn}. ")
+
+
 def test_on_paper_the_linkage_has_no_links(results: Results) -> None:
     """Of links with a tabindex only the ends were removed: a PDF was refused as damaged."""
     drawing = draw_linkage(*linked(results), "", "lbf")

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -20,6 +21,7 @@ import pytest
 
 import pinstress
 from assess.fatigue.fkm import FkmMaterial, p_ram_life
+from fea.harmonic.evaluate import SECTION_MESHES
 from pinstress.analysis.results import RunResults
 from reports.tables.json_results import to_json
 from reports.tables.strength.fatigue import fatigue_sentence, shown_fatigue
@@ -117,6 +119,20 @@ def test_a_case_that_was_not_run_leaves_the_pin_undecided(run: Run) -> None:
     assert results.fatigue is not None
     assert results.fatigue.not_decided == {"P": "case jam was not run"}
     assert _margin(results) == (None, "case jam to be run")
+
+
+def test_stress_whose_error_is_unknown_leaves_the_pin_undecided(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One mesh does not tell it; twice the stress was taken for its bound."""
+    coarse = replace(SECTION_MESHES, max_unknowns=1)
+    monkeypatch.setattr("fea.harmonic.evaluate.SECTION_MESHES", coarse)
+    small = STUDY.replace("JAM", BALANCED).replace('"beam"', '"harmonic"')
+    results = run(small.replace("0000", "000") + BOTH)
+    assert results.fatigue is not None
+    reason = "the error of the stress is unknown in cases work, jam"
+    assert results.fatigue.not_decided == {"P": reason}
+    assert _margin(results) == (None, "a known error of the stress")
 
 
 def test_a_pin_that_has_too_much_damage_already_fails(run: Run) -> None:

@@ -169,7 +169,7 @@ def _points(
 
 
 def _missing(plan: Plan, outcomes: list[PinOutcome], pin: str, table: FatigueTable) -> _Open | None:
-    """Return the part of the spectrum for which no stress of the pin is known."""
+    """Return the part of the spectrum for which no stress of the pin, or no error, is known."""
     sequences = plan.study.table.sequence
     cases: dict[str, None] = {}
     for name in table.occurrences:
@@ -196,6 +196,10 @@ def _missing(plan: Plan, outcomes: list[PinOutcome], pin: str, table: FatigueTab
         )
         text = f"no history of stress in {_named([row.case for row in rows], verb='')}"
         return _Open(f"{text} ({reason})" if reason else text, "a history of stress")
+    every = (row for outcome in pin_outcomes for row in outcome.rows if row.case in cases)
+    if unknown := [row.case for row in every if not row.maximum.bounded]:
+        text = f"the error of the stress is unknown in {_named(unknown, verb='')}"
+        return _Open(text, "a known error of the stress")
     tasks = [t for t in plan.tasks if t.pin.name == pin and any(x.case in cases for x in t.loads)]
     if len(tasks) > 1:
         what = "clamps" if len({t.clamps for t in tasks}) > 1 else "fits at their temperatures"

@@ -190,9 +190,11 @@ def _answer(
             raise NoSizeError(f"the numerical solution failed in case {peak.case}: {peak.note}")
         if accuracy == "full" and not peak.bounded:
             raise NoSizeError(f"the error is unknown in case {peak.case}: {peak.note}")
-    acting = [peak for peak in peaks if peak.max_von_mises]
+    loaded = [peak for peak in peaks if peak.max_von_mises]
+    acting = [peak for peak in loaded if more.get(peak.case, 1.0)]
     if not acting:
-        raise NoSizeError("no case loads it")
+        which = " in which a factor is required" if loaded else ""
+        raise NoSizeError(f"no case{which} loads it")
     strength = todo[0].material.yield_strength
     assert strength is not None  # a pin without strength is refused before
     stresses = []

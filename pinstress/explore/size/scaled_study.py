@@ -166,19 +166,29 @@ def _files(document: Any) -> Iterator[tuple[Any, str]]:
     published = document.get("published", {})
     yield from ((published, key) for key in PUBLISHED_TABLE_KEYS if key in published)
     for part in ("case", "mechanism"):
-        yield from ((table, "table") for table in _with_a_table(document.get(part, {})))
+        yield from _tables(document.get(part, {}))
 
 
-def _with_a_table(node: Any) -> Iterator[Any]:
-    """Return the cases, drives, laws of forces and springs that name a table."""
+def _tables(node: Any) -> Iterator[tuple[Any, str]]:
+    """Return what names a table, with the key that does: cases, drives, laws of forces and springs,
+    and tables of cases that state their columns.
+    """
     if isinstance(node, list):
         for entry in node:
-            yield from _with_a_table(entry)
+            yield from _tables(entry)
     elif isinstance(node, dict):
-        if "table" in node and isinstance(value_of(node["table"]), str):
-            yield node
+        table = value_of(node.get("table"))
+        if isinstance(table, str):
+            yield node, "table"
+        else:
+            stated = table if isinstance(table, list) else [table]
+            yield from ((one, "file") for one in stated if _states_file(one))
         for entry in node.values():
-            yield from _with_a_table(entry)
+            yield from _tables(entry)
+
+
+def _states_file(table: Any) -> bool:
+    return isinstance(table, dict) and isinstance(value_of(table.get("file")), str)
 
 
 def _plain(node: Any) -> list[Any]:

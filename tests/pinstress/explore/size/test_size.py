@@ -169,6 +169,25 @@ def test_a_study_written_elsewhere_names_the_same_files(path: Path, tmp_path: Pa
     assert moved(study.text, path.parent, path.parent) == study.text
 
 
+def test_tables_that_state_their_columns_are_named_from_elsewhere_too(tmp_path: Path) -> None:
+    """One, and several: the new study named them as if they lay beside it."""
+    text = """
+[case.one]
+table = { file = "a.csv", B.fx = "x" }
+
+[[case.two.table]]
+file = "b.csv"
+
+[[case.two.table]]
+file = "c.xlsx"
+sheet = "file"
+"""
+    (tmp_path / "deep").mkdir()
+    case = tomllib.loads(moved(text, tmp_path, tmp_path / "deep"))["case"]
+    assert case["one"]["table"] == {"file": "../a.csv", "B": {"fx": "x"}}
+    assert case["two"]["table"] == [{"file": "../b.csv"}, {"file": "../c.xlsx", "sheet": "file"}]
+
+
 def test_a_stated_weight_changes_with_the_shape() -> None:
     """By as much as the pin's own; not that of a pin fixed in a link, which is part of the link."""
     study = load_study(ROOT / "studies" / "grenier2008.toml")

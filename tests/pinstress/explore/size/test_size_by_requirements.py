@@ -35,7 +35,9 @@ MATERIAL = {
 }
 
 
-def file(folder: Path, *requirements: dict[str, Any], **analysis: Any) -> Path:
+def file(
+    folder: Path, *requirements: dict[str, Any], often: float = 500.0, **analysis: Any
+) -> Path:
     import tomlkit
 
     def pull(force: float) -> dict[str, Any]:
@@ -46,7 +48,7 @@ def file(folder: Path, *requirements: dict[str, Any], **analysis: Any) -> Path:
         **STUDY,
         "material": {"steel": MATERIAL},
         "pin": {"P": {"material": "steel", "profile": LONG}},
-        "case": {"often": pull(500.0), "seldom": pull(1000.0)},
+        "case": {"often": pull(often), "seldom": pull(1000.0)},
         "analysis": {"joints": "prescribed", "tolerance": 0.1, **analysis},
         "require": list(requirements),
     }
@@ -138,3 +140,14 @@ def test_a_size_says_what_a_run_says_of_checks_besides_yield(tmp_path: Path) -> 
         assert judged.why.startswith(str(requirement["check"]))
         if outcome == FAILS:  # it was a margin against the required factor, as no run states it
             assert judged.why.endswith(", 1,000 required (seldom)")
+
+
+def test_a_pin_that_only_other_cases_load_needs_no_size(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its stress counted nothing, by which its strength was divided."""
+    demand = {"pins": ["P"], "cases": ["often"], "check": "yield", "factor": 2}
+    path = file(tmp_path, demand, often=0.0)
+    assert run_command_line(["size", str(path), "--jobs", "1", "--quiet"]) == 1
+    why = "no case in which a factor is required loads it"
+    assert f"Not decided: pin P: {why}." in capsys.readouterr().err
