@@ -50,7 +50,7 @@ def holding(motion: Motion, hold: Sequence[str] = ()) -> Holding:
     Raises: LinkageError when these cannot hold the linkage, or are too many.
     """
     linkage, loops = motion.linkage, motion.loops
-    sets = _sets(linkage, hold)
+    sets = actuator_sets(linkage.parallel, hold or linkage.driven, bool(hold))
     known: dict[str, Slider | Turn] = {s.name: s for s in linkage.sliders}
     known |= {t.name: t for t in linkage.turns}
     actuators = tuple(known[name] for names, _ in sets for name in names)
@@ -81,7 +81,7 @@ def locked(linkage: Linkage, hold: Sequence[str]) -> Linkage:
 
     Raises: LinkageError when these cannot hold the linkage, or are too many.
     """
-    sets = _sets(linkage, hold)
+    sets = actuator_sets(linkage.parallel, hold, True)
     freedom = mobility(linkage)
     require_count(freedom.degrees, hold, len(sets))
     rules = tuple(rule for _, rule in sets if rule is not None)
@@ -119,18 +119,21 @@ def require_pressed(
         )
 
 
-def _sets(linkage: Linkage, hold: Sequence[str]) -> list[tuple[tuple[str, ...], Parallel | None]]:
+def actuator_sets(
+    parallel: Sequence[Parallel], named: Sequence[str], hold: bool
+) -> list[tuple[tuple[str, ...], Parallel | None]]:
     """The sets of actuators that share a multiplier, each with its rule, or a single one without.
 
-    A rule applies only if all its members hold the linkage.
+    named: the drives, or those that hold the linkage (`hold`). A rule applies only if all its
+    members do.
     """
     out: list[tuple[tuple[str, ...], Parallel | None]] = []
     done = set[str]()
-    for name in hold or linkage.driven:
+    for name in named:
         if name in done:
             continue
-        rules = (p for p in linkage.parallel if name in p.members)
-        rule = next((p for p in rules if not hold or set(p.members) <= set(hold)), None)
+        rules = (p for p in parallel if name in p.members)
+        rule = next((p for p in rules if not hold or set(p.members) <= set(named)), None)
         names = (name,) if rule is None else rule.members
         out.append((names, rule))
         done |= set(names)

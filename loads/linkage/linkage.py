@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -199,26 +199,29 @@ def _contradictions(linkage: Linkage) -> Iterator[Contradiction]:
                 text = f"sharing: there is no connection, gear or rack {name!r}"
                 yield text, "unknown-connection", ("sharing",)
     for rule in linkage.parallel:
-        yield from _parallel_contradictions(linkage, rule, coordinates)
+        yield from parallel_contradictions(rule, linkage.parallel, linkage.driven, coordinates)
     yield from _weld_contradictions(linkage, bodies)
     for body in linkage.bodies:
         if body.inertia is None:
             yield from _particle_contradictions(linkage, body)
 
 
-def _parallel_contradictions(
-    linkage: Linkage, rule: Parallel, known: list[str]
+def parallel_contradictions(
+    rule: Parallel, rules: Sequence[Parallel], driven: Sequence[str], known: Collection[str]
 ) -> Iterator[Contradiction]:
-    """Contradictions of a rule for drives in parallel. known: names of all sliders and turns."""
+    """Contradictions of a rule for drives in parallel.
+
+    rules: all of them. driven: names of the drives. known: names of all coordinates.
+    """
     names, at = ", ".join(rule.members), ("sharing",)
     for name in rule.members:
         if name not in known:
             yield f"sharing: there is no slider or turn {name!r}", "unknown-drive", at
-        if sum(name in other.members for other in linkage.parallel) > 1:
+        if sum(name in other.members for other in rules) > 1:
             yield f"sharing: {name} is in two rules; keep one", "shared-twice", at
-    driven = [name for name in rule.members if name in linkage.driven]
-    if linkage.driven and len(driven) != 1:
-        text = f"sharing over {names}: exactly one of them must be driven, not {len(driven)}"
+    drives = [name for name in rule.members if name in driven]
+    if driven and len(drives) != 1:
+        text = f"sharing over {names}: exactly one of them must be driven, not {len(drives)}"
         yield f"{text}; the others follow it", "one-must-drive", at
 
 

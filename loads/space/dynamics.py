@@ -37,7 +37,8 @@ class SpaceDynamics:
 
     reactions: of the moving body of every joint on its base (the pin), world axes, moments about
     the joint's point.
-    drive: (T, D) forces, N, positive where they increase a length; torques, N m, right-handed.
+    drive: (T, A) forces of the actuators, N, positive where they increase a length; torques, N m,
+    right-handed.
     friction: (T, J) N m, couple of the base on the moving body about the axis.
     loads: what acts besides gravity.
     shared: joints whose wrenches follow from sharing rules or stiffness.
@@ -57,8 +58,8 @@ class SpaceDynamics:
 
     @property
     def power(self) -> Floats:
-        """Power of every drive, (T, D) W."""
-        return self.drive * self.motion.speeds
+        """Power of every actuator, (T, A) W."""
+        return self.drive * self.motion.actuated[1]
 
     @property
     def condition(self) -> tuple[float, float]:
@@ -185,7 +186,8 @@ class _Balance:
                 (friction if source.rubs else spread)[:, source.which] = amount
         first = self.equations.guides
         reactions = self._reactions(f, spread, case, timed)
-        return reactions, f[:, first:] * self.equations.drive_scale, friction
+        drive = (self.motion.weights @ f[:, first:, None])[..., 0]
+        return reactions, drive, friction
 
     def _shared(self, linkage: SpaceLinkage, f: Floats) -> Floats:
         """Multipliers with the sets in equilibrium by themselves that rules and links demand."""

@@ -17,6 +17,8 @@ from functools import cached_property
 
 import numpy as np
 
+from loads.forces.holding import actuator_sets
+from loads.linkage.parts import Parallel
 from loads.motion.equations import CLOSING_GEARS, MIN_PARTICIPATION
 from loads.motion.least_squares import Factors, Step, elimination
 from loads.space.conditions import ConditionRows, Gradients, Quantities, Rates, rows_of
@@ -231,26 +233,54 @@ class SpaceEquations:
         out[:, : each.shape[1]] = each
         return out / self.scale
 
-    def force_factors(self, pose: SpacePose) -> Factors:
-        """Orthogonal factors of the Jacobian whose multipliers are the forces in joints and teeth.
+    @cached_property
+    def sets(self) -> list[tuple[tuple[str, ...], Parallel | None]]:
+        """The sets of actuators that share the multiplier of a drive, each with its rule."""
+        return actuator_sets(self.linkage.parallel, self.linkage.driven, False)
+
+    @cached_property
+    def actuators(self) -> tuple[str, ...]:
+        """Names of all actuators: the drives, and the coordinates in parallel to them."""
+        return tuple(name for names, _ in self.sets for name in names)
+
+    def unit_of(self, name: str) -> float:
+        """Length per unit of a measured coordinate."""
+        return self.unit(self._at[name])
+
+    def slides(self, name: str) -> bool:
+        """Whether a measured coordinate is a length; otherwise it is an angle."""
+        return not isinstance(self.linkage.measured[self._at[name]], JointAngle | BodyAngle)
+
+    def force_factors(self, pose: SpacePose, weights: Floats) -> Factors:
+        """Orthogonal factors of the Jacobian whose multipliers are the forces in joints and teeth,
+        and of sets of actuators.
 
         Where teeth mesh, the row of a ratio is the speed at which they slide along the pitch
         circles. With closed joints that says the same as the ratio of the angles, but its
-        multiplier is a force at the pitch point, which the bearings carry.
+        multiplier is a force at the pitch point, which the bearings carry. By virtual work the row
+        of a set is the sum of its actuators' rows, weighted by their forces.
+
+        weights: (T, A, D) force of each actuator, N or N m, per unit of its set's multiplier.
         """
-        if not self.linkage.teeth:
-            return self.factors(pose)
+        return Factors(self._force_elimination, self._force_rows(pose, weights))
+
+    def _force_rows(self, pose: SpacePose, weights: Floats) -> Floats:
+        """The Jacobian (T, rows, n) of `force_factors`."""
         J = self.jacobian(pose)
         write_tooth_rows(self.linkage, pose, self.scale, J[:, self._ratio_rows])
-        return Factors(self._force_elimination, J)
+        J[:, self.guides :] = 0.0
+        for a, name in enumerate(self.actuators):
+            J[:, self.guides :, self.column(name)] += weights[:, a] / self.unit_of(name)
+        return J
 
     @cached_property
     def _force_elimination(self) -> tuple[Step, ...]:
-        """The steps of elimination for the Jacobian with the rows of teeth."""
+        """The steps of elimination for these rows."""
         pose = self.pose(np.random.default_rng(0).standard_normal((3, self.columns)))
-        J = self.jacobian(pose)
-        write_tooth_rows(self.linkage, pose, self.scale, J[:, self._ratio_rows])
-        return elimination((J != 0.0).any(axis=0))
+        members = [[name in names for names, _ in self.sets] for name in self.actuators]
+        shape = len(self.actuators), len(self.sets)
+        every = np.tile(np.reshape(np.array(members, dtype=float), shape), (3, 1, 1))
+        return elimination((self._force_rows(pose, every) != 0.0).any(axis=0))
 
     def transmitted(self, pose: SpacePose, f: Floats) -> Floats:
         """Wrenches (T, J + G, 6) of joints, then of teeth; N and N m, of multipliers (T, rows)."""

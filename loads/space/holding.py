@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from loads.forces.holding import cannot_hold, require_count
+from loads.forces.holding import actuator_sets, cannot_hold, require_count
 from loads.linkage.drives import StateDrive
 from loads.motion.as_drawn import RANK_TOLERANCE
 from loads.motion.mobility import freedom_of
@@ -25,6 +25,7 @@ def held(motion: SpaceMotion, hold: Sequence[str]) -> SpaceMotion:
     Raises: LinkageError where these cannot hold the linkage, or are too many.
     """
     equations = _held(motion.linkage, hold, motion.mobility.degrees)
+    drives = equations.linkage.driven
     factors = equations.factors(motion.pose)
     if factors.weakest.min() < RANK_TOLERANCE:
         J = equations.jacobian(motion.pose)[0]
@@ -32,7 +33,7 @@ def held(motion: SpaceMotion, hold: Sequence[str]) -> SpaceMotion:
         size = np.concatenate([singular, np.zeros(len(right) - len(singular))])
         free = right[size < RANK_TOLERANCE * size[0]] / equations.scale
         raise cannot_hold(hold, equations.moving(motion.pose, free))
-    values = np.stack([motion.coordinate(name)[0] for name in hold], axis=1)
+    values = np.stack([motion.coordinate(name)[0] for name in drives], axis=1)
     rest, still = np.zeros_like(values), np.zeros_like(motion.q)
     return replace(
         motion, equations=equations, drives=values, speeds=rest, rates=rest, v=still, a=still
@@ -52,5 +53,9 @@ def held_as_drawn(linkage: SpaceLinkage, hold: Sequence[str]) -> SpaceMotion:
 
 
 def _held(linkage: SpaceLinkage, hold: Sequence[str], degrees: int) -> SpaceEquations:
-    require_count(degrees, hold, len(hold))
-    return SpaceEquations(replace(linkage, driven=tuple(hold)))
+    sets = actuator_sets(linkage.parallel, hold, True)
+    require_count(degrees, hold, len(sets))
+    rules = tuple(rule for _, rule in sets if rule is not None)
+    return SpaceEquations(
+        replace(linkage, driven=tuple(names[0] for names, _ in sets), parallel=rules)
+    )

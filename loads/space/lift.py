@@ -48,13 +48,10 @@ def lift(linkage: Linkage, loads: Sequence[Load] = (), offsets: Offsets | None =
     offsets: where links lie along z; by default all in the plane z = 0. Loads are in the planes of
     their bodies.
 
-    Raises: LinkageError for what linkages in space do not have: friction of sliders, and rules by
-    which drives in parallel divide their force.
+    Raises: LinkageError for what linkages in space do not have: friction of sliders.
     """
     if any(s.friction for s in linkage.sliders):
         raise LinkageError("sliders with friction cannot be lifted into space", "not-lifted")
-    if linkage.parallel:
-        raise LinkageError("drives in parallel cannot be lifted into space", "not-lifted")
     return _Lift(linkage, offsets or Offsets()).all(loads)
 
 
@@ -92,6 +89,7 @@ class _Lift:
             gravity=(*linkage.gravity, 0.0),
             ratios=tuple(ratios),
             sharing=linkage.sharing,
+            parallel=linkage.parallel,
         )
         return in_space, tuple(lifted_loads)
 

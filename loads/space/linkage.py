@@ -8,8 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
-from loads.linkage.linkage import Contradiction, LinkageError
-from loads.linkage.parts import GROUND, Sharing
+from loads.linkage.linkage import Contradiction, LinkageError, parallel_contradictions
+from loads.linkage.parts import GROUND, Parallel, Sharing
 from loads.space.kinds import KINDS, Kind
 from loads.space.stiffness import LinkStiffness
 from pinbase.arrays import Floats
@@ -169,6 +169,7 @@ class SpaceLinkage:
     driven: names of those that drives prescribe; none of a structure.
     gravity: acceleration of free fall, world axes, m/s^2.
     sharing: rules by which joints share what statics leaves open, as springs do.
+    parallel: rules by which coordinates in parallel, of which one is driven, divide its force.
     stiffness: of bodies, by which they share what these rules leave open.
 
     Raises: LinkageError where the parts contradict each other.
@@ -181,6 +182,7 @@ class SpaceLinkage:
     gravity: Vector = (0.0, 0.0, 0.0)
     ratios: tuple[Ratio, ...] = ()
     sharing: tuple[Sharing, ...] = ()
+    parallel: tuple[Parallel, ...] = ()
     stiffness: Mapping[str, LinkStiffness] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -266,6 +268,8 @@ def _contradictions(linkage: SpaceLinkage) -> Iterator[Contradiction]:
     for ratio in linkage.ratios:
         if len(ratio.weights) != len(ratio.measured) or not set(ratio.measured) <= measured:
             yield f"gear {ratio.name}: its coordinates are not known", "unknown-coordinate", ()
+    for rule in linkage.parallel:
+        yield from parallel_contradictions(rule, linkage.parallel, linkage.driven, measured)
 
 
 def _joint_contradictions(joint: SpaceJoint, known: set[str]) -> Iterator[Contradiction]:

@@ -9,9 +9,11 @@ from functools import cached_property
 import numpy as np
 
 from loads.linkage.drives import Law
+from loads.linkage.parts import Parallel
+from loads.motion.equations import drive_side
 from loads.motion.least_squares import Factors
 from loads.motion.mobility import require_driven
-from loads.motion.motion import Followed, Instants
+from loads.motion.motion import Followed, Instants, side_by_side
 from loads.space.conditions import Rates, axes_of
 from loads.space.equations import SpaceEquations
 from loads.space.linkage import SpaceLinkage, Vector
@@ -44,7 +46,43 @@ class SpaceMotion(Instants[SpaceEquations]):
     @cached_property
     def force_factors(self) -> Factors:
         """The same, of the Jacobian whose multipliers are the forces in joints and teeth."""
-        return self.equations.force_factors(self.pose) if self.linkage.teeth else self.factors
+        if not self.linkage.teeth and not self.linkage.parallel:
+            return self.factors
+        return self.equations.force_factors(self.pose, self.weights)
+
+    @cached_property
+    def weights(self) -> Floats:
+        """Force of each of A actuators, N or N m, per unit of the multiplier of its set, (T, A, D).
+
+        Those of one set divide it by their areas (equal pressure), or by stiffness times
+        displacement (springs on rigid links).
+        """
+        sets = self.equations.sets
+        out, first = np.zeros((len(self), len(self.equations.actuators), len(sets))), 0
+        for k, (names, rule) in enumerate(sets):
+            members = slice(first, first + len(names))
+            out[:, members, k] = self._shares(names, rule)
+            first = members.stop
+        return out
+
+    def _shares(self, names: Sequence[str], rule: Parallel | None) -> Floats:
+        """Forces of a set's actuators per unit of its multiplier, (T, A), or (A,)."""
+        equations = self.equations
+        if rule is None:
+            return np.array([equations.unit_of(names[0])])
+        shares = np.array(rule.shares) / max(rule.shares)
+        if rule.by == "areas":
+            return shares
+        unit = np.zeros_like(self.speeds)
+        unit[:, next(k for k, d in enumerate(self.linkage.driven) if d in names)] = 1.0
+        v = self.factors.solve(drive_side(equations, unit)) / equations.scale
+        return np.asarray(shares * v[:, [equations.column(name) for name in names]])
+
+    @property
+    def actuated(self) -> tuple[Floats, Floats, Floats]:
+        """Position (m or rad) of every actuator and its rates, (T, A) each."""
+        each = [self.coordinate(name) for name in self.equations.actuators]
+        return side_by_side(each, len(self))
 
     @cached_property
     def velocities(self) -> Rates:

@@ -89,7 +89,7 @@ def space_over_time(
     history = resolved(
         times, lambda t: columns(solve(t)), corners, groups=groups.tolist(), known=known
     )
-    positions = np.concatenate([s.dynamics.motion.drives for s in first])
+    positions = np.concatenate([s.dynamics.motion.actuated[0] for s in first])
     strokes = np.ptp(positions, axis=0)
     drives = efforts(
         DriveHistory(history, effort, power),

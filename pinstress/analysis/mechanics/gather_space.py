@@ -11,11 +11,10 @@ from loads import Effort
 from loads.space.transmission import transmission_angles_in_space
 from pinbase.arrays import Floats
 from pinstress.analysis.mechanics.space_skeleton import space_skeleton
-from pinstress.study.model.mechanism.drives import drive_tables, offsets
+from pinstress.study.model.mechanism.drives import offsets
 from pinstress.study.model.mechanism.space import pin_axes, space_mechanism
 from pinstress.study.model.space_cases import InSpace
 from pinstress.study.reading.file import Study
-from pinstress.study.schema.drives import drive_name
 from reports.data.mechanics import DriveEffort, DriveTable
 from reports.data.motion import BodyMotion, Extremes, SpacePosture
 from reports.data.skeleton import Skeleton
@@ -91,24 +90,23 @@ def _without_round_off(values: Floats) -> Floats:
     return np.where(np.abs(values) > least, values, 0.0)
 
 
-def _names(study: Study, solved: InSpace) -> list[tuple[str, bool]]:
+def _names(solved: InSpace) -> list[tuple[str, bool]]:
     """Return the name of all that drives or holds the linkage, and whether it slides."""
-    if solved.held is not None:
-        return [*solved.held]
-    return [(drive_name(drive), drive.slides) for drive in drive_tables(study)]
+    equations = solved.dynamics.motion.equations
+    return [(name, equations.slides(name)) for name in equations.actuators]
 
 
 def positions_in_space(study: Study, solved: InSpace) -> Floats:
     """Return the displayed positions (T, D)."""
-    return shown_positions(study, solved.dynamics.motion.drives, _names(study, solved))
+    return shown_positions(study, solved.dynamics.motion.actuated[0], _names(solved))
 
 
 def drives_in_space(study: Study, case: str, solved: InSpace) -> list[DriveTable]:
     """Return the table of every drive of a case in space."""
     dynamics = solved.dynamics
-    motion, exerted = dynamics.motion, (dynamics.drive, dynamics.power)
-    course = (positions_in_space(study, solved), motion.speeds, motion.rates)
-    times, moved, smooth = dynamics.reactions.times, _names(study, solved), solved.frictionless
+    exerted = dynamics.drive, dynamics.power
+    course = (positions_in_space(study, solved), *dynamics.motion.actuated[1:])
+    times, moved, smooth = dynamics.reactions.times, _names(solved), solved.frictionless
     free = smooth.drives if smooth else None
     return drives(case, moved, times, course, exerted, solved.energies, solved.efforts, free)
 

@@ -232,8 +232,9 @@ def at_rest_in_space(
     else:
         motion = space_move(linkage, [StateDrive(*values) for values in states], np.zeros(1))
         motion = held(motion, hold) if hold else motion
-    lengths = motion.equations.along_lengths
-    held_by = tuple(zip(hold, lengths, strict=True)) if hold else None
+    equations = motion.equations
+    by = [(name, equations.slides(name)) for name in equations.actuators]
+    held_by = tuple(by) if hold else None
     springs, pins = springs_in_space(study, linkage), pins_in_space(study, linkage)
     ground: GroundInertia | None = None
     if isinstance(case, GroundCase):
@@ -263,7 +264,8 @@ def _require_closed(
 ) -> None:
     """Raise LinkageError where a stop would have to pull."""
     stops, forces = space_mechanism(study).stop, dynamics.drive
-    scale = dynamics.motion.equations.drive_scale  # forces that are comparable
+    units = [dynamics.motion.equations.unit_of(name) for name, _ in held_by]
+    scale = np.array(units)  # forces that are comparable
     least = OPENING_FORCE_TOLERANCE * float(np.abs(forces / scale).max())
     for k, (name, slides) in enumerate(held_by):
         if name in stops:

@@ -9,6 +9,7 @@ from loads.space.kinds import Kind
 from pinbase.keys import key_part
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.names import known_name, known_names, two_bodies
+from pinstress.study.schema.drives import drive_name
 from pinstress.study.schema.landing import DropCase, GroundCase
 from pinstress.study.schema.shown import as_text, listed
 from pinstress.study.schema.space import (
@@ -42,9 +43,13 @@ def of_space(mechanism: SpaceMechanismTable) -> Iterator[Wrong]:
         yield from known_name(where, "body", name, mechanism.body)
     known = partial(known_names, mechanism, "mechanism")
     yield from known("joint.fixed_in joint.connections body.welded_to", "body", bodies)
-    yield from known("body.bar.joints drive.between spring.joints", "joint", mechanism.joint)
+    yield from known(
+        "body.bar.joints drive.between spring.joints stop.between", "joint", mechanism.joint
+    )
     forces = [*names, *mechanism.gear, *mechanism.rack]
     yield from known("sharing.connections", "connection, gear or rack", forces)
+    actuators = dict.fromkeys([*map(drive_name, mechanism.drive), *mechanism.stop])
+    yield from known("sharing.parallel", "drive or stop", actuators)
     yield from known("rack.pinion", "body", mechanism.body)
     yield from known("gear.joints rack.joint", "joint", mechanism.joint)
     for name, gear in mechanism.gear.items():
@@ -76,6 +81,7 @@ def of_space(mechanism: SpaceMechanismTable) -> Iterator[Wrong]:
         yield from _moved(where, mechanism, torsion.joint, torsion.connection, False)
     for name, stop in mechanism.stop.items():
         where = f"mechanism.stop.{key_part(name)}"
+        yield from two_bodies(where, stop.bodies, bodies)
         if stop.joint is not None:
             yield from _moved(f"{where}.joint", mechanism, stop.joint, stop.connection, False)
         elif stop.slide is not None:

@@ -221,7 +221,8 @@ class SharingTable(StrictTable):
     connections: Annotated[list[str], Field(min_length=1)] | None = None
     """The redundant connections, gears and racks. Give either `connections` or `parallel`."""
     parallel: Annotated[list[str], Field(min_length=2)] | None = None
-    """Drives, sliders or stops in parallel; exactly one of them is driven."""
+    """Drives, sliders or stops in parallel (in space drives or stops); exactly one of them is
+    driven."""
     stiffness: Ratios | None = None
     """Stiffness of each; only the ratios matter."""
     areas: Ratios | None = None

@@ -17,7 +17,7 @@ from pinstress.study.schema.gears import SpaceGearTable, SpaceRackTable
 from pinstress.study.schema.mechanism import (
     BarTable,
     LinkStiffnessTable,
-    Ratios,
+    SharingTable,
     require_single_mass,
 )
 from pinstress.study.schema.types import (
@@ -353,35 +353,29 @@ class SpaceTorsionSpringTable(TorsionLawTable):
 
 
 class SpaceStopTable(StrictTable):
-    """A lock or stop of a joint, which can keep it as it is in cases whose `hold` names it."""
+    """A lock or stop of a joint or of a distance, which can keep it as it is in cases whose `hold`
+    names it.
+    """
 
     joint: str | None = None
-    """The revolute or cylindrical joint whose angle it keeps. Give either `joint` or `slide`."""
+    """The revolute or cylindrical joint whose angle it keeps. Give one of `joint`, `slide` or
+    `between`."""
     slide: str | None = None
     """The prismatic or cylindrical joint whose travel it keeps."""
     connection: str | None = None
     """Which of its connections. Default: the only one that moves on the pin."""
+    between: tuple[JointOrPoint3, JointOrPoint3] | None = None
+    """The points of two bodies whose distance it keeps, joints or [x, y, z]; pins are not loaded at
+    these joints."""
+    bodies: tuple[str, str] | None = None
+    """The two bodies of `between`; one may be "ground"."""
     carries: Sign = "both"
     """Couples about the joint's axis, right-handed, or forces along it, on the body of the
-    connection, that it can carry: "both" for a lock, one sign for a stop, which opens under the
-    other."""
+    connection, or forces that push points apart, that it can carry: "both" for a lock, one sign for
+    a stop, which opens under the other."""
 
-    _one = exactly_one("either joint or slide", "joint", "slide")
-
-
-class SpaceSharingTable(StrictTable):
-    """Springs in parallel, by which redundant connections share their load."""
-
-    connections: Annotated[list[str], Field(min_length=1)]
-    """The redundant connections."""
-    stiffness: Ratios
-    """Stiffness of each; only the ratios matter."""
-
-    @model_validator(mode="after")
-    def _one_for_each(self) -> "SpaceSharingTable":
-        if len(self.connections) != len(self.stiffness):
-            raise ArgumentError("give one number for each name", "lengths-differ")
-        return self
+    _one = exactly_one("one of joint, slide or between", "joint", "slide", "between")
+    _ends = both_or_none("bodies", "between")
 
 
 class SpaceMechanismTable(StrictTable):
@@ -411,8 +405,9 @@ class SpaceMechanismTable(StrictTable):
     """Springs and dampers by name; they act in all cases."""
     torsion_spring: dict[str, SpaceTorsionSpringTable] = {}
     """Torsion springs and dampers by name; they act in all cases."""
-    sharing: list[SpaceSharingTable] = []
-    """Redundant connections, and how they share their load. Default: by the stiffness of links."""
+    sharing: list[SharingTable] = []
+    """Redundant connections, and how they share their load (default: by the stiffness of links);
+    and drives in parallel."""
     link_stiffness: dict[str, SpaceLinkStiffnessTable] = {}
     """Sections of links, by body, by which they share what statics and `sharing` leave open. Those
     of which none is stated are as stiff as the mean of the others, and rows have a range over each

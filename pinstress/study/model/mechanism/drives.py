@@ -17,13 +17,14 @@ from loads import (
     TableError,
     read_table,
 )
+from loads.linkage.parts import Parallel, Sharing
 from pinbase.keys import key_part
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import Coordinates, InstantCase, StaticCase
 from pinstress.study.schema.drives import RotaryDrive, SliderDrive, drive_name
 from pinstress.study.schema.landing import AtWheel
-from pinstress.study.schema.mechanism import MechanismTable
+from pinstress.study.schema.mechanism import MechanismTable, SharingTable
 from pinstress.study.schema.space import LengthDrive, SpaceDrive, TravelDrive
 from pinstress.study.schema.tables import AnyMechanism
 from pinstress.study.schema.units import to_si
@@ -204,3 +205,25 @@ def _coordinate(
     if key == "position" and isinstance(drive, RotaryDrive) and drive.line is not None:
         coordinate += 2.0 * math.pi * round((default - coordinate) / (2.0 * math.pi))
     return coordinate
+
+
+def sharing_rules(tables: Sequence[SharingTable]) -> tuple[Sharing, ...]:
+    """Return the rules by which redundant connections share their load."""
+    return tuple(
+        Sharing(tuple(rule.connections), tuple(rule.stiffness or ()))
+        for rule in tables
+        if rule.connections is not None
+    )
+
+
+def parallel_rules(tables: Sequence[SharingTable]) -> tuple[Parallel, ...]:
+    """Return the rules by which drives in parallel divide their force."""
+    return tuple(
+        Parallel(
+            tuple(rule.parallel),
+            tuple(rule.areas or rule.stiffness or ()),
+            "stiffness" if rule.areas is None else "areas",
+        )
+        for rule in tables
+        if rule.parallel is not None
+    )

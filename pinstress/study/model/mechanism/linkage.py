@@ -18,8 +18,6 @@ from loads import (
     Joint,
     Linkage,
     LinkageError,
-    Parallel,
-    Sharing,
     Slider,
     Teeth,
     Turn,
@@ -29,7 +27,12 @@ from loads.motion.mobility import Mobility, mobility, require_determined
 from loads.space.linkage import SpaceLinkage
 from pinbase.keys import key_part
 from pinstress.study.model.mechanism.drawing import Drawing, joints_on, shown_length
-from pinstress.study.model.mechanism.drives import drive_table, mechanism_of
+from pinstress.study.model.mechanism.drives import (
+    drive_table,
+    mechanism_of,
+    parallel_rules,
+    sharing_rules,
+)
 from pinstress.study.model.mechanism.fit import Fitting, reach
 from pinstress.study.model.mechanism.gears import gears, rack
 from pinstress.study.model.mechanism.joint_layout import Point, places
@@ -52,7 +55,6 @@ from pinstress.study.schema.drives import RotaryDrive, drive_name
 from pinstress.study.schema.mechanism import (
     BodyTable,
     MechanismTable,
-    SharingTable,
     SliderTable,
     StopTable,
 )
@@ -306,12 +308,8 @@ def _linkage(
         turns=(*turns, *(_stop(*item) for item in mechanism.stop.items())),
         driven=tuple(drive_name(d) for d in mechanism.drive),
         gravity=mechanism.gravity,
-        sharing=tuple(
-            Sharing(tuple(s.connections), tuple(s.stiffness or ()))
-            for s in mechanism.sharing
-            if s.connections is not None
-        ),
-        parallel=tuple(_parallel(s) for s in mechanism.sharing if s.parallel is not None),
+        sharing=sharing_rules(mechanism.sharing),
+        parallel=parallel_rules(mechanism.sharing),
         teeth=teeth,
     )
     try:
@@ -338,12 +336,6 @@ def _turn_by_any_angle(drive: RotaryDrive) -> Turn:
 def _stop(name: str, stop: StopTable) -> Turn:
     base, body = stop.bodies
     return Turn(name, body, 0.0, base, stop.carries)
-
-
-def _parallel(rule: SharingTable) -> Parallel:
-    by_area = rule.areas is not None
-    shares = rule.areas if rule.areas is not None else rule.stiffness or []
-    return Parallel(tuple(rule.parallel or ()), tuple(shares), "areas" if by_area else "stiffness")
 
 
 def _slider(drawing: Drawing, name: str, s: SliderTable) -> Slider:

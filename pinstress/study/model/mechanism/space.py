@@ -10,7 +10,6 @@ from functools import partial
 import numpy as np
 
 from loads import LinkageError
-from loads.linkage.parts import Sharing
 from loads.motion.mobility import Mobility, freedom_of, idle_sharing, require_driven
 from loads.space.conditions import directions
 from loads.space.equations import SpaceEquations
@@ -31,7 +30,7 @@ from loads.space.stiffness import LinkStiffness
 from pinbase.arrays import Floats
 from pinbase.keys import key_part
 from pinstress.study.model.clevis import middle_of
-from pinstress.study.model.mechanism.drives import mechanism_of
+from pinstress.study.model.mechanism.drives import mechanism_of, parallel_rules, sharing_rules
 from pinstress.study.model.mechanism.masses import (
     STANDARD_GRAVITY,
     body_mass,
@@ -121,10 +120,8 @@ def space_contradictions(study: Study) -> tuple[SpaceLinkage | None, list[Wrong]
             tuple(drive_name(drive) for drive in mechanism.drive),
             mechanism.gravity,
             tuple(ratio for _, ratio in teeth),
-            sharing=tuple(
-                Sharing(tuple(rule.connections), tuple(rule.stiffness))
-                for rule in mechanism.sharing
-            ),
+            sharing=sharing_rules(mechanism.sharing),
+            parallel=parallel_rules(mechanism.sharing),
             stiffness=_stiffness(mechanism, bodies, joints),
         ), []
     except LinkageError as error:
@@ -345,6 +342,8 @@ def _measured(study: Study, mechanism: SpaceMechanismTable) -> Iterator[Measured
             yield _angle(mechanism, name, stop.joint, stop.connection)
         elif stop.slide is not None:
             yield JointTravel(name, _connection(mechanism, stop.slide, stop.connection))
+        elif stop.between is not None and stop.bodies is not None:
+            yield _span(mechanism, name, stop.bodies, stop.between)
     lengths: dict[str, tuple[str, str]] = {}
     for case in study.table.case.values():
         for load in case.apply if isinstance(case, MechanismCase) else ():

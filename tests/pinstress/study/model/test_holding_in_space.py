@@ -152,7 +152,7 @@ def test_a_stop_that_would_have_to_pull_opens(tmp_path: Path, carries: str, open
         ('hold = ["downlock"]', 'hold = ["downlock", "jack"]', "2 for 1 degree"),
         ('joint = "K"\n', 'joint = "L"\n', "has no angle"),
         ('joint = "K"\n', 'slide = "K"\n', "has no travel"),
-        ('joint = "K"\n', "", "joint or slide"),
+        ('joint = "K"\n', "", "joint, slide or between"),
     ],
 )
 def test_what_is_wrong_with_locks(tmp_path: Path, old: str, new: str, words: str) -> None:
