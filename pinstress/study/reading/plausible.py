@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from pinbase.keys import key_part
+from pinbase.keys import key_part, lug_key
 from pinstress.study.schema.materials import MaterialTable
 from pinstress.study.schema.pins import PinTable
 from pinstress.study.schema.shown import as_text
@@ -59,6 +59,8 @@ USUAL_RANGES = {
         "acceleration", 1.0, 200.0, 9.81, "a machine", ("m/s^2", "mm/s^2"), ("ft/s^2", "in/s^2")
     ),
 }  # fmt: skip
+USUAL_TEMPERATURES = 1.0, 2000.0  # K, from liquid helium to beyond the melting of steel
+USUAL_STIFFNESS_RATIOS = 1e-2, 1e2  # of a lug over that of its description
 MAX_YIELD_STRAIN = 1.0 / 20.0  # at which a material yields
 
 
@@ -91,7 +93,45 @@ def questions(table: StudyTable, raw: dict[str, Any], system: UnitSystem) -> tup
 
     raw: the content of the file.
     """
-    return tuple(text for number in _numbers(table, raw) if (text := _question(number, system)))
+    usual = (text for number in _numbers(table, raw) if (text := _question(number, system)))
+    return (*usual, *_of_temperatures(table, raw), *_of_ranges(table))
+
+
+def _of_temperatures(table: StudyTable, raw: dict[str, Any]) -> Iterator[str]:
+    """Yield a sentence on every temperature that no machine has."""
+    stated = {
+        f"case.{key_part(name)}.temperature": (case.temperature, raw["case"][name])
+        for name, case in table.case.items()
+        if case.temperature is not None
+    }
+    if "reference_temperature" in table.analysis.model_fields_set:
+        of_drawing = table.analysis.reference_temperature
+        stated["analysis.reference_temperature"] = (of_drawing, raw["analysis"])
+    low, high = USUAL_TEMPERATURES
+    for key, (kelvin, written) in stated.items():
+        if not low <= kelvin <= high:
+            text = as_text(written.get(key.rpartition(".")[2], f"{kelvin:g} K"))
+            yield (
+                f"{key}: {text} is {kelvin:,.4g} K, but the usual range for a machine is {low:g} "
+                f"to {high:,g} K; check its unit"
+            )
+
+
+def _of_ranges(table: StudyTable) -> Iterator[str]:
+    """Yield a sentence on every range of a lug's stiffness that is hardly one."""
+    low, high = USUAL_STIFFNESS_RATIOS
+    common = None if table.lug_defaults is None else table.lug_defaults.range.stiffness
+    stated = {"lug_defaults": common}
+    for name, pin in table.pin.items():
+        for connection, lug in pin.lug.items():
+            if lug.range.stiffness != common:
+                stated[lug_key(name, connection)] = lug.range.stiffness
+    for key, ratios in stated.items():
+        if ratios is not None and not (low <= min(ratios) and max(ratios) <= high):
+            yield (
+                f"{key}.range.stiffness: {ratios[0]:g} to {ratios[1]:g} times that of the lug, but "
+                f"the usual range is within {low:g} and {high:g}; give ratios, not stiffnesses"
+            )
 
 
 def _numbers(table: StudyTable, raw: Any) -> Iterator[StatedValue]:

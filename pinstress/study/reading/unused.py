@@ -35,6 +35,7 @@ def unused(table: StudyTable) -> Iterator[str]:
     yield from _of_codes(table)
     yield from _of_fillets(table)
     yield from _of_drops(table)
+    yield from _of_mechanism(table)
     yield from _of_designs(table)
     for key, lug in lugs.items():
         low, high = lug.range.clearance or (-inf, inf)
@@ -160,6 +161,39 @@ def _short_of_rule(key: str, case: DropCase, rule: str) -> Iterator[str]:
             f"{key}.lift: {case.lift:.4g} of the weight is more than the {most:.4g} of rule "
             f'"{rule}"; give that at most, or remove one of both'
         )
+
+
+def _of_mechanism(table: StudyTable) -> Iterator[str]:
+    """Yield a sentence on every spring without a force, or with a reference of no stiffness, and on
+    every stop that nothing uses.
+    """
+    if (mechanism := table.mechanism) is None:
+        return
+    for kind, springs in (
+        ("spring", mechanism.spring),
+        ("torsion_spring", mechanism.torsion_spring),
+    ):
+        for name, spring in springs.items():
+            key = f"mechanism.{kind}.{key_part(name)}"
+            tables = [v for k in ("force", "couple", "damper") if (v := getattr(spring, k, None))]
+            if not any((spring.stiffness, spring.preload, spring.damping, *tables)):
+                yield (
+                    f"{key}: has no effect without a force; give its stiffness, preload, damping "
+                    "or a table, or remove it"
+                )
+            elif "reference" in spring.model_fields_set and not spring.stiffness:
+                yield (
+                    f"{key}.reference: has no effect, because the stiffness is 0; give {key}."
+                    "stiffness, or remove it"
+                )
+    used = {name for case in table.case.values() for name in getattr(case, "hold", None) or ()}
+    used |= {name for rule in mechanism.sharing for name in rule.parallel or ()}
+    for name in mechanism.stop:
+        if name not in used:
+            yield (
+                f"mechanism.stop.{key_part(name)}: has no effect, because no case holds it; name "
+                "it in case.NAME.hold, or remove it"
+            )
 
 
 def _of_designs(table: StudyTable) -> Iterator[str]:

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.force_tables import TableFile, Tables
@@ -29,6 +29,7 @@ from pinstress.study.schema.types import (
     Whole,
     exactly_one,
     not_zero,
+    of_usual_length,
 )
 
 KEYS_OF_ANY_TABLE = "table_case", "table_units"
@@ -106,7 +107,9 @@ class GivenCase(CaseTable):
         return self
 
 
-Direction = Annotated[list[Number], Field(min_length=2, max_length=3)]
+Direction = Annotated[
+    list[Number], Field(min_length=2, max_length=3), AfterValidator(of_usual_length)
+]
 Pulse = Literal["rectangular", "half-sine", "triangular"]
 
 
@@ -189,7 +192,10 @@ class ApplyTable(StrictTable):
     """Couple about z, positive counter-clockwise, or [mx, my, mz]."""
     couple_law: ForceLawTable | None = None
     """Couple by a table, instead of `couple`; of a linkage in space about `couple_axis`."""
-    couple_axis: Annotated[list[Number], Field(min_length=3, max_length=3)] | None = None
+    couple_axis: (
+        Annotated[list[Number], Field(min_length=3, max_length=3), AfterValidator(of_usual_length)]
+        | None
+    ) = None
     """Axis [x, y, z] of the couple of `couple_law`, of a linkage in space."""
     follows: Switch = False
     """Whether the force, of a linkage in space also the couple, rotates with the body; otherwise
@@ -251,7 +257,11 @@ class GroundMotionTable(StrictTable):
     """Velocity [vx, vy, vz] of the origin at the start."""
     acceleration: tuple[Acceleration, Acceleration, Acceleration] = (0.0, 0.0, 0.0)
     """Constant rate of these components."""
-    axis: tuple[Number, Number, Number] = (0.0, 0.0, 1.0)
+    axis: Annotated[tuple[Number, Number, Number], AfterValidator(of_usual_length)] = (
+        0.0,
+        0.0,
+        1.0,
+    )
     """Direction about which the ground turns."""
     rate: AngularVelocity = 0.0
     """Rate of turn about it at the start, right-handed."""

@@ -34,6 +34,7 @@ from pinstress.study.schema.types import (
     Weight,
     both_or_none,
     exactly_one,
+    of_usual_length,
     require_one,
 )
 
@@ -201,7 +202,7 @@ class SliderTable(StrictTable):
     def _not_zero(cls, value: tuple[float, float] | None) -> tuple[float, float] | None:
         if value is not None and not any(value):
             raise ArgumentError("must not be zero", "no-direction")
-        return value
+        return value if value is None else of_usual_length(value)
 
 
 AnyDrive = Annotated[

@@ -6,12 +6,12 @@ For editors and for the reference in the documentation the JSON Schema gives of 
 
 import ast
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 from textwrap import dedent
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 from urllib.parse import quote
 
 from pydantic import (
@@ -251,12 +251,27 @@ ThermalExpansion = Annotated[
 ]
 TiltStiffness = Annotated[Annotated[float, Quantity("torsional stiffness")], POSITIVE]
 
+LENGTHS_OF_DIRECTIONS = (1e-6, 1e6)  # beyond, their squares may overflow, or pass for zero
+V = TypeVar("V", bound="Sequence[float]")
+
+
+def of_usual_length(direction: V) -> V:
+    """Return a direction, whose length does not matter, divided by its largest component where that
+    is extremely small or large; a zero vector as it is.
+    """
+    low, high = LENGTHS_OF_DIRECTIONS
+    largest = max(map(abs, direction))
+    if not largest or low <= largest <= high:
+        return direction
+    return type(direction)(x / largest for x in direction)  # type: ignore[call-arg]
+
+
 Joint = Annotated[str, Tag("<joint>")]
 BY_NAME_OR_PLACE = Discriminator(lambda x: "<joint>" if isinstance(x, str) else "<point>")
 JointOrPoint = Annotated[Joint | Annotated[Point, Tag("<point>")], BY_NAME_OR_PLACE]
 
 Point3 = tuple[Length, Length, Length]
-Direction = tuple[Number, Number, Number]
+Direction = Annotated[tuple[Number, Number, Number], AfterValidator(of_usual_length)]
 JointOrPoint3 = Annotated[Joint | Annotated[Point3, Tag("<point>")], BY_NAME_OR_PLACE]
 
 Place3 = Annotated[list[Length], Field(min_length=2, max_length=3)]

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pinstress import InputError, load_study
+from pinstress import InputError, load_study, study_from
 from pinstress.analysis.gather.gather import loads_only
 from pinstress.study.model.cases import case_loads
 from pinstress.study.model.mechanism.drives import laws
@@ -295,3 +295,9 @@ def test_a_published_time_that_the_motion_does_not_reach_is_refused(tmp_path: Pa
     path = write(tmp_path, BOWMAN.replace('"published.csv"', '"late.csv"'))
     with pytest.raises(InputError, match=r"late\.csv, line 2: case retract has no time 50"):
         loads_only(load_study(path))
+
+
+def test_the_direction_of_a_slider_may_have_any_length() -> None:
+    assert CRANK.count("direction = [1, 0]") == 1
+    long = study_from(CRANK.replace("direction = [1, 0]", "direction = [1e308, 0]"))
+    assert linkage(long).sliders[0].axis == (1.0, 0.0)

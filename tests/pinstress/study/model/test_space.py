@@ -356,3 +356,15 @@ def test_a_pin_of_another_name_than_its_joint_places_its_bands(tmp_path: Path) -
     two += "[mechanism.body.arm]\nmass = 1\n"
     two = two.replace('joint = "A"\n', 'joint = "A"\nconnection = "A1"\n')
     assert "mechanism.joint.A.z: may be the start of any of the pins P, Q" in message(tmp_path, two)
+
+
+@each("size", ["1e308", "1e-300"])
+def test_directions_may_have_any_length(tmp_path: Path, size: str) -> None:
+    wanted = solved(tmp_path, RSSR)["rest"].reactions.forces
+    changes = [
+        ("axis = [1, 0, 0]", f"axis = [{size}, 0, 0]"),
+        ("second_axis = [0, 1, 0]", f"second_axis = [0, {size}, 0]"),
+        ("depth_along = [0, 1, 0]", f"depth_along = [0, {size}, 0]"),
+    ]
+    found = solved(tmp_path, edited(*changes))["rest"].reactions.forces
+    assert found == pytest.approx(wanted, rel=1e-12)

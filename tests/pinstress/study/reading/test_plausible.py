@@ -153,3 +153,21 @@ def test_of_many_questions_the_first_are_said() -> None:
     assert len(study.questions) == 900
     assert len(study.warnings) == 21
     assert study.warnings[-1] == "s.toml: and 880 more"
+
+
+@each(
+    ("old", "new", "says"),
+    [
+        ('kind = "given"', 'kind = "given"\ntemperature = "1e6 K"', "'1e6 K' is 1e+06 K"),
+        ('kind = "given"', 'kind = "given"\ntemperature = "300 degC"', ""),
+        ("clamp = [\"start\"]", "lug.A.range.stiffness = [1, 2e5]", "1 to 200000 times"),
+        ("clamp = [\"start\"]", "lug.A.range.stiffness = [0.2, 20]", ""),
+    ],
+)  # fmt: skip
+def test_temperatures_and_ratios_of_no_machine_are_questioned(
+    old: str, new: str, says: str
+) -> None:
+    text = METRIC.replace(old, new).replace("0.3\n", "0.3\nthermal_expansion = '12e-6 1/K'\n")
+    told = [x for x in parse_study(Path("s.toml"), text).warnings if "no effect" not in x]
+    assert len(told) == bool(says)
+    assert says in "".join(told)

@@ -178,3 +178,38 @@ def test_keys_of_another_sample(sample: str, steps: str, key: str) -> None:
     study = study_from(f"{text()}\n[vary]\n{sample}\n[vary.parameters]\n{parameter}\n")
     told = [f"{key}: has no effect" in warning for warning in study.warnings]
     assert told == [True] * bool(key)
+
+
+@each(
+    ("part", "key"),
+    [
+        ("[mechanism.spring.s]\nreference = 3\nENDS", "spring.s"),
+        ("[mechanism.spring.s]\nreference = 3\npreload = 5\nENDS", "spring.s.reference"),
+        ("[mechanism.spring.s]\npreload = 5\nENDS", ""),
+        ("[mechanism.spring.s]\nstiffness = 2\nreference = 3\nENDS", ""),
+        ("[mechanism.torsion_spring.s]\nTURN", "torsion_spring.s"),
+        ("[mechanism.stop.s]\nTURN", "stop.s"),
+        ("[mechanism.stop.s]\nTURN\n[case.rest]\nhold = ['s']", ""),
+    ],
+)
+def test_springs_and_stops_without_effect_have_a_warning(part: str, key: str) -> None:
+    """In the plane and in space alike."""
+    for dimension, zero, turn in (
+        (2, "0", 'bodies = ["ground", "arm"]'),
+        (3, "0, 0", 'joint = "O"'),
+    ):
+        axis = "axis = [0, 0, 1]\n" if dimension == 3 else ""
+        ends = f'bodies = ["ground", "arm"]\njoints = [[5, {zero}], "O"]'
+        inertia = (
+            'inertia = ["1 kg m^2", "1 kg m^2", "1 kg m^2"]' if axis else 'inertia = "1 kg m^2"'
+        )
+        told = study_from(
+            'title = "Arm"\nunits = "mm-N-s"\n'
+            f"[mechanism]\ndimension = {dimension}\n[mechanism.joint.O]\nat = [0, {zero}]\n{axis}"
+            'fixed_in = "ground"\nconnections = { o = "arm" }\n[mechanism.body.arm]\n'
+            f'mass = "1 kg"\ncentre = [9, {zero}]\n{inertia}\n'
+            + part.replace("ENDS", ends).replace("TURN", turn)
+            + ("" if "[case.rest]" in part else "\n[case.rest]")
+            + "\nkind = 'static'\n"
+        ).warnings
+        assert [x.split(": ")[1] for x in told] == [f"mechanism.{key}"] * bool(key)
