@@ -77,10 +77,11 @@ class SpaceDynamics:
         """
         slices = self.motion.equations.parts(len(self.motion))
         parts = zip(self.motion.parts, slices, strict=True)
-        return np.concatenate([self._imbalance(motion, part) for motion, part in parts])
+        drives = self.power.sum(axis=1)
+        return np.concatenate([self._imbalance(m, part, drives[part]) for m, part in parts])
 
-    def _imbalance(self, motion: SpaceMotion, part: slice) -> Floats:
-        """The same of the instants of a part, which are those of `motion`."""
+    def _imbalance(self, motion: SpaceMotion, part: slice, drives: Floats) -> Floats:
+        """The same of the instants of a part, which are those of `motion`. drives: (T,) W."""
         linkage, velocities = motion.linkage, motion.velocities
         v, a = velocities.velocity[:, :-1], motion.accelerations.velocity[:, :-1]
         w, rate = velocities.spin[:, :-1], motion.accelerations.spin[:, :-1]
@@ -93,7 +94,7 @@ class SpaceDynamics:
         for k, joint in enumerate(linkage.joints):
             if joint.friction:
                 rubbing += self.friction[part, k] * motion.turning(k)
-        given = self.power[part].sum(axis=1) + power(motion, self.loads) + weight + rubbing
+        given = drives + power(motion, self.loads) + weight + rubbing
         return np.asarray(given - kinetic)
 
 

@@ -7,7 +7,7 @@ balls, or a ball and the cross of a universal joint, that is a force along the l
 between a pin and a ball, a force through the ball in the plane of both; between pins of parallel
 axes, a force in the plane of the pins beside what crosses it. The transmission angle is 90 degrees
 minus the smallest angle between such a force and the velocity of the joint: 90 is best, at 0 the
-link cannot move the joint.
+link cannot move the joint. At a pin forces and velocities across it count, as in a plane.
 """
 
 from __future__ import annotations
@@ -58,9 +58,9 @@ class _End:
 def transmission_angles_in_space(motion: SpaceMotion) -> dict[tuple[str, str], Floats]:
     """Transmission angles, (T,) rad, by link and joint; of joints at one end, the first.
 
-    They are of links as of `loads.motion.transmission_angles`, with a ball at one of their two ends
-    and a ball, cross or pin at the other, or with two parallel pins; between a pin and a ball, at
-    the ball alone. Bodies that are fixed together are one link.
+    They are of links as of `loads.motion.transmission_angles`, with a ball or cross at one of their
+    two ends and a ball or pin at the other, or with two parallel pins. Bodies that are fixed
+    together are one link.
     """
     linkage, out = motion.linkage, dict[tuple[str, str], Floats]()
     pieces = _pieces(linkage)
@@ -200,15 +200,18 @@ def _angle(motion: SpaceMotion, rates: Rates, link: str, end: _End, other: _End)
     arm = motion.pose.arm(k, end.joint.at)
     velocity = rates.velocity[:, k] + np.cross(rates.spin[:, k], arm)
     drawn = np.subtract(other.joint.at, end.joint.at)
-    if kinds == ("revolute", "revolute"):
-        axis = end.axis
-        if np.linalg.norm(np.cross(axis, other.axis)) > PARALLEL:
-            return None
-        drawn = drawn - axis * (axis @ drawn)
-        across = turn @ axis
-        velocity = velocity - across * np.sum(across * velocity, axis=1, keepdims=True)
-    elif "spherical" not in kinds or end.joint.kind not in BALLS:
+    pins = kinds == ("revolute", "revolute")
+    if "spherical" not in kinds and not pins:
         return None
+    if kinds[0] == "revolute":
+        axis = end.axis
+        if pins and np.linalg.norm(np.cross(axis, other.axis)) > PARALLEL:
+            return None
+        # Across the pin, and where the line from the other end meets it.
+        along_pin, across = axis @ drawn, turn @ axis
+        drawn = drawn - axis * along_pin
+        velocity = velocity + np.cross(rates.spin[:, k], along_pin * across)
+        velocity = velocity - across * np.sum(across * velocity, axis=1, keepdims=True)
     along = turn @ drawn
     if other.joint.kind == "revolute" and end.joint.kind != "revolute":
         # A force in the plane of the pin and the ball: the part of the velocity in that plane.

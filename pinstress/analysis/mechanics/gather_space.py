@@ -13,7 +13,7 @@ from pinbase.arrays import Floats
 from pinstress.analysis.mechanics.space_skeleton import space_skeleton
 from pinstress.study.model.mechanism.drives import offsets
 from pinstress.study.model.mechanism.space import pin_axes, space_mechanism
-from pinstress.study.model.space_cases import InSpace
+from pinstress.study.model.space_cases import MAX_POSTURES, InSpace, postures_of
 from pinstress.study.reading.file import Study
 from reports.data.mechanics import DriveEffort, DriveTable
 from reports.data.motion import BodyMotion, Extremes, SpacePosture
@@ -159,8 +159,16 @@ def skeleton_in_space(study: Study, case: str, solved: InSpace) -> Skeleton:
 
 def note_in_space(study: Study, solved: InSpace) -> str:
     """Return the note of a case: its impulses, what its forces depend on, and what is left out."""
-    told = solved.note, _range(study, solved)
-    return " ".join(filter(None, (*told, NO_TABLES, _no_bodies(study, solved))))
+    told = solved.note, _range(study, solved), NO_TABLES, _no_angles(solved)
+    return " ".join(filter(None, (*told, _no_bodies(study, solved))))
+
+
+def _no_angles(solved: InSpace) -> str:
+    """Return a sentence on a case that is too long for transmission angles; empty for others."""
+    motion = solved.dynamics.motion
+    if solved.held is not None or postures_of(motion.linkage, len(motion)) <= MAX_POSTURES:
+        return ""
+    return "The motion is too long for transmission angles; ask for fewer samples."
 
 
 def posture_in_space(study: Study, case: str, solved: InSpace) -> SpacePosture:
@@ -168,7 +176,7 @@ def posture_in_space(study: Study, case: str, solved: InSpace) -> SpacePosture:
     joints = space_mechanism(study).joint
     pins = {connection: name for name, joint in joints.items() for connection in joint.connections}
     motion, times = solved.dynamics.motion, solved.dynamics.reactions.times
-    few = _body_lines(study, solved) <= MAX_BODY_LINES and solved.held is None
+    few = postures_of(motion.linkage, len(motion)) <= MAX_POSTURES and solved.held is None
     angles = transmission_angles_in_space(motion) if few else {}
     condition, at = solved.dynamics.condition
     posture = SpacePosture(

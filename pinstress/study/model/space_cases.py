@@ -36,7 +36,7 @@ from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import InstantCase, MotionCase, StaticCase
 from pinstress.study.schema.landing import GroundCase
 
-MAX_POSTURES = 200_000  # bodies times instants of which transmission angles are sought
+MAX_POSTURES = 200_000  # of `postures_of`: of longer motions transmission angles are not sought
 POWER_BALANCE = 1e-6  # of the largest power of a drive: a larger violation is noted
 
 
@@ -120,6 +120,13 @@ def _at_pins(
     return InSpace(dynamics, pins, of_pins(dynamics.reactions), ground, note, others=others)
 
 
+def postures_of(linkage: SpaceLinkage, instants: int) -> int:
+    """Return the number of velocities that transmission angles need: of every body with every
+    drive.
+    """
+    return len(linkage.bodies) * max(1, len(linkage.driven)) * instants
+
+
 @dataclass(frozen=True)
 class MovedInSpace:
     """A motion in space at any times (T,) s.
@@ -166,7 +173,7 @@ class MovedInSpace:
             return solved
         over = self._over(solved)
         lowest: dict[tuple[str, str], Extremum] = {}
-        if len(self.course.space.linkage.bodies) * len(over.nodes) <= MAX_POSTURES:
+        if postures_of(self.course.space.linkage, len(over.nodes)) <= MAX_POSTURES:
             lowest, _ = lowest_angles(self.course, over.nodes, transmission_angles_in_space)
         free = None
         if any(joint.friction for joint in self.course.space.linkage.joints):

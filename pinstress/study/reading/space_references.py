@@ -131,7 +131,10 @@ def _on_ground(where: str, case: GroundCase, mechanism: SpaceMechanismTable) -> 
         text = f"{where}.forward: must not be zero; give the direction of travel, [x, y, z]"
         yield Wrong(text, code="no-direction")
     if case.drop is not None:
-        text = f"{where}.drop: in space there is no drop; give reference instead"
+        text = (
+            f"{where}.drop: in space there is no drop; give its largest vertical reaction as "
+            "reference instead, from a study of the leg in the plane of its stroke"
+        )
         yield Wrong(text, code="wrong-dimension")
 
 
@@ -141,8 +144,9 @@ def cases_in_space(table: StudyTable, mechanism: SpaceMechanismTable) -> Iterato
         where = f"case.{key_part(name)}"
         if isinstance(case, DropCase):
             text = (
-                f"{where}: kind 'drop' needs a linkage in a plane; in space give the largest "
-                'vertical reaction as the reference of a case of kind "ground"'
+                f"{where}: kind 'drop' needs a linkage in a plane; draw the leg in the plane of "
+                "its stroke in a study of its own for the drop, and give the largest vertical "
+                'reaction of that here, as the reference of a case of kind "ground"'
             )
             yield Wrong(text, code="wrong-dimension")
         if isinstance(case, GroundCase):

@@ -115,6 +115,20 @@ def test_a_lifted_four_bar_keeps_its_angle() -> None:
     assert ours["coupler", "B4"] == pytest.approx(theirs, abs=1e-9)
 
 
+def test_a_ball_at_the_near_end_leaves_the_angle_at_the_pin() -> None:
+    """A folding stay: its lower half hangs in a ball on the leg and drives the upper at a pin."""
+    planar = four_bar()
+    lifted, _ = lift(planar)
+    joints = tuple(
+        replace(j, kind="spherical", axis=None) if j.name == "A3" else j for j in lifted.joints
+    )
+    times = np.linspace(0.0, 1.0, 25)
+    law = ConstantDrive(0.9, 7.0, 1.0)
+    hung = space_move(replace(lifted, joints=joints), [law], times)
+    (theirs,) = transmission_angles(move(planar, [law], times)).values()
+    assert transmission_angles_in_space(hung)["coupler", "B4"] == pytest.approx(theirs, abs=1e-9)
+
+
 def test_a_bennett_linkage_has_no_line_of_force() -> None:
     """Between skew pins a link carries a bundle of wrenches, none of which decides."""
     linkage = bennett(0.5, 0.5 * np.sin(1.2) / np.sin(0.7), 0.7, 1.2, 0.6)

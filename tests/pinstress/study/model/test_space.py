@@ -277,7 +277,7 @@ def test_inertia_of_a_skew_rectangular_bar(tmp_path: Path) -> None:
         ("[1e-3, 2e-3, 2e-3, 1e-4, 0, 0]", "1e-3", "mechanism.body.crank: ", "[xx, yy, zz]"),
         ("depth_along = [0, 1, 0]", "depth_along = [0, 0, 1]", "mechanism: body rocker", "across"),
         ("[mechanism.drive]", '[mechanism.stop.s]\nbodies = ["ground", "crank"]\n'
-         "[mechanism.drive]", "mechanism.stop.s: ", "joint or slide"),
+         "[mechanism.drive]", "mechanism.stop.s: ", "joint, slide or between"),
         ('fixed_in = "rocker"\n', "", "mechanism.joint.C: ", "two connections"),
         ('end = "90 deg"', 'end = "170 deg"', "case.turn: ", ""),
     ],
