@@ -121,16 +121,18 @@ class CheckText:
         ruptures: Rupture | None = None,
         formula: str = "",
         basis: str = "",
+        shown: tuple[Work, Passing] | None = None,
     ) -> list[Margin]:
         """One stress, Pa, against yield at limit load and against rupture at ultimate load.
 
         strength: that the stress reaches at yield, Pa. ruptures: the strength of the material that
-        it reaches at rupture; None where it is no measure of that.
+        it reaches at rupture; None where it is no measure of that. shown: the work of the stress,
+        and what would pass.
         """
         allowed: list[tuple[Level, str, float | None]] = [("limit", "yield", strength)]
         if ruptures is not None:
             allowed.append(("ultimate", ruptures, getattr(material, f"{ruptures}_strength")))
-        return [
+        margins = [
             Margin(
                 self.method, self.clause, self.kind, level, s.factors.at(level), stress, allowable,
                 at=place.at, z=place.z, time=place.time, material=material.name, basis=basis,
@@ -139,6 +141,7 @@ class CheckText:
             )
             for level, which, allowable in allowed
         ]  # fmt: skip
+        return margins if shown is None else [_with_work(margin, *shown) for margin in margins]
 
     def worst(
         self,
@@ -168,10 +171,7 @@ class CheckText:
         t, k = np.unravel_index(np.argmax(used), used.shape)
         place = WorstPlace(at[int(k)], time=None if times is None else float(times[t]))
         margin = self.margin(s, float(demand[t, k]), float(allowable[k]), place, basis=basis)
-        if shown is None:
-            return margin
-        formula, passing = shown(int(k))
-        return replace(margin, work=(formula,), passing=passing(margin.used))
+        return margin if shown is None else _with_work(margin, *shown(int(k)))
 
     def along(
         self,
@@ -194,6 +194,10 @@ class CheckText:
         factor = s.factors.at(self.level)
         margin = skipped(self.method, self.clause, self.kind, self.level, factor, ", ".join(needs))
         return replace(margin, omits=self.omits)
+
+
+def _with_work(margin: Margin, work: Work, passing: Passing) -> Margin:
+    return replace(margin, work=(work,), passing=passing(margin.used))
 
 
 Make = Callable[[CheckText, Situation], Sequence[Margin]]

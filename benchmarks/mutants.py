@@ -45,7 +45,8 @@ FILES = {
                                  "tests/fea/singular/test_corner_determinant.py"),
     "fea/core/tractions.py": ("tests/fea/core/test_bearing_pressure.py",
                                "tests/fea/harmonic/test_harmonic.py"),
-    "assess/opinion/cantilever.py": ("tests/assess/opinion/test_distributed_load.py",),
+    "assess/opinion/cantilever.py": ("tests/assess/opinion/test_distributed_load.py",
+                                     "tests/assess/opinion/test_beam_check.py"),
     "loads/forces/inverse_dynamics.py": (
         "tests/loads/forces/test_energy.py", "tests/loads/motion/test_four_bar.py",
         "tests/loads/motion/test_slider_crank.py", "tests/loads/forces/test_reactions.py"),

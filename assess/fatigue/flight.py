@@ -23,7 +23,7 @@ from pinbase.arrays import Floats, Ints
 from pinbase.errors import ArgumentError
 
 MAX_REPEAT_UNITS = 1000  # units until the spectrum repeats itself
-MAX_SEQUENCE_CASES = 10_000  # cases in the sequence
+MAX_SEQUENCE_CASES = 10_000
 OCCURRENCE_TOLERANCE = 1e-9  # relative, of an occurrence from its fraction
 RAINFLOW_PASSES = 3  # passes through the sequence, of which the last is counted
 

@@ -25,6 +25,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from operator import attrgetter
 from types import MappingProxyType
 
@@ -121,14 +122,11 @@ def double_shear(text: CheckText, s: Situation) -> list[Margin]:
                 "τ", float(load[t]) / (2.0 * section.area), "stress", "{F} / (2 × {A})",
                 F=(float(load[t]), "force"), A=(section.area, "length^2"),
             )  # fmt: skip
-            of_band = text.at_levels(
+            passing = partial(wider, section, power=2.0, resists=attrgetter("area"))
+            margins += text.at_levels(
                 s, shown.result.value, place, s.material, shear_yield(s.material), "shear",
-                "F / (2 A)",
+                "F / (2 A)", shown=(shown, passing),
             )  # fmt: skip
-            margins += [
-                replace(m, work=(shown,), passing=wider(section, m.used, 2.0, attrgetter("area")))
-                for m in of_band
-            ]
     return margins
 
 
@@ -146,14 +144,10 @@ def bearing(text: CheckText, s: Situation) -> list[Margin]:
                 "σ", float(size[t]) / (d * band.length), "stress", "{F} / ({d} × {L})",
                 F=(float(size[t]), "force"), d=(d, "length"), L=(band.length, "length"),
             )  # fmt: skip
-            of_band = text.at_levels(
+            margins += text.at_levels(
                 s, shown.result.value, place, material, material.yield_strength, "bearing",
-                "F / (d L)",
+                "F / (d L)", shown=(shown, partial(scaled, "thickness", band.length, power=1.0)),
             )  # fmt: skip
-            margins += [
-                replace(m, work=(shown,), passing=scaled("thickness", band.length, m.used, 1.0))
-                for m in of_band
-            ]
     return margins
 
 
@@ -181,17 +175,14 @@ def _along(
 ) -> list[Margin]:
     """The margins of a stress that follows from the section forces."""
     place, basis = WorstPlace(stress.at, stress.z, stress.time), s.forces.basis
-    margins = text.at_levels(
-        s, stress.stress, place, s.material, strength, ruptures, formula, basis
-    )
-    shown = _shown(stress, formula)
     resists, power = {BENDING_FORMULA: ("modulus", 3.0), "V / A": ("area", 2.0)}.get(
         formula, ("axis_area", 2.0)
     )
-    return [
-        replace(m, work=(shown,), passing=wider(stress.section, m.used, power, attrgetter(resists)))
-        for m in margins
-    ]
+    passing = partial(wider, stress.section, power=power, resists=attrgetter(resists))
+    return text.at_levels(
+        s, stress.stress, place, s.material, strength, ruptures, formula, basis,
+        (_shown(stress, formula), passing),
+    )  # fmt: skip
 
 
 def _shown(stress: NominalStress, formula: str) -> Work:

@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from fea.core.pressed import PressedArcs
 from geometry import ArgumentError
-from geometry.shape.pin import SHOULDER
+from geometry.shape.band import SHOULDER
 
 Floats = NDArray[np.float64]
 Kind = Literal[

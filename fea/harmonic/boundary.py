@@ -86,9 +86,7 @@ class Outline:
 
     def weights(self, rows: Ints) -> Floats:
         """Weights (E, 3), m^2, of the nodes' values in integrals over edges, length times r."""
-        x, values = self._nodes[self.nodes[rows]], shapes(_EDGE_GAUSS_POINTS)
-        along = np.linalg.norm(np.einsum("qi,eia->eqa", slopes(_EDGE_GAUSS_POINTS), x), axis=2)
-        return np.asarray((_EDGE_GAUSS_WEIGHTS * along * (x[..., 0] @ values.T)) @ values)
+        return np.asarray(self._on_edges(rows)[1].sum(axis=1))
 
     def _quadrature(self, surface: str) -> tuple[Floats, Floats]:
         """z (E, Q), m, of a surface's quadrature points, and nodes' weights (E, Q, 3), m^2.
@@ -96,12 +94,17 @@ class Outline:
         The weights are for integrals over length times r.
         """
         if surface not in self._surface_weights:
-            x, values = self._nodes[self.nodes[self.rows[surface]]], shapes(_EDGE_GAUSS_POINTS)
-            at = np.einsum("qi,eia->eqa", values, x)
-            length = np.linalg.norm(np.einsum("qi,eia->eqa", slopes(_EDGE_GAUSS_POINTS), x), axis=2)
-            weight = (_EDGE_GAUSS_WEIGHTS * length * at[..., 0])[..., None] * values
-            self._surface_weights[surface] = at[..., 1], weight
+            self._surface_weights[surface] = self._on_edges(self.rows[surface])
         return self._surface_weights[surface]
+
+    def _on_edges(self, rows: Ints) -> tuple[Floats, Floats]:
+        """The heights (E, 4), m, of Gauss points of edges, and the weights (E, 4, 3), m^2, with
+        which values there act on the nodes.
+        """
+        x, values = self._nodes[self.nodes[rows]], shapes(_EDGE_GAUSS_POINTS)
+        at = np.einsum("qi,eia->eqa", values, x)
+        length = np.linalg.norm(np.einsum("qi,eia->eqa", slopes(_EDGE_GAUSS_POINTS), x), axis=2)
+        return at[..., 1], (_EDGE_GAUSS_WEIGHTS * length * at[..., 0])[..., None] * values
 
 
 def _after(edges: Ints) -> Ints:

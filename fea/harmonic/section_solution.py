@@ -28,7 +28,7 @@ from geometry.mesh.sizing import Grade, SectionSize, Spot, size_at
 from pinbase.arrays import Floats
 from pinbase.memo import Memo
 
-FIRST_MESH_SIZE = SectionSize()  # of the first mesh
+FIRST_MESH_SIZE = SectionSize()
 BAND_EDGE_ELEMENT = 0.04  # element at the edge of any band, of the diameter
 LOAD_EDGE_ELEMENT = 0.2  # element at a load's edge, of the excluded distance
 MIN_ZONE_STRESS = 0.5  # of the maximum elsewhere

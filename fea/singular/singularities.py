@@ -123,7 +123,8 @@ def _singularity(
     constrained, pushed: surfaces that are clamped, or loaded up to their edges.
     distance: as in `find_singularities`.
     """
-    first, second = (_side(name, constrained) for name in v.between)
+    sides: list[Side] = ["clamped" if name in constrained else "free" for name in v.between]
+    first, second = sides
     smooth = abs(v.angle - math.pi) <= SMOOTH_ANGLE_TOLERANCE
     omega = math.pi if smooth else v.angle
     plane = plane_exponent(omega, nu, first, second)
@@ -165,10 +166,6 @@ def _feature(every: tuple[Vertex, ...], k: int, constrained: set[str]) -> float:
         return total
 
     return min(length(1), length(-1))
-
-
-def _side(name: str, constrained: set[str]) -> Side:
-    return "clamped" if name in constrained else "free"
 
 
 CLAMP_ADVICE = "model the hub that supports the pin, or replace the clamp by loads in equilibrium"

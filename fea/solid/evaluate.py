@@ -25,7 +25,7 @@ from geometry import PinLike
 from geometry.imported.meshing import solid_mesh
 from geometry.mesh.elements import Element
 from geometry.mesh.solid_mesh import MeshSize
-from geometry.shape.pin import END_FACES
+from geometry.shape.band import END_FACES
 
 # Tetrahedra are larger than a small step. What the harmonic model feels at its corner, a tenth of
 # the step away from it, is 1.6 to 2.1 times the stress of the shaft there.

@@ -11,11 +11,12 @@ from typing import ClassVar
 from geometry.mesh.cut_solid import cut_solid, named_parts
 from geometry.mesh.gmsh_session import gmsh_model
 from geometry.mesh.scale import unit_of_solid
+from geometry.shape.band import Band, GeometryError
 from geometry.shape.features import Cut, marks_of
 from geometry.shape.hole import Hole
 from geometry.shape.milled import Flat, Slot
 from geometry.shape.passage import Passage
-from geometry.shape.pin import Band, GeometryError, Pin
+from geometry.shape.pin import Pin
 from pinbase.errors import Place
 
 

@@ -10,12 +10,13 @@ import numpy as np
 
 from geometry.mesh.gmsh_session import MeshError, failure, formula_size
 from geometry.mesh.revolve import revolve
+from geometry.shape.band import END_FACES, GeometryError
 from geometry.shape.drill import Placed
 from geometry.shape.features import Cut, Off, outer_radius
 from geometry.shape.hole import Hole
 from geometry.shape.milled import Flat, Slot
 from geometry.shape.passage import Passage
-from geometry.shape.pin import END_FACES, GeometryError, Pin
+from geometry.shape.pin import Pin
 from geometry.shape.profile import Edge, kind_of, meridian, off_edge
 from pinbase.arrays import Floats
 

@@ -16,8 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.mesh.section_mesh import MeridianMesh
+from geometry.shape.band import GeometryError
 from geometry.shape.dimensions import Dimension
-from geometry.shape.pin import GeometryError, Pin
+from geometry.shape.pin import Pin
 from geometry.shape.profile import RZ, Arc, Edge, meridian
 from pinbase.arrays import Floats, Ints
 

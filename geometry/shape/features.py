@@ -9,7 +9,8 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
-from geometry.shape.pin import GeometryError, Pin
+from geometry.shape.band import GeometryError
+from geometry.shape.pin import Pin
 from pinbase.arrays import Floats, Mask
 from pinbase.errors import Place
 

@@ -9,6 +9,7 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
+from geometry.shape.band import END_FACES
 from geometry.shape.drill import (
     SQUARE_BOTTOM,
     Bottom,
@@ -19,7 +20,7 @@ from geometry.shape.drill import (
     turned_surfaces,
 )
 from geometry.shape.features import SmoothPart, positive, radii, requirement
-from geometry.shape.pin import END_FACES, Pin
+from geometry.shape.pin import Pin
 from geometry.shape.profile import Edge
 from pinbase.arrays import Floats, Mask
 from pinbase.errors import Place

@@ -13,48 +13,14 @@ from typing import ClassVar, Never
 
 import numpy as np
 
+from geometry.shape.band import END_FACES, SHOULDER, Band, GeometryError
 from geometry.shape.polygon import Leg, Rounding, bore_turn_at, corners, legs, roundings, turn_at
 from geometry.shape.profile import meridian, volume_within
 from geometry.shape.segment import Segment, merged_segments
 from geometry.shape.tolerance import LENGTH_TOLERANCE, snapped
 from pinbase.arrays import Floats
-from pinbase.errors import CodedError
 
-END_FACES = ("start", "end")
-SHOULDER = "shoulder "  # before the number of the segment that ends there: the face of a shoulder
-
-
-class GeometryError(CodedError, ValueError):
-    """The pin as described is impossible; the message says why and what would be right."""
-
-
-@dataclass(frozen=True)
-class Band:
-    """The outer surface of a segment between its fillets.
-
-    z0, z1: m.
-    radius: m; for a cone, on which no link can bear, the mean.
-    """
-
-    name: str
-    z0: float
-    z1: float
-    radius: float
-
-    @property
-    def length(self) -> float:
-        """Axial length, m."""
-        return self.z1 - self.z0
-
-    @property
-    def area(self) -> float:
-        """Exact area, m^2."""
-        return 2.0 * math.pi * self.radius * self.length
-
-    @property
-    def middle(self) -> float:
-        """Position z of the middle, m."""
-        return 0.5 * (self.z0 + self.z1)
+__all__ = ["END_FACES", "SHOULDER", "Band", "GeometryError", "Pin"]
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Protocol
 
+from geometry.shape.band import Band
 from geometry.shape.features import Cut
-from geometry.shape.pin import Band, Pin
+from geometry.shape.pin import Pin
 
 
 class PinLike(Protocol):

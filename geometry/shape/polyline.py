@@ -7,7 +7,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from geometry.shape.pin import GeometryError, Pin
+from geometry.shape.band import GeometryError
+from geometry.shape.pin import Pin
 from geometry.shape.polygon import turn_at
 from geometry.shape.segment import Segment
 from geometry.shape.tolerance import LENGTH_TOLERANCE, merged

@@ -9,7 +9,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from geometry.shape.pin import SHOULDER, Band, Pin
+from geometry.shape.band import SHOULDER, Band
+from geometry.shape.pin import Pin
 from geometry.shape.segment import Segment
 from pinbase.arrays import Floats
 

@@ -33,7 +33,7 @@ from reports.vtk.read_back import Opened
 from reports.vtk.renderer import renderer_problem
 
 COMPARISON_PAGE = "comparison.html"
-MAX_PICTURES = 6  # pictures
+MAX_PICTURES = 6
 
 
 def compare(first: Path, second: Path, out: Path | None, pictures: bool) -> int:

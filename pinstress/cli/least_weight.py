@@ -113,7 +113,7 @@ def lighten_and_write(
         else:
             state.begin()
             log = SearchLog((), state.write)
-        with resumable(partial(_kept, state, log)):
+        with resumable(partial(_kept, state, log), "search", "searches"):
             with progress_bar(alone=processes(jobs) == 1, quiet=quiet) as progress:
                 design = (
                     lighten(study, aim, pins, processes(jobs), progress, log)
@@ -125,12 +125,11 @@ def lighten_and_write(
     return status
 
 
-def _kept(state: SizeState[FinishedSearch], log: SearchLog) -> str:
-    """Return what is finished, as of `resumable`; where nothing is, nothing is left."""
+def _kept(state: SizeState[FinishedSearch], log: SearchLog) -> int:
+    """Return the number of finished searches; where there are none, nothing is left."""
     if not len(log):
         state.end()
-        return ""
-    return "1 search is" if len(log) == 1 else f"{len(log)} searches are"
+    return len(log)
 
 
 def _write(

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from pinbase.counted import counted
 from pinbase.processes import interrupts
 from pinbase.processes.interrupts import Unfinished
 from pinstress.study.reading.errors import InputError
@@ -118,17 +119,18 @@ def connected(connection: ClusterConnection | None) -> Iterator[Cluster | None]:
 
 
 @contextmanager
-def resumable(kept: Callable[[], str]) -> Iterator[None]:
+def resumable(kept: Callable[[], int], noun: str, plural: str = "") -> Iterator[None]:
     """Say that a command can be resumed where an error or an interruption ends it.
 
-    kept: returns what it has finished, as "2 pins are"; empty for nothing.
+    kept: returns the number of things, called `noun`, that it has finished.
     """
     try:
         yield
     except BaseException as error:
         if not (finished := kept()):
             raise
-        text = f"{finished} kept: run the same command with --resume to continue"
+        things = f"{counted(finished, noun, plural)} {'is' if finished == 1 else 'are'}"
+        text = f"{things} kept: run the same command with --resume to continue"
         if isinstance(error, KeyboardInterrupt) or interrupts.came():
             raise Unfinished(text) from None
         if isinstance(error, InputError):

@@ -90,7 +90,7 @@ def _size(plan: Plan, sizing: _Sizing, options: SizeOptions) -> tuple[list[Sizin
     """
     sizing.start(options.resume)
     jobs = 1 if options.connection else processes(options.jobs)
-    with resumable(sizing.stop):
+    with resumable(sizing.stop, "pin"):
         with (
             progress_bar(alone=jobs == 1, quiet=options.quiet) as progress,
             connected(options.connection) as cluster,
@@ -164,13 +164,11 @@ class _Sizing:
         """Remove what the new study has, too."""
         self._state.end()
 
-    def stop(self) -> str:
-        """Return what is finished, as of `resumable`; where no pin is, nothing is left."""
+    def stop(self) -> int:
+        """Return the number of finished pins; where there are none, nothing is left."""
         if not self._pins:
             self._state.end()
-            return ""
-        count = len(self._pins)
-        return "1 pin is" if count == 1 else f"{count} pins are"
+        return len(self._pins)
 
     def _text(self, sized: list[SizingResult]) -> bytes:
         text = new_study(self._study, self.goal, sized).text

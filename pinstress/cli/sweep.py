@@ -90,7 +90,7 @@ def sweep_and_write(
                 count = len(sweep.values)
                 click.echo(f"Continued from {before:,} designs to {count:,}.", err=True)
         alone = way.connection is not None or (way.jobs or cores()) == 1
-        with resumable(lambda: _finished(parts)):
+        with resumable(lambda: parts.count, "batch", "batches"):
             with progress(way.quiet, alone) as report:
                 table = solved(sweep, parts, way.jobs, way.connection, report, warn)
             _write(directory, table)
@@ -194,13 +194,6 @@ def _remove(directory: Path, parts: BatchFolder, existed: bool) -> None:
         if not existed and manifest.entries(directory) == {manifest.MANIFEST_FILE}:
             (directory / manifest.MANIFEST_FILE).unlink()
             directory.rmdir()
-
-
-def _finished(parts: BatchFolder) -> str:
-    """Return what is finished, as of `resumable`."""
-    if not parts.count:
-        return ""
-    return "1 batch is" if parts.count == 1 else f"{parts.count} batches are"
 
 
 @contextmanager

@@ -9,7 +9,7 @@ from reports.data.decision import worst_first
 from reports.data.results import Results
 
 PLACE_TOLERANCE = 0.01  # of the pin's length: places so near are one
-MAX_DRAWN_PLACES = 4  # places
+MAX_DRAWN_PLACES = 4  # the worst; more would cover each other
 MAX_NAMED_CASES = 2  # cases of a place
 
 

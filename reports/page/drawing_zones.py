@@ -16,9 +16,9 @@ from reports.page.drawing_places import PlaceMark
 from reports.tables.stress.singular_zones import ShownZone
 
 ZONE_COLOUR = "#a8211b"
-RING_RADIUS = 4.0  # radius
-DOT_RADIUS = 3.5
-LABEL_ROW_HEIGHT = 14.0  # height of a row of words
+# In pixels of the drawing:
+RING_RADIUS, DOT_RADIUS = 4.0, 3.5
+LABEL_ROW_HEIGHT = 14.0
 FIRST_ROW_GAP = 10.0  # between the section and the first row
 STRIPE_PATTERN = (
     '<pattern id="excluded" width="5" height="5" patternUnits="userSpaceOnUse" '

@@ -23,7 +23,7 @@ HIDDEN_LINE_STYLE = 'stroke-dasharray="4 2"'
 
 DRAWING_WIDTH, DRAWING_MARGIN, MAX_HEIGHT_RATIO = 480.0, 52.0, 0.22  # the last in widths
 LOCAL_SOLID_OFFSET = 3.0  # what the box of a local solid stands off the pin
-TEXT_LINE_HEIGHT = 14.0  # height of the text
+TEXT_LINE_HEIGHT = 14.0
 PATTERNS = (
     '<defs><pattern id="held" width="6" height="6" patternUnits="userSpaceOnUse" '
     'patternTransform="rotate(45)"><rect width="6" height="6" fill="#fff"/>'

@@ -13,7 +13,7 @@ from reports.tables.column import Column, Table, read_only
 from reports.tables.reliability import drivers_table, risks_table, ways_table
 from reports.text.reliability import remarks, sentence, solved, ways_title
 
-MAX_DISTRIBUTION_PLOTS = 12  # plots
+MAX_DISTRIBUTION_PLOTS = 12
 LAW_COLUMNS: list[Column[tuple[str, str]]] = [
     read_only("number", lambda parameter: parameter[0], numeric=False),
     read_only("law", lambda parameter: parameter[1], numeric=False),

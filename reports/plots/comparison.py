@@ -7,7 +7,7 @@ from reports.plots.spec import Plot, Spec, labels, rows
 from reports.tables.comparison import changed_rows
 
 COMPARISON_PLOT_NAME = "comparison"
-MAX_PLOT_ROWS = 40  # rows
+MAX_PLOT_ROWS = 40  # the caption says how many there are
 
 
 def comparison_plot(comparison: RunComparison) -> Plot | None:

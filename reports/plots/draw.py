@@ -12,7 +12,7 @@ from reports.plots.self_contained import require_no_address, require_self_contai
 from reports.plots.spec import Plot, Spec, still
 from reports.plots.theme import on_paper
 
-VEGA_LITE_VERSION = "6.4"  # of Vega-Lite
+VEGA_LITE_VERSION = "6.4"
 CLIP_ID_PATTERN = re.compile(r'(?<=id="clip)\d+(?=")|(?<=url\(#clip)\d+(?=\))')
 TWO_UNIT_CHARACTER_PATTERN = re.compile("[\U00010000-\U0010ffff]")
 PIXELS_PER_UNIT = 2.0  # pixels of a PNG per unit

@@ -11,8 +11,8 @@ from reports.format.numbers import DASH, engineering, margin_text, short
 from reports.format.ranges import factor_text
 from reports.tables.column import Column, Table, read_only, texts
 
-MAX_SHOWN_FORCES = 30  # forces shown
-CHANGE_DIGITS = 3  # digits
+MAX_SHOWN_FORCES = 30
+CHANGE_DIGITS = 3
 
 
 def rows_table(comparison: RunComparison) -> Table[RowPair]:

@@ -21,7 +21,7 @@ TETRAHEDRON_FACES = {  # of a tetrahedron: corners, then the middles of their ed
     "tetra10": ((0, 2, 1, 6, 5, 4), (0, 1, 3, 4, 8, 7), (1, 2, 3, 5, 9, 8), (0, 3, 2, 7, 9, 6)),
     "tetra": ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)),
 }
-QUADS_AROUND_BAND = 60  # quads around a band
+QUADS_AROUND_BAND = 60
 
 Arrays = dict[str, NDArray[Any]]
 

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import re
 from dataclasses import replace
-from html.parser import HTMLParser
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -21,43 +18,11 @@ from reports.animation.strip_chart import ticks
 from reports.data.motion import AppliedForce
 from reports.data.results import Results
 from reports.data.row import Units
-from reports.data.skeleton import AppliedCouple
-from reports.format.drawing.projection import isometric, three_views
 from reports.format.drawing.svg_labels import label_offsets
+from tests.support.results.animation_reader import Reader
 from tests.support.results.four_bar_results import COUPLER, CRANK, ROCKER, chain, four_bar, linkage
-from tests.support.results.space_results import landing_gear
 
 EVIL = "</script><i onload='x'>&quot;\"\\u003c{{ 1 }}<!--"
-
-
-class Reader(HTMLParser):
-    """Collects tags with their attributes, and what stands in scripts and elsewhere."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.tags: list[tuple[str, dict[str, str]]] = []
-        self.scripts: list[str] = []
-        self.text = ""
-        self.feed(text)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.tags.append((tag, {name: value or "" for name, value in attrs}))
-        if tag == "script":
-            self.scripts.append("")
-
-    def handle_data(self, data: str) -> None:
-        if self.tags and self.tags[-1][0] == "script" and not self.scripts[-1]:
-            self.scripts[-1] = data
-        else:
-            self.text += data
-
-    @property
-    def data(self) -> dict[str, Any]:
-        found: dict[str, Any] = json.loads(self.scripts[0])
-        return found
-
-    def having(self, attribute: str) -> list[dict[str, str]]:
-        return [attrs for _, attrs in self.tags if attribute in attrs]
 
 
 def render(results: Results) -> str:
@@ -364,64 +329,6 @@ def test_the_same_bytes_twice(moving: Results, tmp_path: Path) -> None:
     (path,) = first.iterdir()
     assert path.name == "animation_turn.html"
     assert path.read_bytes() == (second / path.name).read_bytes()
-
-
-def test_a_linkage_in_space_starts_in_its_isometric_view(tmp_path: Path) -> None:
-    """Its picture stands without the script, whose places are from the middle of the motion."""
-    gear = landing_gear()
-    skeleton = gear.space[0]
-    assert "animation_retract.html" in [path.name for path in write_animations(gear, tmp_path)]
-    page = Reader((tmp_path / "animation_retract.html").read_text(encoding="utf-8"))
-    data = page.data
-    scale, middle = data["places"]["scale"], np.array(data["space"]["middle"])
-    places = np.array(data["at"]).reshape(len(skeleton.joints), -1, 3)
-    known = np.moveaxis(scale * (skeleton.position - middle), 1, 0)
-    assert np.abs(places - known).max() < 0.0051  # hundredths of a pixel
-    view = isometric(skeleton.up)
-    drawn = [
-        [float(x) for x in re.findall(r"-?[\d.]+", g["transform"])]
-        for g in page.having("data-joint")
-    ]
-    seen = view(known[:, 0]) * [1.0, -1.0] + [480.0, 280.0]
-    assert np.array(drawn) == pytest.approx(seen, abs=0.0051)
-    for c, force in enumerate(data["connections"]):
-        components = np.stack([force[key] for key in ("fx", "fy", "fz")], axis=1)
-        assert np.abs(components - gear.reactions[0].forces[:, c]).max() < 1.0
-    # The pins of the trunnions and the axle; the others are spherical.
-    assert [axis is not None for axis in data["space"]["axes"]] == [True, True, False, True, False]
-    assert len(page.having("data-axis")) == 3
-    assert all(name in page.text for name in ("Isometric", "Front", "Right side", "Top"))
-
-
-def test_a_couple_has_its_own_scale_and_unit() -> None:
-    gear = landing_gear()
-    skeleton = gear.space[0]
-    axle = skeleton.axes[:, 3]
-    size = np.linspace(100.0, 2500.0, len(axle))[:, None]
-    couple = AppliedCouple("wheel", skeleton.position[:, 3], size * axle)
-    page = Reader(render_animation(replace(skeleton, couples=(couple,)), gear))
-    (found,) = page.data["couples"]
-    assert found["at"] == page.data["at"][3]
-    components = np.stack([found[key] for key in ("fx", "fy", "fz")], axis=1)
-    assert np.abs(components - size * axle).max() < 0.1
-    assert page.data["arrow"]["couple"] == pytest.approx(2500.0)
-    assert page.data["fixed"]["couple"]["unit"] == "N·mm"
-    assert len(page.having("data-applied")) == len(page.having("data-size-of")) == 2
-
-
-def test_everything_of_a_linkage_in_space_fits_the_views_of_a_drawing() -> None:
-    """At every instant, with the arrows of its forces also as square roots."""
-    gear = landing_gear()
-    skeleton, table = gear.space[0], gear.reactions[0]
-    data = Reader(render_animation(skeleton, gear)).data
-    places = np.array(data["at"]).reshape(len(skeleton.joints), -1, 3)
-    longest, largest = data["arrow"]["longest"], data["arrow"]["largest"]
-    for view in (isometric(skeleton.up), *three_views(skeleton.up)):
-        for c, connection in enumerate(data["connections"]):
-            force = table.forces[:, c]
-            size = np.linalg.norm(force, axis=1, keepdims=True)
-            tips = places[connection["joint"]] + longest * force / np.sqrt(size * largest)
-            assert (np.abs(view(tips)) < [480.0, 280.0]).all()
 
 
 def test_names_do_not_overlap() -> None:

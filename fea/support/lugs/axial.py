@@ -16,7 +16,7 @@ from fea.core.peak import Reason
 from fea.core.pin_loads import MOMENT_ROUND_OFF, PinLoads
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, Pin, PinLike, body_of_revolution
-from geometry.shape.pin import SHOULDER
+from geometry.shape.band import SHOULDER
 
 SAME_DIAMETER = 1e-9  # relative: a segment that is thicker by less is no shoulder
 

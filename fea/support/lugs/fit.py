@@ -256,16 +256,3 @@ def beyond_foundations(pin: Pin, lugs: Iterable[Lug]) -> str:
         if lug.friction:
             return f"lug {lug.connection} has friction, which needs the pressures of contact"
     return ""
-
-
-def pressed_in_range(lugs: Iterable[Lug]) -> str:
-    """The lug whose stated range of clearance ends in an interference, if any, as a reason why a
-    beam on foundations does not answer for its range.
-    """
-    for lug in lugs:
-        if lug.range.clearance is not None and lug.range.clearance[0] < 0.0:
-            return (
-                f"lug {lug.connection} has an interference within its range, whose stress it does "
-                "not include"
-            )
-    return ""

@@ -19,7 +19,7 @@ from pinstress.study.reading.file import Study
 
 Array = NDArray[np.float64]
 
-MAX_JOB_DESIGNS = 100  # designs in a job
+MAX_JOB_DESIGNS = 100
 JOBS_PER_PROCESS = 4  # for each process, so that all end at about the same time
 # Designs that this process solves itself, as FORM's, one step after another
 MAX_SERIAL_DESIGNS = 30

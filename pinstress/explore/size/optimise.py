@@ -34,11 +34,11 @@ FIRST_LOG_STEP, MAX_LOG_STEP = 0.7, 1.1  # steps of a logarithm: to half, to a t
 MIN_LOG_STEP = 2e-3
 MERIT_TOLERANCE = 5e-4  # of the merit
 MIN_GAIN_RATIO = 0.1  # part of the promise that a step must keep
-# Of the limit: a stress, ratio or bound that is active; what meshes are worth
+# Distance from its limit at which a stress, a ratio or a bound is active: the error of meshes
 ACTIVE_TOLERANCE = 0.02
 TANGENT_TOLERANCE = 1e-3  # by which an earlier tangent may exceed the stress
-MAX_TANGENTS = 6  # tangents of a place
-MAX_SOLUTIONS = 25  # solutions
+MAX_TANGENTS = 6  # the latest of a place, which are nearest
+MAX_SOLUTIONS = 25  # after which the search ends without an optimum
 
 
 class ImpossibleError(Exception):

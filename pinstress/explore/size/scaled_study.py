@@ -46,7 +46,7 @@ def resized_study(
 
     Raises: InputError for a shape that cannot be.
     """
-    document = _resized(study.text, scales, study.system, standard, required)
+    document = resized(study.text, scales, study.system, standard, required)
     return with_what_follows(study, document, scales)
 
 
@@ -73,8 +73,8 @@ def resized(
     system: UnitSystem,
     standard: StandardDiameters | None = None,
     required: float | None = None,
-) -> str:
-    """Return a study's text with pins (by name) scaled across their axis.
+) -> tomlkit.TOMLDocument:
+    """Return a study's document with pins (by name) scaled across their axis.
 
     Diameters, bores, fillets, the distances of flats and offsets of passages and holes change;
     lengths, other sizes of holes and slots stay. Diameters are rounded up, to a standard one or to
@@ -83,16 +83,6 @@ def resized(
 
     required: the study's new required factor of safety, if any.
     """
-    return tomlkit.dumps(_resized(text, scales, system, standard, required))
-
-
-def _resized(
-    text: str,
-    scales: Mapping[str, float],
-    system: UnitSystem,
-    standard: StandardDiameters | None,
-    required: float | None,
-) -> tomlkit.TOMLDocument:
     study = tomlkit.parse(text)
     for name, scale in scales.items():
         if scale == 1.0 and standard is None:

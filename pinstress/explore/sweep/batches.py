@@ -26,7 +26,7 @@ from pinstress.study.reading.file import Study, parse_study
 TARGET_BATCH_SECONDS = 2.0  # s of work in a batch
 # s in which a batch is handed out to one of many processes and its rows are read
 BATCH_OVERHEAD_SECONDS = 0.008
-MAX_BATCH_DESIGNS = 5000  # designs in a batch
+MAX_BATCH_DESIGNS = 5000
 
 _SOLVER_LOCK = threading.Lock()  # workers of a user's cluster may have several threads
 

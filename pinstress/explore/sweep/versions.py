@@ -16,7 +16,7 @@ from pathlib import Path
 # Whose source makes numbers and outcomes
 OWN_PACKAGES = "pinstress", "pinbase", "loads", "geometry", "fea", "assess", "reports"
 MISSING_VERSION = "missing"
-SOURCE_HASH_DIGITS = 8  # digits of the hash of a source
+SOURCE_HASH_DIGITS = 8
 
 
 def versions(packages: Sequence[str]) -> dict[str, str]:

@@ -9,7 +9,7 @@ from functools import partial
 
 from fea.core.material import Material
 from fea.support.lugs.axial import axial_seats
-from fea.support.lugs.fit import beyond_foundations, fitted, on_structure, pressed_in_range
+from fea.support.lugs.fit import beyond_foundations, fitted, on_structure
 from fea.support.lugs.lug import Bushing, Lug, LugRange, Shank
 from fea.support.lugs.thermal import at_temperature
 from geometry import ArgumentError, Band, Cut, Hole, Pin, PinLike, body_of_revolution
@@ -59,7 +59,7 @@ def lugs(
             "clamped-in-lugs",
         )
     out = _fitting(study, pin, at, case)
-    reason = beyond_foundations(pin, out) or pressed_in_range(out)
+    reason = beyond_foundations(pin, out) or _pressed_in_range(out)
     if joints == "foundation" and reason:
         raise study.error(
             f'pin {pin.name} on foundations: {reason}; use analysis.joints = "contact"',
@@ -377,3 +377,16 @@ def _bending(lug: Lug, band: Band, held: bool) -> float:
     """
     over_width = lug.outline(band.radius).bending if held else CLAMP_DISTANCE_RATIO
     return lug.material.youngs_modulus * band.length**3 / (12.0 * over_width)
+
+
+def _pressed_in_range(lugs: Iterable[Lug]) -> str:
+    """The lug whose stated range of clearance ends in an interference, if any, as a reason why a
+    beam on foundations does not answer for its range.
+    """
+    for lug in lugs:
+        if lug.range.clearance is not None and lug.range.clearance[0] < 0.0:
+            return (
+                f"lug {lug.connection} has an interference within its range, whose stress it does "
+                "not include"
+            )
+    return ""

@@ -8,7 +8,7 @@ from functools import partial
 
 from assess.fatigue.flight import flight
 from assess.requirement import LEVELS_OF_CHECK
-from geometry.shape.pin import END_FACES
+from geometry.shape.band import END_FACES
 from pinbase.errors import ArgumentError
 from pinbase.keys import key_part, lug_key
 from pinstress.study.reading.errors import Wrong

@@ -116,10 +116,7 @@ def sourced(value: list[dict[str, Any]]) -> dict[str, Any]:
     """Return the JSON Schema of { value = ..., provenance = "given", note = "..." }."""
     return {
         "type": "object",
-        "properties": {
-            "value": {"anyOf": value},
-            **PROVENANCE_PROPERTIES,
-        },
+        "properties": {"value": {"anyOf": value}, **PROVENANCE_PROPERTIES},
         "required": ["value", "provenance"],
         "additionalProperties": False,
     }

@@ -11,7 +11,7 @@ import numpy as np
 
 from reports.format.files.csv import Cell
 
-ROWS_PER_GROUP = 100_000  # rows of a group
+ROWS_PER_GROUP = 100_000
 
 Cells = Sequence[Cell] | np.ndarray[Any, Any]  # of a column
 

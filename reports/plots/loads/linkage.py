@@ -16,7 +16,7 @@ from reports.format.file_names import plot_name
 from reports.format.numbers import short
 from reports.plots.spec import MAX_CURVE_POINTS, Plot, Spec, clipped, headed, rows
 
-PITCH_CIRCLE_SIDES = 72  # sides of a pitch circle
+PITCH_CIRCLE_SIDES = 72
 INTERMEDIATE_POSITIONS = 5  # positions between the first and the last
 DIAGRAM_WIDTH, MIN_DIAGRAM_HEIGHT, MAX_DIAGRAM_HEIGHT = 560.0, 160.0, 560.0
 DIAGRAM_MARGIN = 0.06  # of the size, around the linkage

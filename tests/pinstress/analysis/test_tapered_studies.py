@@ -14,11 +14,11 @@ from fea.core.pin_loads import PinLoads
 from geometry import Pin, Segment
 from geometry.shape.dimensions import dimensions
 from pinstress import load_study, run
-from pinstress.explore.size.scaled_study import resized
 from pinstress.study.model.pins import far_ends, outline, pin
 from pinstress.study.schema.units import UNIT_SYSTEMS
 from reports.data.results import PinShape
 from reports.page.pin_drawing import draw_pin
+from tests.support.pins.studies import resized_text
 from tests.support.results.made_up_run import make_results
 
 CONE = Pin(
@@ -54,7 +54,7 @@ forces = { B = [0, 1000], C = [0, 1000] }
 
 
 def test_size_scales_all_that_lies_across(tmp_path: Path) -> None:
-    text = resized(STUDY, {"P": 1.5, "M": 1.5}, UNIT_SYSTEMS["mm-N-s"])
+    text = resized_text(STUDY, {"P": 1.5, "M": 1.5}, UNIT_SYSTEMS["mm-N-s"])
     made = tomllib.loads(text)["pin"]
     cone, plain = made["P"]["profile"]
     assert cone == {

@@ -1,5 +1,23 @@
 """Studies of pins that several tests change."""
 
+import tomlkit
+
+from pinstress.explore.size.scaled_study import resized
+from pinstress.explore.size.standard_diameters import StandardDiameters
+from pinstress.study.schema.units import UnitSystem
+
+
+def resized_text(
+    text: str,
+    scales: dict[str, float],
+    system: UnitSystem,
+    standard: StandardDiameters | None = None,
+    required: float | None = None,
+) -> str:
+    """A study's text with pins (by name) scaled across their axis."""
+    return tomlkit.dumps(resized(text, scales, system, standard, required))
+
+
 # Of two pins that harmonic models answer, of two materials.
 TWO_PINS = """
 title = "Two pins"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
@@ -22,13 +21,11 @@ from loads import (
     Teeth,
     Turn,
 )
-from loads.linkage.mass_properties import flat_bar, round_bar
 from loads.motion.mobility import Mobility, mobility, require_determined
 from loads.space.linkage import SpaceLinkage
 from pinbase.keys import key_part
 from pinstress.study.model.mechanism.drawing import Drawing, joints_on, shown_length
 from pinstress.study.model.mechanism.drives import (
-    drive_table,
     mechanism_of,
     parallel_rules,
     sharing_rules,
@@ -39,9 +36,17 @@ from pinstress.study.model.mechanism.joint_layout import Point, places
 from pinstress.study.model.mechanism.masses import (
     STANDARD_GRAVITY,
     at_rest,
-    body_mass,
     friction_circle,
     pin_mass,
+)
+from pinstress.study.model.mechanism.parts import (
+    body_anywhere,
+    body_of,
+    require_on_slider,
+    slider_of,
+    stop_turn,
+    turn_by_any_angle,
+    turn_of,
 )
 from pinstress.study.model.mechanism.space import (
     determined_in_space,
@@ -53,10 +58,7 @@ from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import GivenCase
 from pinstress.study.schema.drives import RotaryDrive, drive_name
 from pinstress.study.schema.mechanism import (
-    BodyTable,
     MechanismTable,
-    SliderTable,
-    StopTable,
 )
 
 A = TypeVar("A")
@@ -253,13 +255,13 @@ def _assembled(study: Study, drawing: Drawing) -> Linkage | list[LinkageError]:
                 parts += [] if instead is None else [instead(one)]
         return tuple(parts)
 
-    bodies = each(lambda b: _body(study, drawing, *b), mechanism.body.items(), _body_anywhere)
+    bodies = each(lambda b: body_of(study, drawing, *b), mechanism.body.items(), body_anywhere)
     bodies = tuple(replace(b, welded=mechanism.body[b.name].welded_to) for b in bodies)
     jointless = {error.at[1] for error in wrong if not joints_on(mechanism, str(error.at[1]))}
-    each(lambda s: _require_on_slider(drawing, *s), mechanism.slider.items())
-    sliders = tuple(_slider(drawing, *s) for s in mechanism.slider.items())
+    each(lambda s: require_on_slider(drawing, *s), mechanism.slider.items())
+    sliders = tuple(slider_of(drawing, *s) for s in mechanism.slider.items())
     turning = [d for d in mechanism.drive if isinstance(d, RotaryDrive)]
-    turns = each(lambda d: _turn(study, drawing, d), turning, _turn_by_any_angle)
+    turns = each(lambda d: turn_of(study, drawing, d), turning, turn_by_any_angle)
     meshing = each(lambda g: gears(*g, drawing), mechanism.gear.items())
     meshing += each(lambda r: rack(*r, drawing, sliders), mechanism.rack.items())
     all_mesh = len(meshing) == len(mechanism.gear) + len(mechanism.rack)
@@ -305,7 +307,7 @@ def _linkage(
             for name, j in mechanism.joint.items()
         ),
         sliders=sliders,
-        turns=(*turns, *(_stop(*item) for item in mechanism.stop.items())),
+        turns=(*turns, *(stop_turn(*item) for item in mechanism.stop.items())),
         driven=tuple(drive_name(d) for d in mechanism.drive),
         gravity=mechanism.gravity,
         sharing=sharing_rules(mechanism.sharing),
@@ -321,88 +323,6 @@ def _linkage(
     return make(
         bodies=tuple(replace(b, inertia=0.0) if b.name in lacking else b for b in bodies),
     )
-
-
-def _body_anywhere(item: tuple[str, BodyTable]) -> Body:
-    """Return what stands for a body whose centre is not known."""
-    return Body(item[0], 0.0, (0.0, 0.0), item[1].inertia)
-
-
-def _turn_by_any_angle(drive: RotaryDrive) -> Turn:
-    """Return what stands for a driven angle that is not known as drawn."""
-    return Turn(drive_name(drive), drive.body, 0.0, drive.against)
-
-
-def _stop(name: str, stop: StopTable) -> Turn:
-    base, body = stop.bodies
-    return Turn(name, body, 0.0, base, stop.carries)
-
-
-def _slider(drawing: Drawing, name: str, s: SliderTable) -> Slider:
-    start, end = (drawing.at[p] if isinstance(p, str) else p for p in s.joints)
-    return Slider(name, *s.bodies, start, end, s.direction, s.friction, s.bearing)
-
-
-def _require_on_slider(drawing: Drawing, name: str, s: SliderTable) -> None:
-    """Raise LinkageError unless the bodies of a slider are at its joints."""
-    right = "list the bodies in the order of their joints, or give the point as [x, y]"
-    for body, place in zip(s.bodies, s.joints, strict=True):
-        if isinstance(place, str):
-            drawing.require_on(place, body, ("slider", name), right)
-
-
-def _turn(study: Study, drawing: Drawing, drive: RotaryDrive) -> Turn:
-    """Return the driven angle; of its values a turn apart, the drawn one is nearest to the
-    start.
-    """
-    at, drawn = ("drive", drive_name(drive)), 0.0
-    right = "the line gives its angle; name two of its joints"
-    for body, line, sign in (
-        (drive.body, drive.line, 1.0),
-        (drive.against, drive.against_line, -1.0),
-    ):
-        if line is None:
-            continue
-        for joint in line:
-            drawing.require_on(joint, body, at, right)
-        if line[0] == line[1]:
-            text = f"{' '.join(at)}: the line needs two different joints"
-            raise LinkageError(text, "same-joint", at)
-        drawn += sign * _direction(line, drawing.at)
-    start = drive.start if drive.law != "table" else drive_table(study, drive).values[0]
-    if drive.line is not None and start is not None:
-        drawn += 2.0 * math.pi * round((start - drawn) / (2.0 * math.pi))
-    return Turn(drive_name(drive), drive.body, drawn, drive.against)
-
-
-def _direction(line: tuple[str, str], at: dict[str, Point]) -> float:
-    (x1, y1), (x2, y2) = (at[j] for j in line)
-    return math.atan2(y2 - y1, x2 - x1)
-
-
-def _body(study: Study, drawing: Drawing, name: str, b: BodyTable) -> Body:
-    at = drawing.at
-    if b.bar is not None:
-        (x1, y1), (x2, y2) = (at[j] for j in b.bar.joints)
-        length = math.hypot(x2 - x1, y2 - y1)
-        if b.bar.section is not None:
-            mass, inertia = flat_bar(length, *b.bar.section, b.bar.density)
-        else:
-            mass, inertia = round_bar(length, b.bar.diameter or 0.0, b.bar.density)
-        middle = (0.5 * (x1 + x2), 0.5 * (y1 + y2))
-        return Body(name, mass, middle, inertia if b.inertia is None else b.inertia)
-    mass = body_mass(study, name, b, float(np.hypot(*drawing.mechanism.gravity)))
-    centre = b.centre
-    if centre is None:
-        on = [at[key] for key in joints_on(drawing.mechanism, name)]
-        if not on or (len(on) > 2 and mass):
-            raise LinkageError(
-                f"body {name}: a body with {len(on)} joints needs a centre = [x, y]",
-                "missing-centre",
-                ("body", name),
-            )
-        centre = (sum(x for x, _ in on) / len(on), sum(y for _, y in on) / len(on))
-    return Body(name, mass, centre, b.inertia)
 
 
 def ground_joint(linkage: Linkage) -> str:

@@ -21,7 +21,7 @@ from pinstress.analysis.results import run
 from pinstress.cli.commands import run_command_line
 from pinstress.explore.size.judged_pin import JudgedPin
 from pinstress.explore.size.pin_answers import PinAnswer, SizedStudy, Tell
-from pinstress.explore.size.scaled_study import moved, resized, resized_study
+from pinstress.explore.size.scaled_study import moved, resized_study
 from pinstress.explore.size.section_law import Accuracy
 from pinstress.explore.size.size_pin import SizingGoal, SizingResult, size_pin
 from pinstress.explore.size.size_pins import loaded_more
@@ -33,6 +33,7 @@ from reports.data.decision import factor_ends
 from tests.conftest import ROOT
 from tests.support.described import describe
 from tests.support.each import each
+from tests.support.pins.studies import resized_text
 from tests.support.programs.command_line import ONE_PIN, QUICK, Refused, sizes_nothing
 
 
@@ -75,7 +76,7 @@ def test_a_factor_that_does_not_grow_is_told() -> None:
 
 
 def test_only_diameters_change_and_comments_stay() -> None:
-    text = resized(ONE_PIN, {"B": 1.5}, UNIT_SYSTEMS["in-lbf-s"])
+    text = resized_text(ONE_PIN, {"B": 1.5}, UNIT_SYSTEMS["in-lbf-s"])
     changed = {
         old: new
         for old, new in zip(ONE_PIN.splitlines(), text.splitlines(), strict=True)
@@ -86,7 +87,7 @@ def test_only_diameters_change_and_comments_stay() -> None:
         '{ length = 2.0, diameter = 3.0, connection = "B" }, # the band loaded by link B',
         "fillet = 0.6 # radius at every inner corner; default 0: sharp",
     }
-    assert resized(ONE_PIN, {"B": 1.0}, UNIT_SYSTEMS["in-lbf-s"]) == ONE_PIN
+    assert resized_text(ONE_PIN, {"B": 1.0}, UNIT_SYSTEMS["in-lbf-s"]) == ONE_PIN
 
 
 def test_units_provenance_and_rounding() -> None:
@@ -102,7 +103,7 @@ flat = [{ z = [0.0, 1.0], distance = 1.23456 }]
 hole = [{ z = 1.0, diameter = 0.5 }]
 """
     step = StandardDiameters(step=5e-3)
-    pin = tomllib.loads(resized(text, {"B": 1.11}, UNIT_SYSTEMS["in-lbf-s"], step, 4.0))
+    pin = tomllib.loads(resized_text(text, {"B": 1.11}, UNIT_SYSTEMS["in-lbf-s"], step, 4.0))
     first, second = pin["pin"]["B"]["profile"]
     assert first["diameter"] == {
         "value": "115 mm",
@@ -132,7 +133,7 @@ def test_a_fillet_as_large_as_its_step_fits_after_rounding(fillet: str) -> None:
     text = text.replace("fillet = 0.4 ", f"{fillet}#")
     system = UNIT_SYSTEMS["mm-N-s"]
     for scale in (*[0.9 + 0.0123 * k for k in range(40)], 1.0):
-        new = resized(text, {"B": scale}, system)
+        new = resized_text(text, {"B": scale}, system)
         thick, thin = (s["diameter"] for s in tomllib.loads(new)["pin"]["B"]["profile"])
         radius = parse_study(Path("B.toml"), new).table.pin["B"].fillet * 1e3
         assert 0.997 * scale * 2.0 < radius <= 0.5 * (thick - thin) * (1.0 + 1e-9)
@@ -144,7 +145,7 @@ def test_every_shipped_profile_can_be_resized() -> None:
         text = path.read_text()
         study = parse_study(path, text)
         scales = {name: 1.3 for name, pin in study.table.pin.items() if pin.profile}
-        again = parse_study(path, resized(text, scales, study.system)).table
+        again = parse_study(path, resized_text(text, scales, study.system)).table
         for name in scales:
             old, new = study.table.pin[name].profile or [], again.pin[name].profile or []
             for a, b in zip(old, new, strict=True):
@@ -277,7 +278,7 @@ def test_a_run_confirms_the_size_and_a_smaller_pin_misses(
     found, verdict = factor(sized, "again")
     assert verdict == "converged"
     assert 20.0 <= found <= 20.0 * (1.0 + FACTOR_TOLERANCE)
-    smaller, _ = factor(resized(sized, {"B": 0.99}, UNIT_SYSTEMS["in-lbf-s"]), "smaller")
+    smaller, _ = factor(resized_text(sized, {"B": 0.99}, UNIT_SYSTEMS["in-lbf-s"]), "smaller")
     assert smaller < 20.0
     assert run_command_line(["size", "study.toml"]) == 2
     assert "study_sized.toml exists already" in capsys.readouterr().err

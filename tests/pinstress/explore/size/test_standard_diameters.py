@@ -10,7 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pinstress.analysis.remedies.secant import NoSizeError
-from pinstress.explore.size.scaled_study import resized
 from pinstress.explore.size.standard_diameters import (
     PREFERRED_NUMBERS,
     StandardDiameters,
@@ -22,6 +21,7 @@ from pinstress.study.schema.size import SizeTable
 from pinstress.study.schema.units import UNIT_SYSTEMS
 from tests.conftest import ROOT
 from tests.support.each import each
+from tests.support.pins.studies import resized_text
 
 INCH = 0.0254
 # ISO 3 rounds no theoretical value by more than this
@@ -89,7 +89,9 @@ profile = [
 ]
 """
     standard = StandardDiameters(preferred=PREFERRED_NUMBERS["R20"])
-    pin = tomllib.loads(resized(text, {"B": 1.15}, UNIT_SYSTEMS["in-lbf-s"], standard))["pin"]["B"]
+    pin = tomllib.loads(resized_text(text, {"B": 1.15}, UNIT_SYSTEMS["in-lbf-s"], standard))["pin"][
+        "B"
+    ]
     assert [s["diameter"] for s in pin["profile"]] == ["63 mm", 3.55]
     assert pin["fillet"] == 0.115
     assert [s["length"] for s in pin["profile"]] == [1.0, 1.0]

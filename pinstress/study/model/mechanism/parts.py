@@ -1,0 +1,105 @@
+"""Bodies, sliders and turns of a linkage from their tables."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from loads import Body, LinkageError, Slider, Turn
+from loads.linkage.mass_properties import flat_bar, round_bar
+from pinstress.study.model.mechanism.drawing import Drawing, joints_on
+from pinstress.study.model.mechanism.drives import drive_table
+from pinstress.study.model.mechanism.joint_layout import Point
+from pinstress.study.model.mechanism.masses import body_mass
+from pinstress.study.reading.file import Study
+from pinstress.study.schema.drives import RotaryDrive, drive_name
+from pinstress.study.schema.mechanism import BodyTable, SliderTable, StopTable
+
+
+def body_anywhere(item: tuple[str, BodyTable]) -> Body:
+    """Return what stands for a body whose centre is not known."""
+    return Body(item[0], 0.0, (0.0, 0.0), item[1].inertia)
+
+
+def turn_by_any_angle(drive: RotaryDrive) -> Turn:
+    """Return what stands for a driven angle that is not known as drawn."""
+    return Turn(drive_name(drive), drive.body, 0.0, drive.against)
+
+
+def stop_turn(name: str, stop: StopTable) -> Turn:
+    """Return the turn that a stop blocks."""
+    base, body = stop.bodies
+    return Turn(name, body, 0.0, base, stop.carries)
+
+
+def slider_of(drawing: Drawing, name: str, s: SliderTable) -> Slider:
+    """Return a slider between its two points, as drawn."""
+    start, end = (drawing.at[p] if isinstance(p, str) else p for p in s.joints)
+    return Slider(name, *s.bodies, start, end, s.direction, s.friction, s.bearing)
+
+
+def require_on_slider(drawing: Drawing, name: str, s: SliderTable) -> None:
+    """Raise LinkageError unless the bodies of a slider are at its joints."""
+    right = "list the bodies in the order of their joints, or give the point as [x, y]"
+    for body, place in zip(s.bodies, s.joints, strict=True):
+        if isinstance(place, str):
+            drawing.require_on(place, body, ("slider", name), right)
+
+
+def turn_of(study: Study, drawing: Drawing, drive: RotaryDrive) -> Turn:
+    """Return the driven angle; of its values a turn apart, the drawn one is nearest to the
+    start.
+    """
+    at, drawn = ("drive", drive_name(drive)), 0.0
+    right = "the line gives its angle; name two of its joints"
+    for body, line, sign in (
+        (drive.body, drive.line, 1.0),
+        (drive.against, drive.against_line, -1.0),
+    ):
+        if line is None:
+            continue
+        for joint in line:
+            drawing.require_on(joint, body, at, right)
+        if line[0] == line[1]:
+            text = f"{' '.join(at)}: the line needs two different joints"
+            raise LinkageError(text, "same-joint", at)
+        drawn += sign * _direction(line, drawing.at)
+    start = drive.start if drive.law != "table" else drive_table(study, drive).values[0]
+    if drive.line is not None and start is not None:
+        drawn += 2.0 * math.pi * round((start - drawn) / (2.0 * math.pi))
+    return Turn(drive_name(drive), drive.body, drawn, drive.against)
+
+
+def _direction(line: tuple[str, str], at: dict[str, Point]) -> float:
+    (x1, y1), (x2, y2) = (at[j] for j in line)
+    return math.atan2(y2 - y1, x2 - x1)
+
+
+def body_of(study: Study, drawing: Drawing, name: str, b: BodyTable) -> Body:
+    """Return a body with its mass, its centre and its inertia, of a bar by its section.
+
+    Raises: LinkageError for a centre that is missing.
+    """
+    at = drawing.at
+    if b.bar is not None:
+        (x1, y1), (x2, y2) = (at[j] for j in b.bar.joints)
+        length = math.hypot(x2 - x1, y2 - y1)
+        if b.bar.section is not None:
+            mass, inertia = flat_bar(length, *b.bar.section, b.bar.density)
+        else:
+            mass, inertia = round_bar(length, b.bar.diameter or 0.0, b.bar.density)
+        middle = (0.5 * (x1 + x2), 0.5 * (y1 + y2))
+        return Body(name, mass, middle, inertia if b.inertia is None else b.inertia)
+    mass = body_mass(study, name, b, float(np.hypot(*drawing.mechanism.gravity)))
+    centre = b.centre
+    if centre is None:
+        on = [at[key] for key in joints_on(drawing.mechanism, name)]
+        if not on or (len(on) > 2 and mass):
+            raise LinkageError(
+                f"body {name}: a body with {len(on)} joints needs a centre = [x, y]",
+                "missing-centre",
+                ("body", name),
+            )
+        centre = (sum(x for x, _ in on) / len(on), sum(y for _, y in on) / len(on))
+    return Body(name, mass, centre, b.inertia)
