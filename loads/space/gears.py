@@ -175,7 +175,9 @@ def _on_cylinders(
         )
     normal = line / math.copysign(distance, total)
     point = first + sizes[0] / total * line
-    return _Place(point, np.cross(axis, normal), axis, normal)
+    # Of a ring the normal points to its axis, and its teeth seen from there have the other hand.
+    lengthwise = axis if sizes[0] > 0.0 else -axis
+    return _Place(point, np.cross(axis, normal), lengthwise, normal)
 
 
 def _on_cones(

@@ -337,3 +337,69 @@ def test_gears_are_drawn_about_their_axes(tmp_path: Path) -> None:
     radii = np.linalg.norm(circle[:-1, 1:], axis=1)  # the last is a radius, from the hub
     assert radii == pytest.approx(np.full(len(radii), np.linalg.norm(pitch[1:])))
     assert circle[-1, 1:] == pytest.approx(np.zeros(2), abs=1e-12)
+
+
+PLANETARY = (
+    HEAD
+    + """
+[mechanism.joint.O]
+at = [0, 0, 0]
+axis = [0, 0, 1]
+fixed_in = "ground"
+connections = { O1 = "sun", O2 = "arm" }
+[mechanism.joint.P]
+at = [0.06, 0, 0.02]
+axis = [0, 0, -1]
+fixed_in = "arm"
+connections = { P1 = "planet" }
+[mechanism.body.sun]
+mass = 1
+[mechanism.body.arm]
+mass = 1
+centre = [0.03, 0, 0]
+[mechanism.body.planet]
+mass = 0.3
+[mechanism.gear.a]
+bodies = ["sun", "planet"]
+joints = ["O", "P"]
+teeth = [20, 40]
+helix_angle = "15 deg"
+[mechanism.gear.b]
+RING
+teeth = TEETH
+internal = true
+helix_angle = "HAND"
+[mechanism.drive]
+joint = "O"
+connection = "O1"
+[case.rest]
+kind = "static"
+[[case.rest.apply]]
+body = "arm"
+couple = [0, 0, -30]
+"""
+)
+
+
+@each(
+    ("ring", "teeth", "hand"),
+    [
+        ('bodies = ["ground", "planet"]\njoints = ["O", "P"]', "[100, 40]", "-15 deg"),
+        ('bodies = ["planet", "ground"]\njoints = ["P", "O"]', "[40, 100]", "-15 deg"),
+    ],
+)
+def test_a_planet_is_not_pushed_along_its_axis(
+    tmp_path: Path, ring: str, teeth: str, hand: str
+) -> None:
+    """A planet of the other hand than its sun, in a ring of its own hand: the axial forces of both
+    meshes cancel. The fixed ring makes the sun turn six times as fast as the arm (Willis).
+    """
+    text = PLANETARY.replace("RING", ring).replace("TEETH", teeth).replace("HAND", hand)
+    found = rest(tmp_path, text)
+    tangential = 30.0 / 0.06
+    assert force(found, "P1") == pytest.approx(force(found, "P1") * [1, 1, 0], abs=1e-9)
+    assert np.abs(force(found, "a")[2]) == pytest.approx(
+        0.5 * tangential * math.tan(math.radians(15.0)), rel=1e-9
+    )
+    assert abs(force(found, "P1")[1]) == pytest.approx(tangential, rel=1e-9)
+    assert found.dynamics.drive[0, 0] == pytest.approx(30.0 / 6.0, rel=1e-9)
