@@ -14,6 +14,7 @@ from geometry.shape.passage import Passage
 from geometry.shape.pin import Band, GeometryError, Pin
 from geometry.shape.pin_like import PinLike, body_of_revolution
 from geometry.shape.profile import Arc, Edge, meridian, sharp_corners
+from geometry.shape.recess import Recess
 from geometry.shape.segment import Segment
 from pinbase.errors import ArgumentError, CodedError
 
@@ -32,6 +33,7 @@ __all__ = [
     "Passage",
     "Pin",
     "PinLike",
+    "Recess",
     "Segment",
     "Slot",
     "Vertex",
