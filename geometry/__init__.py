@@ -15,6 +15,7 @@ from geometry.shape.passage import Passage
 from geometry.shape.pin import Pin
 from geometry.shape.pin_like import PinLike, body_of_revolution
 from geometry.shape.profile import Arc, Edge, meridian, sharp_corners
+from geometry.shape.recess import Recess
 from geometry.shape.segment import Segment
 from pinbase.errors import ArgumentError, CodedError
 
@@ -33,6 +34,7 @@ __all__ = [
     "Passage",
     "Pin",
     "PinLike",
+    "Recess",
     "Segment",
     "Slot",
     "Vertex",

@@ -23,6 +23,7 @@ RADIUS_ADVICE = {
     "slot": "a radius of the slot would make it finite",
     "hole": "a bottom_radius of the hole would make it finite",
     "passage": "a bottom_radius of the passage would make it finite",
+    "recess": "a radius in the file would make it finite",
 }
 
 

@@ -20,7 +20,7 @@ from geometry.mesh.expected import require_few
 from geometry.mesh.gmsh_session import failure, formula_size, gmsh_model, set_size, silence
 from geometry.mesh.gmsh_tetrahedra import collect, repair
 from geometry.mesh.solid_mesh import MeshSize, SolidMesh, sound_mesh
-from geometry.shape.pin import GeometryError
+from geometry.shape.band import GeometryError
 
 MAX_PLANE_CURVATURE = 1e-9  # of a plane surface, times the body's size
 

@@ -17,7 +17,7 @@ from geometry.imported.mesh_file import mesh_from_file
 from geometry.imported.named_bands import facets, measure, with_places
 from geometry.mesh.solid_mesh import MeshSize, SolidMesh
 from geometry.mesh.tet10 import refined
-from geometry.shape.pin import Band, GeometryError
+from geometry.shape.band import Band, GeometryError
 
 MEASURING_MESH_SIZE = MeshSize(across=3.0, corner=1.0)  # the mesh on which a CAD file is measured
 

@@ -16,7 +16,7 @@ from geometry.imported.body_file import BodyFile
 from geometry.mesh.quality import distortion, folded
 from geometry.mesh.solid_mesh import MeshError, SolidMesh
 from geometry.mesh.tet10 import find_facets, quadratic
-from geometry.shape.pin import GeometryError
+from geometry.shape.band import GeometryError
 from pinbase.arrays import Ints
 
 SURFACE_CELLS = ("triangle", "triangle6")

@@ -3,7 +3,8 @@
 Faces of revolution about one axis give straight and circular parts of the section's outline, which
 is a chain of them from end to end; a prism gives the cylinder through its edges. All other faces
 must be those of cuts. If the volume of the result agrees with that of the body, nothing was
-overlooked.
+overlooked. Otherwise each solid that the body lacks of its profile is taken for itself: as known
+cuts, or as a recess.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from geometry.imported.body_file import BodyFile
 from geometry.imported.cad_mesh import face_names, solids_of
@@ -21,17 +23,22 @@ from geometry.imported.drilled_faces import near
 from geometry.imported.outline_chain import MeridianSide, outlines
 from geometry.imported.prisms import corner_side, prisms
 from geometry.imported.recognised_cuts import CutFaces
+from geometry.imported.removed_solids import removed_solids
 from geometry.imported.sampled_face import FACE_TOLERANCE, Axis, SampledFace, sampled_face
 from geometry.imported.solid_volume import solid_volume
 from geometry.mesh.cut_pin import CutPin
 from geometry.mesh.gmsh_session import MeshError, gmsh_model
+from geometry.shape.band import GeometryError
 from geometry.shape.features import Cut
-from geometry.shape.pin import GeometryError, Pin
+from geometry.shape.milled import Flat
+from geometry.shape.pin import Pin
 from geometry.shape.polyline import Bend, pin_of_polyline
+from geometry.shape.recess import Recess
 from pinbase.arrays import Floats
 
 VOLUME_TOLERANCE = 1e-5  # relative difference of the volumes
 MAX_FACES = 400  # of a body: one with more is not recognised
+MAX_FLATS = 12  # of a body; walls of splines that are not parallel look like more
 DIMENSION_DIGITS = 7  # decimals, relative to the body's size, to which dimensions are rounded
 
 
@@ -71,6 +78,16 @@ class RecognisedProfile:
         """Whether its axis is along the file's z-axis."""
         return self.along == (0.0, 0.0, 1.0)
 
+    def scaled(self, factor: float) -> RecognisedProfile:
+        """The same profile in another unit of length: all lengths but `start` times `factor`."""
+        outside, bore = (
+            tuple(Bend(b.z * factor, b.r * factor, b.radius * factor) for b in line)
+            for line in (self.outside, self.bore)
+        )
+        cuts = tuple(cut.scaled(factor) for cut in self.cuts)
+        surfaces = {name: (a * factor, b * factor) for name, (a, b) in self.surfaces.items()}
+        return replace(self, outside=outside, bore=bore, cuts=cuts, surfaces=surfaces)
+
     def pin(self, name: str) -> Pin:
         """Its profile, without cuts. Raises: GeometryError."""
         return pin_of_polyline(name, self.outside, self.bore)
@@ -93,8 +110,16 @@ def recognised_profile(file: BodyFile) -> RecognisedProfile:
         axis = _axis(file, faces, centre, size)
         inside = _reaches_axis(gmsh, faces, axis)
         volume = solid_volume(gmsh, solids[0]) * file.unit**3
-    profile = _recognised(file, faces, axis, inside, size)
-    _require_volume(file, profile, volume)
+    shaft, rest = _shaft(file, faces, axis, inside, size)
+    digits = _digits(size)
+    try:
+        cuts = _cuts(file, rest, shaft, size) if rest else ()
+        profile = replace(shaft, cuts=tuple(c.rounded(digits) for c in cuts)).scaled(file.unit)
+        _require_volume(file, profile, volume)
+    except NotTurnedError as error:
+        found = _with_recesses(file, shaft, axis, size, error)
+        rounded = (c if isinstance(c, Recess) else c.rounded(digits) for c in found)
+        profile = replace(shaft, cuts=tuple(rounded)).scaled(file.unit)
     return profile
 
 
@@ -137,10 +162,11 @@ def _reaches_axis(gmsh: Any, faces: Sequence[SampledFace], axis: Axis) -> set[in
     return tags
 
 
-def _recognised(
+def _shaft(
     file: BodyFile, faces: Sequence[SampledFace], axis: Axis, inside: set[int], size: float
-) -> RecognisedProfile:
-    """The profile and cuts from the faces of a body. inside: tags of faces that reach the axis.
+) -> tuple[RecognisedProfile, list[SampledFace]]:
+    """The profile, without cuts, of a body, in the file's unit, and the faces that are not of
+    revolution, in its axes. inside: tags of faces that reach the axis.
 
     Raises: NotTurnedError.
     """
@@ -165,22 +191,22 @@ def _recognised(
         raise _not_turned(file, str(error)) from None
     start = min(bend.z for bend in outside)
     down = np.array([0.0, 0.0, start])
-    surfaces = _surfaces(sides, start, size, file.unit)
-    digits = DIMENSION_DIGITS - math.floor(math.log10(size))
-    rest = [_in_frame(face, down, np.eye(3)) for face in rest]
-    profile = [
-        tuple(_rounded(bend, start, digits, 1.0) for bend in line) for line in (outside, bore)
-    ]
-    cuts = _cuts(file, rest, profile, size) if rest else ()
-    return RecognisedProfile(
-        tuple(_rounded(bend, start, digits, file.unit) for bend in outside),
-        tuple(_rounded(bend, start, digits, file.unit) for bend in bore),
-        tuple(cut.rounded(digits).scaled(file.unit) for cut in cuts),
+    digits = _digits(size)
+    profile = RecognisedProfile(
+        tuple(_rounded(bend, start, digits) for bend in outside),
+        tuple(_rounded(bend, start, digits) for bend in bore),
+        (),
         round(start, digits) + 0.0,  # never -0
         _plain(frame[2]),
         _plain(frame[0]),
-        surfaces,
+        _surfaces(sides, start, size),
     )
+    return profile, [_in_frame(face, down, np.eye(3)) for face in rest]
+
+
+def _digits(size: float) -> int:
+    """The decimals to which dimensions are rounded. size: of the body."""
+    return DIMENSION_DIGITS - math.floor(math.log10(size))
 
 
 def _in_frame(face: SampledFace, origin: Floats, frame: Floats) -> SampledFace:
@@ -199,39 +225,73 @@ def _plain(vector: Floats) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _rounded(bend: Bend, start: float, digits: int, unit: float) -> Bend:
-    """A corner with z from the start face, rounded to so many digits and converted to a unit."""
-    z, r, radius = (round(x, digits) * unit for x in (bend.z - start, bend.r, bend.radius))
+def _rounded(bend: Bend, start: float, digits: int) -> Bend:
+    """A corner with z from the start face, rounded to so many digits."""
+    z, r, radius = (round(x, digits) for x in (bend.z - start, bend.r, bend.radius))
     return Bend(z, r, radius)
 
 
 def _cuts(
-    file: BodyFile, rest: Sequence[SampledFace], profile: Sequence[tuple[Bend, ...]], size: float
+    file: BodyFile, rest: Sequence[SampledFace], shaft: RecognisedProfile, size: float
 ) -> tuple[Cut, ...]:
     """The cuts of the faces that are not of revolution, in the file's unit.
 
     Raises: NotTurnedError.
     """
     try:
-        return CutFaces(rest, size).cuts(pin_of_polyline(file.name, *profile))
+        cuts = CutFaces(rest, size).cuts(shaft.pin(file.name))
     except ValueError as error:
         if isinstance(error, GeometryError):
             raise _not_turned(file, str(error)) from None
         why = f"{error} is neither of revolution nor of a hole, flat, slot or passage"
         raise _not_turned(file, why) from None
+    if (flats := sum(isinstance(cut, Flat) for cut in cuts)) > MAX_FLATS:
+        raise _not_turned(file, f"it has {flats} plane faces along its axis")
+    return cuts
+
+
+def _with_recesses(
+    file: BodyFile, shaft: RecognisedProfile, axis: Axis, size: float, error: NotTurnedError
+) -> tuple[Cut, ...]:
+    """The cuts and recesses of a body, in the file's unit, each removed solid for itself.
+
+    error: why its faces are not those of known cuts.
+
+    Raises: NotTurnedError.
+    """
+    try:
+        pin = shaft.pin(file.name)
+        with gmsh_model(f"{file.name}, {file.path.name}") as gmsh:
+            (body,) = solids_of(gmsh, file)
+            frame, start = axis.frame(), axis.point + shaft.start * axis.along
+            gmsh.model.occ.translate([body], *(-start).tolist())
+            turn = Rotation.from_matrix(frame).as_rotvec()
+            angle = float(np.linalg.norm(turn))
+            if angle:
+                gmsh.model.occ.rotate([body], 0, 0, 0, *turn.tolist(), angle)
+            gmsh.model.occ.synchronize()
+            removed = removed_solids(gmsh, body, pin)
+        cuts = tuple(cut for one in removed for cut in one.cuts(pin, size))
+        assert CutPin.of(pin, cuts).volume > 0.0
+    except GeometryError as other:
+        why = f"{error.why}; {other}" if other.code == "stands-out" else error.why
+        raise _not_turned(file, why) from None
+    except MeshError:
+        raise error from None
+    return cuts
 
 
 def _surfaces(
-    sides: Sequence[MeridianSide], start: float, size: float, unit: float
+    sides: Sequence[MeridianSide], start: float, size: float
 ) -> dict[str, tuple[float, float]]:
-    """Two z of each cylinder whose whole surface has one name, by name, from the start face, m."""
+    """Two z of each cylinder whose whole surface has one name, by name, from the start face."""
     names: dict[tuple[int, ...], set[str]] = {}
     ends: dict[tuple[int, ...], tuple[float, float]] = {}
     for side in (side for side in sides if side.cylinder):
         z0, z1 = sorted((side.start[1], side.end[1]))
         key = tuple(round(x / (10.0 * FACE_TOLERANCE * size)) for x in (side.start[0], z0, z1))
         names.setdefault(key, set()).add(side.name)
-        ends[key] = (z0 - start) * unit, (z1 - start) * unit
+        ends[key] = z0 - start, z1 - start
     return {name: ends[key] for key, (name, *more) in names.items() if not more}
 
 

@@ -19,6 +19,7 @@ from geometry.shape.features import Cut
 from geometry.shape.milled import Slot
 from geometry.shape.passage import Passage
 from geometry.shape.pin import Pin
+from geometry.shape.recess import Recess
 
 Spots = Sequence[tuple[float, float, float]]
 
@@ -32,6 +33,9 @@ SHARP_CORNER_SIZE = 0.07  # size at a sharp inner corner, over a cut's size
 FLAT_FACE_SIZE = 0.12  # size on a flat, over the pin's diameter
 # Size on the wall of a cut over that at its edge, and the same of passages.
 WALL_SIZE_RATIO, PASSAGE_WALL_SIZE_RATIO = 1.5, 2.0
+# Sizes at recesses grow with this power of their number in a piece, of which a spline has many.
+MANY_RECESSES_POWER = 1.0 / 3.0
+SIZE_STEP = 1.1  # ratio of sizes at recesses
 PIECE_SIZE_GROWTH = 0.45  # increase of the size per distance from a cut
 # Elements are small around a spot within SPOT_ELEMENT_ROWS rows, at most this part of a cut's size.
 MAX_SPOT_REACH = 0.2
@@ -228,8 +232,10 @@ def _sizes(
         if not part and name not in ("start", "end") and not name.startswith("mirror ")
         for tag in tags
     ]
-    rims, fields = _curves(gmsh, others), []
+    rims, fields = _curves(gmsh, others), _sizes_of_recesses(gmsh, piece, parts, finer)
     for name, cut in piece.cuts.items():
+        if isinstance(cut, Recess):
+            continue
         h = _edge_size(piece, cut) / finer
         faces = {part: tags for (n, part), tags in parts.items() if n == name}
         radii = {s.part: s.radius for s in cut.surfaces(piece.profile)}
@@ -254,6 +260,49 @@ def _sizes(
                 size = SHARP_CORNER_SIZE * piece.across(cut) / finer
                 fields.append(near(gmsh, "CurvesList", inner, size, PIECE_SIZE_GROWTH))
     return fields
+
+
+def _sizes_of_recesses(
+    gmsh: Any, piece: Piece, parts: dict[tuple[str, str], list[int]], finer: float
+) -> list[int]:
+    """Size fields at the faces and edges of recesses; one for all that have a size, since a spline
+    has many. The arguments are those of _sizes.
+    """
+    recesses = {name: cut for name, cut in piece.cuts.items() if isinstance(cut, Recess)}
+    coarser = max(1, len(recesses)) ** MANY_RECESSES_POWER
+    faces: dict[float, list[int]] = {}
+    curves: dict[float, set[int]] = {}
+    for name, cut in recesses.items():
+        own = {part: tags for (n, part), tags in parts.items() if n == name}
+        every = [tag for tags in own.values() for tag in tags]
+        edge = _edge_size(piece, cut) * coarser / finer
+        rounded = [
+            (own[s.part], _arc_size(cut, s.radius) / finer)
+            for s in cut.surfaces(piece.profile)
+            if s.radius and s.part in own
+        ]
+        sharp = [curve for curve in _curves(gmsh, every) if _shared(gmsh, curve, every)]
+        corner = edge if rounded else SHARP_CORNER_SIZE * piece.across(cut) * coarser / finer
+        for tags, h in ((every, WALL_SIZE_RATIO * edge), *rounded):
+            faces.setdefault(_step(min(h, WALL_SIZE_RATIO * edge)), []).extend(tags)
+        for curves_of, h in (
+            (_curves(gmsh, every), edge), (sharp, corner),
+            *((_curves(gmsh, tags), min(h, edge)) for tags, h in rounded),
+        ):  # fmt: skip
+            curves.setdefault(_step(h), set()).update(curves_of)
+    return [
+        *(near(gmsh, "SurfacesList", tags, h, PIECE_SIZE_GROWTH) for h, tags in faces.items()),
+        *(
+            near(gmsh, "CurvesList", sorted(c), h, PIECE_SIZE_GROWTH)
+            for h, c in curves.items()
+            if c
+        ),
+    ]
+
+
+def _step(size: float) -> float:
+    """A size rounded down to a step, which sizes that are nearly alike share."""
+    return float(SIZE_STEP ** math.floor(math.log(size * (1.0 + 1e-9)) / math.log(SIZE_STEP)))
 
 
 def _shared(gmsh: Any, curve: int, faces: Sequence[int]) -> bool:

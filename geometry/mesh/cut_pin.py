@@ -17,6 +17,7 @@ from geometry.shape.hole import Hole
 from geometry.shape.milled import Flat, Slot
 from geometry.shape.passage import Passage
 from geometry.shape.pin import Pin
+from geometry.shape.recess import Recess
 from pinbase.errors import Place
 
 
@@ -34,6 +35,7 @@ class CutPin:
     flats: tuple[Flat, ...] = ()
     slots: tuple[Slot, ...] = ()
     passages: tuple[Passage, ...] = ()
+    recesses: tuple[Recess, ...] = ()
 
     meshed: ClassVar[bool] = False
 
@@ -42,7 +44,9 @@ class CutPin:
         flats = tuple(flat.snapped(marks, tolerance) for flat in self.flats)
         slots = tuple(slot.snapped(marks, tolerance) for slot in self.slots)
         object.__setattr__(self, "holes", tuple(cut.within(self.profile) for cut in self.holes))
-        for name, cut in _named((*self.holes, *flats, *slots, *self.passages)).items():
+        for name, cut in _named(
+            (*self.holes, *flats, *slots, *self.passages, *self.recesses)
+        ).items():
             what, i = name.split()
             cut.check(self.profile, f"{what} {i}", (what, int(i)))
             _require_own_name(self.profile, name, (what, int(i)))
@@ -63,12 +67,13 @@ class CutPin:
             tuple(cut for cut in every if isinstance(cut, Flat)),
             tuple(cut for cut in every if isinstance(cut, Slot)),
             tuple(cut for cut in every if isinstance(cut, Passage)),
+            tuple(cut for cut in every if isinstance(cut, Recess)),
         )
 
     @cached_property
     def cuts(self) -> dict[str, Cut]:
         """All cuts by their names, such as "hole 1"."""
-        return _named((*self.holes, *self.flats, *self.slots, *self.passages))
+        return _named((*self.holes, *self.flats, *self.slots, *self.passages, *self.recesses))
 
     @property
     def name(self) -> str:

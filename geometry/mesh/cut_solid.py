@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import tempfile
 from collections.abc import Collection, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from geometry.mesh.gmsh_session import MeshError, failure, formula_size
+from geometry.mesh.gmsh_session import MeshError, failure, formula_size, silence
 from geometry.mesh.revolve import revolve
 from geometry.shape.band import END_FACES, GeometryError
 from geometry.shape.drill import Placed
@@ -18,6 +20,7 @@ from geometry.shape.milled import Flat, Slot
 from geometry.shape.passage import Passage
 from geometry.shape.pin import Pin
 from geometry.shape.profile import Edge, kind_of, meridian, off_edge
+from geometry.shape.recess import Recess
 from pinbase.arrays import Floats
 
 Cuts = Mapping[str, Cut]  # by their names, such as "hole 1"
@@ -31,6 +34,10 @@ CURVE_TOLERANCE = 1e-6  # of the pin's size: a curve this close to a surface lie
 # Across a quarter circle, on the first mesh: with fewer its facets turn by so much that the corner
 # looks sharp (fea.solid.sharp_edges). FIRST_ACROSS: the fineness of that mesh.
 ARC_ELEMENTS, FIRST_ACROSS = 3.0, 4.0
+# Of the pin's length: surfaces this close are one. Dimensions of a pin from a file are rounded to
+# 1e-7, and the solids that it removes end in its surface.
+BOOLEAN_TOLERANCE = 1e-6
+MAX_PART_DISTANCE = 0.2  # of a recess's width: a face farther from all of its faces is none of them
 EDGE_SAMPLE_FRACTIONS = (0.0, 0.21, 0.5, 0.77, 1.0)  # of the length of a curve
 
 
@@ -44,12 +51,23 @@ def cut_solid(gmsh: Any, pin: Pin, cuts: Cuts, sector: float = 2.0 * math.pi) ->
     occ, reach = gmsh.model.occ, 2.0 * pin.largest_diameter
     rounded = [c for c in cuts.values() if isinstance(c, Hole) and c.mouth_radius]
     body = revolve(gmsh, meridian(pin), sector)
-    # OpenCASCADE can only round whole edges, so the body's seam must not cross a rounded mouth.
-    if rounded and sector == 2.0 * math.pi:
-        seams = np.linspace(0.0, math.pi, 13)
-        distances = [min(abs(math.sin(seam - hole.angle)) for hole in rounded) for seam in seams]
+    # OpenCASCADE can only round whole edges, so the body's seam must not cross a rounded mouth; and
+    # gmsh may fail on faces that it divides.
+    recesses = [c for c in cuts.values() if isinstance(c, Recess)]
+    if (rounded or recesses) and sector == 2.0 * math.pi:
+        seams = np.linspace(0.0, 2.0 * math.pi, 25)[:-1]
+        distances = [
+            min(
+                *(abs(math.sin(seam - hole.angle)) for hole in rounded),
+                *(0.5 - 0.5 * math.cos(seam - recess.angle) for recess in recesses),
+                1.0,
+            )
+            for seam in seams
+        ]
         occ.rotate([body], 0, 0, 0, 0, 0, 1, float(seams[int(np.argmax(distances))]))
     tools = [tool for cut in cuts.values() for tool in _tool(gmsh, pin, cut, reach)]
+    if any(isinstance(cut, Recess) for cut in cuts.values()):
+        gmsh.option.setNumber("Geometry.ToleranceBoolean", BOOLEAN_TOLERANCE * pin.length)
     left, _ = occ.cut([body], tools)
     occ.synchronize()
     if rounded and len(left) == 1:
@@ -74,6 +92,8 @@ def _tool(gmsh: Any, pin: Pin, cut: Cut, reach: float) -> list[Entity]:
         return [(3, occ.addCylinder(*low, *(2.0 * d for d in x), cut.diameter / 2))]
     if isinstance(cut, Hole | Passage):
         return [_turned(gmsh, cut.placed(pin, reach))]
+    if isinstance(cut, Recess):
+        return [_read_solid(gmsh, cut)]
     assert isinstance(cut, Flat | Slot)
     floor = cut.distance if isinstance(cut, Flat) else max(cut.floor(pin), -reach)
     half = reach if isinstance(cut, Flat) else cut.width / 2.0
@@ -83,6 +103,18 @@ def _tool(gmsh: Any, pin: Pin, cut: Cut, reach: float) -> list[Entity]:
         tool = _round_bottom(gmsh, tool, floor, cut)
     occ.rotate([tool], 0, 0, 0, 0, 0, 1, cut.angle)
     return [tool]
+
+
+def _read_solid(gmsh: Any, recess: Recess) -> Entity:
+    """The solid of a recess, at its place. Lengths are in its unit."""
+    occ = gmsh.model.occ
+    with tempfile.TemporaryDirectory() as folder, silence():
+        path = Path(folder) / "solid.brep"
+        path.write_text(recess.solid.text)
+        ((d, tag),) = occ.importShapes(str(path))
+    occ.rotate([(d, tag)], 0, 0, 0, 0, 0, 1, recess.spun)
+    occ.translate([(d, tag)], 0.0, 0.0, recess.at)
+    return int(d), int(tag)
 
 
 def _turned(gmsh: Any, placed: Placed) -> Entity:
@@ -199,7 +231,8 @@ def named_parts(
     # Cuts come last: the first of equal matches is chosen, and a shoulder in the plane of a flat's
     # end is the shoulder.
     for name, cut in cuts.items():
-        known += [((name, s.part), s.kind, s.off) for s in cut.surfaces(pin)]
+        if not isinstance(cut, Recess):
+            known += [((name, s.part), s.kind, s.off) for s in cut.surfaces(pin)]
     named: dict[tuple[str, str], list[int]] = {}
     for _, face in gmsh.model.getBoundary(gmsh.model.getEntities(3), oriented=False):
         points, kind = _points(gmsh, face), gmsh.model.getType(2, face)
@@ -208,6 +241,9 @@ def named_parts(
         ]
         best = int(np.argmin(deviations))
         if deviations[best] > MAX_CURVE_DEVIATION * size:
+            if part := _part_of_recess(cuts, points):
+                named.setdefault(part, []).append(int(face))
+                continue
             raise MeshError(
                 f"pin {pin.name}: face {face} of gmsh's solid matches no surface of the pin; look "
                 "for surfaces that just touch",
@@ -217,6 +253,19 @@ def named_parts(
     if whole:
         _require_all(pin, cuts, {name for name, _ in named})
     return named
+
+
+def _part_of_recess(cuts: Cuts, points: Floats) -> tuple[str, str] | None:
+    """The recess and its part to which a face with points (P, 3) belongs, or None."""
+    parts = [
+        (*cut.nearest_part(points), name, cut.width)
+        for name, cut in cuts.items()
+        if isinstance(cut, Recess)
+    ]
+    if not parts:
+        return None
+    distance, part, name, width = min(parts)
+    return (name, part) if distance < MAX_PART_DISTANCE * width else None
 
 
 def name_faces(parts: Parts, cuts: Cuts) -> dict[str, list[int]]:

@@ -12,6 +12,7 @@ from itertools import pairwise
 
 from geometry.shape.features import Cut
 from geometry.shape.pin import Pin
+from geometry.shape.recess import Recess
 
 MIN_DIMENSION = 1e-4  # m; far enough above their tolerances
 MAX_DIAMETER = 100.0  # m; up to which they compute volumes to 1e-6
@@ -24,14 +25,19 @@ def unit_of(pin: Pin) -> float:
 
 def unit_of_solid(pin: Pin, cuts: Iterable[Cut] = ()) -> float:
     """The unit (m) for the solid of a pin with cuts: 1 where its dimensions suit metres, else
-    `unit_of`, as for rounded mouths, of which OpenCASCADE makes every third in metres.
+    `unit_of`, as for rounded mouths, of which OpenCASCADE makes every third in metres. That of a
+    recess is its solid's.
     """
     small = [x for s in pin.segments for x in (s.length, *s.bores, *(w / 2 for w in s.walls))]
     small += [rounding.radius for rounding in pin.roundings]
     for left, right in pairwise(pin.segments):
         step, step_inside = left.diameters[1] - right.diameter, left.bores[1] - right.bore
         small += [abs(step) / 2, abs(step_inside) / 2]
-    for cut in cuts:
+    every = list(cuts)
+    for cut in every:
+        if isinstance(cut, Recess):
+            return cut.unit
+    for cut in every:
         if cut.undivided:
             return unit_of(pin)
         small += [cut.size, *(part.radius for part in cut.surfaces(pin))]

@@ -18,6 +18,7 @@ from geometry.shape.hole import Hole
 from geometry.shape.milled import Flat, Slot
 from geometry.shape.passage import Passage
 from geometry.shape.pin import Pin
+from geometry.shape.recess import Recess
 from pinbase.arrays import Floats
 
 CIRCLE_ANGLES = np.linspace(0.0, 2.0 * np.pi, 73)
@@ -44,6 +45,8 @@ def drawn(cut: Cut, pin: Pin) -> DrawnCut:
         return DrawnCut(tuple(_hole(cut, pin)))
     if isinstance(cut, Passage):
         return DrawnCut(tuple(_passage(cut, pin)))
+    if isinstance(cut, Recess):
+        return DrawnCut(tuple(_recess(cut)))
     assert isinstance(cut, Flat | Slot)
     z0, z1 = max(cut.z0, 0.0), min(cut.z1, pin.length)
     return _flat(cut, pin, z0, z1) if isinstance(cut, Flat) else _slot(cut, pin, z0, z1)
@@ -150,6 +153,12 @@ def _passage(passage: Passage, pin: Pin) -> list[tuple[Floats, bool]]:
         if tip != at:
             out.append((np.array([[at, x - a], [tip, x], [at, x + a]]), True))
     return out
+
+
+def _recess(recess: Recess) -> list[tuple[Floats, bool]]:
+    """The edges of a recess: its mouth, and those inside."""
+    mouth = [part for line in recess.lines(recess.solid.mouth) for part in _seen(line)]
+    return mouth + [part for line in recess.lines(recess.solid.inner) for part in _inside(line)]
 
 
 def _steps(pin: Pin, z0: float, z1: float) -> list[tuple[float, float, float]]:

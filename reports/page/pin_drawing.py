@@ -373,6 +373,8 @@ def cut_words(cut: CutShape) -> str:
             dimensions = f"{size} from the axis, {between},"
         case "slot":
             dimensions = f"{size} wide, {deep}, {between},"
+        case "recess":
+            dimensions = f"{size} wide, {between},"
         case _:
             aside = f"{drawn(cut.offset)} from the axis" if cut.offset else "on the axis"
             dimensions = f"⌀{size}, {deep}, {between}, {aside}"

@@ -19,8 +19,9 @@ from geometry.shape.band_cuts import is_inside
 # kind of cut. Tuned on contact of whole solids on the clevis of docs/lugs.md: at most 0.017 with a
 # flat and three through holes under the pressure of the eye and across it, the flat also without
 # clearance; 0.034 with three blind holes (the whole solids are right to 0.05). With six keyways,
-# whose walls part a cell under pressure, the solids have 0.03 to 0.18 more than ours.
-CUT_CONTACT_ERROR = {"flat": 0.03, "hole": 0.03, "slot": 0.25, "passage": 0.0}
+# whose walls part a cell under pressure, the solids have 0.03 to 0.18 more than ours. A recess
+# may be like these.
+CUT_CONTACT_ERROR = {"flat": 0.03, "hole": 0.03, "slot": 0.25, "passage": 0.0, "recess": 0.25}
 
 
 def cuts_in_lugs(cut: CutPin, lugs: Iterable[str]) -> dict[str, str]:

@@ -5,7 +5,7 @@ not known of the joint.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -105,9 +105,8 @@ class HeldContact:
             return model.pin
         whole = replace(cut, profile=model.whole)
         ringed = CutPin.of(model.pin, cut.cuts.values())
-        return RingedCutPin(
-            ringed.profile, ringed.holes, ringed.flats, ringed.slots, ringed.passages, whole=whole
-        )
+        made = {f.name: getattr(ringed, f.name) for f in fields(ringed)}
+        return RingedCutPin(**made, whole=whole)
 
     def start(self, case: str) -> PinLoads:
         """The pressures at the instants from which their patterns are made."""

@@ -13,7 +13,7 @@ from assess.diameter_law import section_exponent
 from assess.margin import PinMargin
 from fea.core.peak import Maximum
 from fea.support.records import JointResult
-from geometry import Cut, Flat, Hole, Passage, PinLike, Slot
+from geometry import Cut, Flat, Hole, Passage, PinLike, Recess, Slot
 from geometry.shape.cut_edges import drawn
 from pinbase.records import in_units
 from pinstress.analysis.assessed.situations import factor_assumption
@@ -335,7 +335,7 @@ def cut_shapes(pin: PinLike) -> Iterator[CutShape]:
 
 
 def _cut_ends(cut: Cut) -> tuple[float, float]:
-    assert isinstance(cut, Flat | Slot | Passage)
+    assert isinstance(cut, Flat | Slot | Passage | Recess)
     return cut.z0, cut.z1
 
 
@@ -347,5 +347,7 @@ def _cut_sizes(cut: Cut) -> tuple[float, float, float | None]:
         return cut.width, 0.0, cut.depth
     if isinstance(cut, Hole):
         return cut.diameter, cut.offset, cut.depth
+    if isinstance(cut, Recess):
+        return cut.width, 0.0, None
     assert isinstance(cut, Passage)
     return cut.diameter, cut.offset, None if cut.mouth == "both" else cut.z1 - cut.z0

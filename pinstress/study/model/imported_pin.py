@@ -23,7 +23,7 @@ from pinbase.platform import portable
 from pinbase.processes.limits import MB, Limits
 from pinbase.processes.pool import Job, ProcessDied, Tell, can_fork, in_parallel
 
-CUT_KINDS = "hole", "flat", "slot", "passage"
+CUT_KINDS = "hole", "flat", "slot", "passage", "recess"
 MAX_BODY_SIZE = 1024 * MB
 MAX_READER_MEMORY = 4096 * MB
 
@@ -115,7 +115,8 @@ def _profiled(file: BodyFile, recognised: RecognisedProfile, clamps: set[str]) -
         (len(profile.segments), "segment"),
         *((sum(c.what == kind for c in recognised.cuts), kind) for kind in CUT_KINDS),
     )
-    parts = ", ".join(f"{n} {what}{'s' * (n > 1)}" for n, what in counted if n)
+    ending = {"recess": "es"}
+    parts = ", ".join(f"{n} {what}{ending.get(what, 's') * (n > 1)}" for n, what in counted if n)
     source = f"{file.path.name} is taken as a profile: {parts}{_axes(recognised)}"
     profile = replace(profile, source=source)
     return replace(pin, profile=profile) if recognised.cuts else profile

@@ -15,6 +15,7 @@ from geometry import (
     Hole,
     Passage,
     Pin,
+    Recess,
     Segment,
     Slot,
 )
@@ -53,10 +54,14 @@ def imported_text(path: Path, name: str | None, unit: str, material: str) -> str
                 f"{path.name} is not a CAD file (STEP, BREP, IGES) whose faces could be recognised",
                 "not-cad",
             )
-        return _text(file, turned_apart(file), unit, material)
+        profile = turned_apart(file)
+        if any(isinstance(cut, Recess) for cut in profile.cuts):
+            why = "some of its faces are of no hole, flat, slot or passage"
+            raise NotTurnedError(file.name, path.name, why)
+        return _text(file, profile, unit, material)
     except NotTurnedError as error:
         raise InputError(
-            f"{error}; it can be used as a solid: geometry = {json.dumps(path.name)}",
+            f"{error}; it can be used as it is: geometry = {json.dumps(path.name)}",
             code=error.code,
         ) from None
     except GeometryError as error:

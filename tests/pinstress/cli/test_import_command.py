@@ -23,9 +23,9 @@ from tests.geometry.test_recognise import (
     Change,
     _as_drawn,
     _box,
-    _turn,
     same_outline,
     step,
+    turn,
 )
 from tests.support.described import describe
 from tests.support.errors import raises
@@ -76,7 +76,7 @@ def test_what_is_written_is_the_same_pin(
 
 
 @pytest.mark.usefixtures("read_here")
-@pytest.mark.parametrize("change", [_as_drawn, _turn])
+@pytest.mark.parametrize("change", [_as_drawn, turn])
 def test_holes_and_flats_are_written(
     change: Change, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -1,0 +1,196 @@
+"""The solids by which a body is less than the profile of its faces of revolution."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from geometry.imported.recognised_cuts import CutFaces
+from geometry.imported.sampled_face import SampledFace, sampled_face
+from geometry.imported.solid_volume import solid_volume
+from geometry.mesh.cut_pin import CutPin
+from geometry.mesh.cut_solid import BOOLEAN_TOLERANCE, Entity, cut_solid
+from geometry.mesh.gmsh_session import MeshError, gmsh_model, silence
+from geometry.mesh.revolve import revolve
+from geometry.shape.band import GeometryError
+from geometry.shape.features import Cut
+from geometry.shape.pin import Pin
+from geometry.shape.profile import meridian, off_edge
+from geometry.shape.recess import Line, Recess, RemovedFace, RemovedSolid, is_on_outside, of_solid
+from pinbase.arrays import Floats
+
+ON_PROFILE = 1e-5  # of the pin's size: points this close to its outline are on it
+FACE_FRACTIONS = np.linspace(0.0, 1.0, 17)
+EDGE_FRACTIONS = np.linspace(0.0, 1.0, 49)
+LEAST_VOLUME = 1e-8  # of the pin's: smaller solids are left by round-off
+KNOWN_VOLUME = 1e-4  # of a removed solid: cuts that remove as much are it
+PROBE = 0.05  # of a radius of curvature, at which it is seen on which side its centre is
+FLAT_CURVATURE = 1e-4  # times the pin's size, of a plane
+
+
+@dataclass(frozen=True)
+class Removed:
+    """A removed solid. Lengths are in the file's unit.
+
+    faces: those of its faces that are within the profile.
+    """
+
+    recess: Recess
+    faces: Sequence[SampledFace]
+    volume: float
+
+    def cuts(self, pin: Pin, size: float) -> tuple[Cut, ...]:
+        """The known cuts that remove it from a profile, else the recess. size: of the body."""
+        try:
+            cuts = CutFaces(self.faces, size).cuts(pin)
+            with gmsh_model(pin.name) as gmsh:
+                left = cut_solid(gmsh, pin, CutPin.of(pin, cuts).cuts)
+                removed = sum(solid_volume(gmsh, e) for e in _lacking(gmsh, left, pin))
+        except (ValueError, MeshError):  # GeometryError is a ValueError
+            return (self.recess,)
+        known = abs(removed - self.volume) < KNOWN_VOLUME * self.volume
+        return cuts if known else (self.recess,)
+
+
+def removed_solids(gmsh: Any, body: Entity, pin: Pin) -> list[Removed]:
+    """The solids that a profile has more than a body in gmsh's model, whose axes it has.
+
+    Raises: GeometryError where the body is not within the profile.
+    """
+    volume = solid_volume(gmsh, body)
+    solids = _lacking(gmsh, body, pin)
+    out = [_removed(gmsh, solid, pin) for solid in solids]
+    if abs(pin.volume - sum(r.volume for r in out) - volume) > ON_PROFILE * volume:
+        raise GeometryError("a part of it stands out of its faces of revolution", "stands-out")
+    return [
+        replace(r, recess=replace(r.recess, solid=replace(r.recess.solid, text=text)))
+        for r, text in zip(out, _texts(gmsh, solids), strict=True)
+    ]
+
+
+def _lacking(gmsh: Any, body: Entity, pin: Pin) -> list[Entity]:
+    """What a body in gmsh's model, which is lost, lacks of a profile."""
+    occ = gmsh.model.occ
+    gmsh.model.mesh.clear()
+    gmsh.option.setNumber("Geometry.ToleranceBoolean", BOOLEAN_TOLERANCE * pin.length)
+    left, _ = occ.cut([revolve(gmsh, meridian(pin))], [body])
+    occ.synchronize()
+    return [(d, t) for d, t in left if occ.getMass(d, t) > LEAST_VOLUME * pin.volume]
+
+
+def _removed(gmsh: Any, solid: Entity, pin: Pin) -> Removed:
+    """A removed solid in gmsh's model."""
+    edges, near = meridian(pin), ON_PROFILE * max(pin.length, pin.largest_diameter)
+    off = [off_edge(edge) for edge in edges]
+    mouth, inner, seen = list[Line](), list[Line](), set[int]()
+    faces, sampled = list[RemovedFace](), list[SampledFace]()
+    for _, tag in gmsh.model.getBoundary([solid], oriented=False):
+        x = _points(gmsh, tag)
+        r = np.hypot(x[:, 0], x[:, 1])
+        if min(float(f(r, x[:, 2]).max()) for f in off) < near:
+            continue
+        radius = _rounding(gmsh, solid, tag, x, pin)
+        faces.append(_face(f"{'fillet' if radius else 'face'} {len(faces) + 1}", radius, x))
+        sampled.append(sampled_face(gmsh, tag, f"face {tag}"))
+        for _, curve in gmsh.model.getBoundary([(2, tag)], combined=False, oriented=False):
+            if curve not in seen:
+                seen.add(curve)
+                points = _along(gmsh, curve)
+                line = tuple((a, b, c) for a, b, c in points.tolist())
+                (mouth if is_on_outside(pin, points) else inner).append(line)
+    every = [p for line in (*mouth, *inner) for p in line]
+    open_end = max(p[2] for p in every) > pin.length - near
+    removed = RemovedSolid("", tuple(faces), tuple(mouth), tuple(inner), open_end)
+    return Removed(of_solid(removed, _width(removed)), sampled, solid_volume(gmsh, solid))
+
+
+def _texts(gmsh: Any, solids: Sequence[Entity]) -> list[str]:
+    """The solids of gmsh's model, each in OpenCASCADE's BREP format. It leaves another model."""
+    middles = [gmsh.model.occ.getCenterOfMass(*solid) for solid in solids]
+    out = []
+    with tempfile.TemporaryDirectory() as folder:
+        every, path = Path(folder) / "all.brep", Path(folder) / "solid.brep"
+        gmsh.write(str(every))
+        for middle in middles:
+            gmsh.model.add("solid")  # gmsh writes whole models
+            occ = gmsh.model.occ
+            with silence():
+                read = occ.importShapes(str(every))
+            far = [math.dist(occ.getCenterOfMass(*entity), middle) for entity in read]
+            kept = int(np.argmin(far))
+            occ.remove([e for k, e in enumerate(read) if k != kept], recursive=True)
+            occ.synchronize()
+            gmsh.write(str(path))
+            out.append(path.read_text())
+    return out
+
+
+def _points(gmsh: Any, face: int) -> Floats:
+    """Points on a face and its edges, (P, 3)."""
+    model = gmsh.model
+    low, high = model.getParametrizationBounds(2, face)
+    u, v = (a + FACE_FRACTIONS * (b - a) for a, b in zip(low, high, strict=True))
+    at = np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
+    on = [p for p in at.tolist() if model.isInside(2, face, p, parametric=True)]
+    curves = model.getBoundary([(2, face)], combined=False, oriented=False)
+    inside = np.reshape(model.getValue(2, face, np.ravel(on)), (-1, 3)) if on else np.zeros((0, 3))
+    return np.concatenate([inside, *(_along(gmsh, curve) for _, curve in curves)])
+
+
+def _along(gmsh: Any, curve: int) -> Floats:
+    """Points along a curve, (P, 3)."""
+    (low,), (high,) = gmsh.model.getParametrizationBounds(1, curve)
+    at = low + EDGE_FRACTIONS * (high - low)
+    return np.reshape(gmsh.model.getValue(1, curve, at), (-1, 3))
+
+
+def _face(part: str, radius: float, x: Floats) -> RemovedFace:
+    """A face by points (P, 3) on it."""
+    distance = np.asarray(KDTree(x).query(x, min(5, len(x)))[0])
+    points = tuple((a, b, c) for a, b, c in x.tolist())
+    return RemovedFace(part, radius, points, float(distance[:, -1].max()))
+
+
+def _rounding(gmsh: Any, solid: Entity, face: int, x: Floats, pin: Pin) -> float:
+    """The least radius of an inner corner of the pin that a face rounds; 0 where it rounds none.
+
+    x: points on it. Its centres of curvature are then on the side of the removed solid.
+    """
+    model, size = gmsh.model, pin.largest_diameter
+    at = model.getParametrization(2, face, x.ravel())
+    most, least, along, across = model.getPrincipalCurvatures(face, at)
+    k = np.stack([most, least], axis=1)
+    radii = []
+    for column, directions in enumerate((along, across)):
+        for row in np.argsort(-np.abs(k[:, column])).tolist():
+            curvature = abs(float(k[row, column]))
+            if not FLAT_CURVATURE < curvature * size < math.inf:
+                continue
+            # A step along a curved direction leaves the surface, away from its centre. (Curvatures
+            # at poles of splines are wrong.)
+            step = PROBE / curvature
+            beside = x[row] + step * np.reshape(directions, (-1, 3))[row]
+            back = np.reshape(model.getClosestPoint(2, face, beside)[0], 3) - beside
+            length = float(np.linalg.norm(back))
+            if abs(length - 0.5 * PROBE * step) < PROBE * step / 6.0:
+                if model.isInside(*solid, (x[row] + step / length * back).tolist()):
+                    radii.append(1.0 / curvature)
+                break
+    return min(radii, default=0.0)
+
+
+def _width(solid: RemovedSolid) -> float:
+    """The size of a removed solid across: of its three extents the second, or twice the least."""
+    x = np.array([p for line in (*solid.mouth, *solid.inner) for p in line])
+    x = np.concatenate([x, *(np.array(face.points) for face in solid.faces)])
+    x = x - x.mean(axis=0)
+    axes = np.linalg.svd(x, full_matrices=False)[2]
+    _, second, least = sorted(np.ptp(x @ axes.T, axis=0), reverse=True)
+    return float(min(second, 2.0 * least))
