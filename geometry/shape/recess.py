@@ -6,15 +6,17 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, Self
+from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from geometry.shape.features import Cut, Off, SmoothPart, outer_radius
 from geometry.shape.pin import Pin
 from pinbase.arrays import Floats, Mask
 from pinbase.errors import Place
+
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
 
 Line = tuple[tuple[float, float, float], ...]  # points, in the unit of the removed solid
 
@@ -38,6 +40,8 @@ class RemovedFace:
 
     @cached_property
     def _tree(self) -> KDTree:
+        from scipy.spatial import KDTree  # which pins without recesses do not wait for
+
         return KDTree(np.array(self.points))
 
     def distance(self, x: Floats) -> Floats:
