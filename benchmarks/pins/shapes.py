@@ -52,9 +52,9 @@ def shapes() -> str:
             _study(folder / "profile.toml", f"meridian = {_corners(pin)}")
             _study(folder / "cad.toml", 'geometry = "pin.step"')
             rows += [
-                _row(name, "`meridian`", folder / "profile.toml", RUNS),
-                _row(name, "CAD file", folder / "cad.toml", RUNS),
-                _row(name, "solid (`--model solid`)", folder / "cad.toml", 1, "--model", "solid"),
+                row(name, "`meridian`", folder / "profile.toml", RUNS),
+                row(name, "CAD file", folder / "cad.toml", RUNS),
+                row(name, "solid (`--model solid`)", folder / "cad.toml", 1, "--model", "solid"),
             ]
     head = ("shape", "given as", "command, s", "model", "largest stress, MPa", "±, MPa", "verdict")
     return (
@@ -82,7 +82,7 @@ def _study(path: Path, shape: str) -> None:
     path.write_text(STUDY.format(shape=f"{shape}\n{bands}"))
 
 
-def _row(shape: str, given: str, study: Path, runs: int, *more: str) -> tuple[str, ...]:
+def row(shape: str, given: str, study: Path, runs: int, *more: str) -> tuple[str, ...]:
     out, spent = study.with_suffix(""), []
     for _ in range(runs):
         start = time.perf_counter()

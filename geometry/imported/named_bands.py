@@ -8,8 +8,7 @@ import numpy as np
 from skfem import ElementTetP2, FacetBasis, MeshTet2
 
 from geometry.imported.body_file import BodyFile, Place
-from geometry.shape.band import Band, GeometryError
-from geometry.shape.pin import END_FACES
+from geometry.shape.band import END_FACES, Band, GeometryError
 from pinbase.arrays import Floats, Ints, Mask
 
 MIN_OUTWARD_COSINE = 0.5  # between normal and radius, of a facet of an outer surface

@@ -274,7 +274,7 @@ def _with_recesses(
         cuts = tuple(cut for one in removed for cut in one.cuts(pin, size))
         assert CutPin.of(pin, cuts).volume > 0.0
     except GeometryError as other:
-        why = f"{error.why}; {other}" if other.code == "stands-out" else error.why
+        why = str(other) if other.code == "stands-out" else error.why
         raise _not_turned(file, why) from None
     except MeshError:
         raise error from None

@@ -19,7 +19,7 @@ from geometry.mesh.cut_pin import CutPin
 from geometry.mesh.cut_solid import BOOLEAN_TOLERANCE, Entity, cut_solid
 from geometry.mesh.gmsh_session import MeshError, gmsh_model, silence
 from geometry.mesh.revolve import revolve
-from geometry.shape.band import GeometryError
+from geometry.shape.band import END_FACES, GeometryError
 from geometry.shape.features import Cut
 from geometry.shape.pin import Pin
 from geometry.shape.profile import meridian, off_edge
@@ -29,6 +29,7 @@ from pinbase.arrays import Floats
 ON_PROFILE = 1e-5  # of the pin's size: points this close to its outline are on it
 FACE_FRACTIONS = np.linspace(0.0, 1.0, 17)
 EDGE_FRACTIONS = np.linspace(0.0, 1.0, 49)
+MAX_SOLIDS = 40  # each takes up to half a second of those in which a file must be read
 LEAST_VOLUME = 1e-8  # of the pin's: smaller solids are left by round-off
 KNOWN_VOLUME = 1e-4  # of a removed solid: cuts that remove as much are it
 PROBE = 0.05  # of a radius of curvature, at which it is seen on which side its centre is
@@ -62,10 +63,12 @@ class Removed:
 def removed_solids(gmsh: Any, body: Entity, pin: Pin) -> list[Removed]:
     """The solids that a profile has more than a body in gmsh's model, whose axes it has.
 
-    Raises: GeometryError where the body is not within the profile.
+    Raises: GeometryError where the body is not within the profile, or lacks too many solids of it.
     """
     volume = solid_volume(gmsh, body)
     solids = _lacking(gmsh, body, pin)
+    if len(solids) > MAX_SOLIDS:
+        raise GeometryError(f"{len(solids)} solids are removed from it", "too-many-recesses")
     out = [_removed(gmsh, solid, pin) for solid in solids]
     if abs(pin.volume - sum(r.volume for r in out) - volume) > ON_PROFILE * volume:
         raise GeometryError("a part of it stands out of its faces of revolution", "stands-out")
@@ -106,8 +109,10 @@ def _removed(gmsh: Any, solid: Entity, pin: Pin) -> Removed:
                 line = tuple((a, b, c) for a, b, c in points.tolist())
                 (mouth if is_on_outside(pin, points) else inner).append(line)
     every = [p for line in (*mouth, *inner) for p in line]
-    open_end = max(p[2] for p in every) > pin.length - near
-    removed = RemovedSolid("", tuple(faces), tuple(mouth), tuple(inner), open_end)
+    z = [p[2] for p in every]
+    cut = min(z) < near, max(z) > pin.length - near
+    ends = tuple(name for name, is_cut in zip(END_FACES, cut, strict=True) if is_cut)
+    removed = RemovedSolid("", tuple(faces), tuple(mouth), tuple(inner), ends)
     return Removed(of_solid(removed, _width(removed)), sampled, solid_volume(gmsh, solid))
 
 

@@ -55,14 +55,14 @@ class RemovedSolid:
 
     text: the solid in OpenCASCADE's BREP format.
     mouth: the lines in which its faces meet the outer surface. inner: their other edges.
-    open_end: whether it goes on to the end face of the profile.
+    ends: names of the end faces of the profile that it cuts.
     """
 
     text: str
     faces: tuple[RemovedFace, ...]
     mouth: tuple[Line, ...]
     inner: tuple[Line, ...]
-    open_end: bool
+    ends: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -96,6 +96,11 @@ class Recess(Cut):
     def size(self) -> float:
         """The width, m."""
         return self.width
+
+    @property
+    def faces(self) -> tuple[str, ...]:
+        """Names of the end faces that it cuts."""
+        return self.solid.ends
 
     def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
         """The smooth parts of its surface; distances from them are approximate."""
@@ -167,7 +172,7 @@ class Recess(Cut):
             for part in (slice(None, -1), slice(1, None))
         )
         angles = [np.arctan2(p[:, 1], p[:, 0]) for p in (local, first, last)]
-        way = -1.0 if self.solid.open_end else 1.0
+        way = -1.0 if "end" in self.solid.ends else 1.0
         for rows in np.array_split(np.arange(len(x)), len(x) // POINTS_AT_ONCE + 1):
             here = angles[0][rows, None]
             # From -pi to pi about each point, so that a line behind it goes from one to the other.

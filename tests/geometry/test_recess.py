@@ -84,6 +84,15 @@ def test_grooves_with_slanted_walls_are_recesses(tmp_path: Path) -> None:
     assert [cut.what for cut in found.cuts] == 8 * ["recess"]
 
 
+def test_a_body_that_lacks_too_many_is_a_solid(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Reading a file has its limit of time."""
+    monkeypatch.setattr("geometry.imported.removed_solids.MAX_SOLIDS", 0)
+    with raises(NotTurnedError, "not-turned", "face"):
+        recognised_profile(step(PROFILES["sharp"], tmp_path / "pin.step", _pocket))
+
+
 def test_a_boss_is_none(tmp_path: Path) -> None:
     def boss(gmsh: Any, solid: int) -> None:
         cylinder = gmsh.model.occ.addCylinder(0, 0, 40, 0, 14, 0, 4)

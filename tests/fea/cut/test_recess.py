@@ -8,10 +8,11 @@ import pytest
 
 from fea.cut.inner_corners import inner_corners
 from fea.cut.local_model import LocalModel
-from fea.cut.region import pieces
+from fea.cut.region import pieces, refusal
 from geometry import Bottom, CutPin, Hole, Slot
 from geometry.mesh.cut_piece import piece_mesh
 from tests.fea.cut.test_cut_kinds import HOLE, MIDDLE, STEEL, bent, cut, solved, von_mises
+from tests.support.pins.plain_pins import SHAFT
 from tests.support.pins.recesses import as_recesses
 
 BLIND = replace(HOLE, angle=0.0, depth=0.006, bottom=Bottom(3.0, 0.001))
@@ -37,9 +38,14 @@ def test_its_sharp_corners_are_found() -> None:
     assert "a radius" in corner.singularity.advice
 
 
-def test_one_that_opens_under_a_clamp_is_refused() -> None:
-    from fea.cut.region import refusal
+def test_one_in_a_loaded_end_face_is_refused() -> None:
+    pin = as_recesses(cut(replace(KEYWAY, z0=SHAFT.length - 0.01, z1=SHAFT.length, radius=0.0)))
+    reason = refusal(pin, (), ("end",))
+    assert reason is not None
+    assert reason.codes == ("recess-in-loaded",)
 
+
+def test_one_that_opens_under_a_clamp_is_refused() -> None:
     pin = as_recesses(CutPin.of(cut(BLIND).profile, [replace(BLIND, z=MIDDLE)]))
     band = next(b.name for b in pin.profile.bands if b.z0 < MIDDLE < b.z1)
     reason = refusal(pin, (band,), ())
