@@ -117,8 +117,8 @@ def recognised_profile(file: BodyFile) -> RecognisedProfile:
         profile = replace(shaft, cuts=tuple(c.rounded(digits) for c in cuts)).scaled(file.unit)
         _require_volume(file, profile, volume)
     except NotTurnedError as error:
-        found = _with_recesses(file, shaft, axis, size, error)
-        rounded = (c if isinstance(c, Recess) else c.rounded(digits) for c in found)
+        all_cuts = _with_recesses(file, shaft, axis, size, error)
+        rounded = (c if isinstance(c, Recess) else c.rounded(digits) for c in all_cuts)
         profile = replace(shaft, cuts=tuple(rounded)).scaled(file.unit)
     return profile
 

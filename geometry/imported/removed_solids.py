@@ -79,7 +79,7 @@ def removed_solids(gmsh: Any, body: Entity, pin: Pin) -> list[Removed]:
 
 
 def _lacking(gmsh: Any, body: Entity, pin: Pin) -> list[Entity]:
-    """What a body in gmsh's model, which is lost, lacks of a profile."""
+    """The part of a profile that a body in gmsh's model, which is lost, lacks."""
     occ = gmsh.model.occ
     gmsh.model.mesh.clear()
     gmsh.option.setNumber("Geometry.ToleranceBoolean", BOOLEAN_TOLERANCE * pin.length)

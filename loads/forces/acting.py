@@ -23,7 +23,7 @@ SWITCH_TIME_TOLERANCE = 1e-12  # relative: an instant this close to a switch coi
 MIN_POINT_DISTANCE = 1e-12  # of the length scale: points this close have no line between them
 MAX_PARTICLE_ARM = 1e-4  # of the length scale: a force that passes a particle so near acts at it
 
-M = TypeVar("M", bound=Instants[Any])
+Timed = TypeVar("Timed", bound=Instants[Any])
 
 
 @dataclass(frozen=True)
@@ -60,19 +60,19 @@ def acts(times: Floats, begin: float, end: float) -> Mask:
 
 
 @dataclass(frozen=True)
-class Varying(Generic[M]):
+class Varying(Generic[Timed]):
     """A factor tabulated over a measure."""
 
-    measure: Measure[M]
+    measure: Measure[Timed]
     curve: ForceTable
 
     @property
-    def kinks(self) -> tuple[Kinks[M], ...]:
+    def kinks(self) -> tuple[Kinks[Timed], ...]:
         """The rows of the table."""
         return (Kinks(self.measure, self.curve),)
 
 
-def factor(motion: M, times: Varying[M] | None, begin: float, end: float) -> Floats:
+def factor(motion: Timed, times: Varying[Timed] | None, begin: float, end: float) -> Floats:
     """Factor of a load at every instant, (T,); at a switch that just before it.
 
     times: its table; None: 1.
@@ -163,7 +163,7 @@ class ForceLaw:
             out = out + self.table(x)
         return out if self.damper is None else out + self.damper(rate)
 
-    def kinks(self, measure: Measure[M]) -> tuple[Kinks[M], ...]:
+    def kinks(self, measure: Measure[Timed]) -> tuple[Kinks[Timed], ...]:
         """The rows of the tables, as values of `measure`."""
         tables = ((self.table, False), (self.damper, True))
         return tuple(Kinks(measure, curve, rate) for curve, rate in tables if curve is not None)

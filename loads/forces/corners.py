@@ -24,28 +24,28 @@ class Rubbing(Protocol):
         ...
 
 
-M = TypeVar("M")
+AnyMotion = TypeVar("AnyMotion")
 R = TypeVar("R", bound=Rubbing)
-K = TypeVar("K", covariant=True)
+KinksOf = TypeVar("KinksOf", covariant=True)
 
 
 @dataclass(frozen=True)
-class Kinks(Generic[M]):
+class Kinks(Generic[AnyMotion]):
     """Values of a measure at which a force is not smooth, the knots of a curve.
 
     rate: whether they are values of the measure's rate instead.
     """
 
-    measure: Measure[M]
+    measure: Measure[AnyMotion]
     curve: ForceTable
     rate: bool = False
 
 
-class Unsmooth(Protocol[K]):
-    """A load: what this module asks of it. K: its kinks."""
+class Unsmooth(Protocol[KinksOf]):
+    """A load: what this module asks of it. KinksOf: its kinks."""
 
     @property
-    def kinks(self) -> tuple[K, ...]:
+    def kinks(self) -> tuple[KinksOf, ...]:
         """The values of its measures at which the load is not smooth."""
         ...
 

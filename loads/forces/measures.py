@@ -12,13 +12,13 @@ from loads.motion.complex_points import number
 from loads.motion.motion import Instants, Motion
 from pinbase.arrays import Floats
 
-M = TypeVar("M", contravariant=True)  # a Motion or SpaceMotion
+AnyMotion = TypeVar("AnyMotion", contravariant=True)  # a Motion or SpaceMotion
 
 
-class Measure(Protocol[M]):
+class Measure(Protocol[AnyMotion]):
     """A quantity of a motion; called, it gives value and rate at every instant, (T,) each, SI."""
 
-    def __call__(self, motion: M) -> tuple[Floats, Floats]: ...
+    def __call__(self, motion: AnyMotion) -> tuple[Floats, Floats]: ...
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ MEAN_ROUND_OFF = 1e-8  # of the largest: a mean below it is zero
 AGREEMENT_TOLERANCE = 1e-5
 
 Angles = dict[tuple[str, str], Floats]
-M = TypeVar("M", bound=Instants[Any])
+Timed = TypeVar("Timed", bound=Instants[Any])
 
 
 @dataclass(frozen=True)
@@ -287,10 +287,10 @@ def efforts(
 
 
 def lowest_angles(
-    course: Followed[M],
+    course: Followed[Timed],
     times: Floats,
-    angles: Callable[[M], Angles],
-    condition: Callable[[M], Floats] | None = None,
+    angles: Callable[[Timed], Angles],
+    condition: Callable[[Timed], Floats] | None = None,
 ) -> tuple[dict[tuple[str, str], Extremum], Extremum | None]:
     """Smallest transmission angles by link and joint, and the largest condition number.
 
@@ -303,7 +303,7 @@ def lowest_angles(
     if not keys and condition is None:
         return {}, None
 
-    def columns(motion: M) -> Floats:
+    def columns(motion: Timed) -> Floats:
         """Squared sines, which have no kinks, and the reciprocal of the condition number."""
         known = angles(motion)
         best = np.full(len(motion), 0.5 * np.pi)  # where a link has no transmission angle

@@ -50,7 +50,9 @@ class Flanks:
 
 @dataclass(frozen=True)
 class _Place:
-    """Where teeth meet: the pitch point (m), the directions t, l and n, as drawn, (3,) each."""
+    """The place where teeth meet: the pitch point, m, and the directions t, l and n, as drawn, (3,)
+    each.
+    """
 
     at: Floats
     along: Floats

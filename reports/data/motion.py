@@ -120,8 +120,8 @@ class AppliedForce:
 
 @dataclass(frozen=True)
 class Posture:
-    """How well the links of a linkage transmit in one case, at T instants (one, without time, when
-    it is at rest).
+    """The transmission of the links of a linkage in one case, at T instants (one, without time,
+    when it is at rest).
 
     transmission: by link and joint, (T,) degrees; 90 is best, 0 is a dead point.
     extremes: over the motion, between the instants too; None: over the instants alone.

@@ -234,7 +234,7 @@ class Results:
 
     @property
     def postures(self) -> tuple[LinkageMotion | SpacePosture, ...]:
-        """How well every linkage transmits, planar or in space."""
+        """The transmission of every linkage, planar or in space."""
         return (*self.motion, *self.space_postures)
 
     @property

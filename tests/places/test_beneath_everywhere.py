@@ -80,7 +80,8 @@ def test_a_run(folder: Path) -> None:
     assert found["max_von_mises"] + found["error_estimate"] < permitted
     assert below["beneath"] > permitted
     assert found["outcome"] == "depends"
-    assert [x["over"] for x in found["depends_on"]] == ["beneath"]
+    assert [x["over"] for x in found["depends_on"]] == ["beneath", "joint"]
+    assert found["depends_on"][1]["what"] == "together"
     written = json.loads((folder / "run" / "results.json").read_text())
     assert "not beneath contact" in written["headline"]["sentence"]
     assert written["headline"]["depends"] == ["P"]

@@ -249,10 +249,10 @@ ThermalExpansion = Annotated[
 TiltStiffness = Annotated[Annotated[float, Quantity("torsional stiffness")], POSITIVE]
 
 LENGTHS_OF_DIRECTIONS = (1e-6, 1e6)  # beyond, their squares may overflow, or pass for zero
-V = TypeVar("V", bound="Sequence[float]")
+SpaceDirection = TypeVar("SpaceDirection", bound="Sequence[float]")
 
 
-def of_usual_length(direction: V) -> V:
+def of_usual_length(direction: SpaceDirection) -> SpaceDirection:
     """Return a direction, whose length does not matter, divided by its largest component where that
     is extremely small or large; a zero vector as it is.
     """

@@ -74,7 +74,7 @@ def pushed(structure: Linkage, body: str, at: Point, force: Point) -> Dynamics:
 
 
 def force(solved: Dynamics, connection: str) -> Point:
-    """What a body does to a pin, N."""
+    """The force of a body on a pin, N."""
     k = solved.reactions.connections.index(connection)
     x, y, _ = solved.reactions.forces[0, k]
     return float(x), float(y)

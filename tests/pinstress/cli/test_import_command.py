@@ -184,7 +184,7 @@ def test_a_run_takes_a_lying_body_in_its_own_axes(tmp_path: Path) -> None:
     [
         (USED.replace("[45, 60]", "[10, 30]"), _as_drawn, "band B is not on one cylinder"),
         (USED.replace('["start"]', '["face 3"]'), _as_drawn, "has no surface 'face 3'"),
-        (USED, _box, "as a profile with cuts it is impossible"),
+        (USED, _box, "a part of it stands out of its faces of revolution"),
     ],
 )
 def test_otherwise_it_is_a_solid_and_says_why(
