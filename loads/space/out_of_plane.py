@@ -31,6 +31,7 @@ from loads.space.stiffness import (
     LinkStiffness,
     cantilever,
     complete,
+    load_sizes,
     variations,
     worst_groups,
 )
@@ -294,17 +295,10 @@ def over_stiffness(balance: OutOfPlane, links: Links, ratio: float) -> dict[str,
         text: balance.reactions(Links(each))
         for text, each in variations(known, loose, ratio).items()
     }
-    loads = {text: _sizes(reactions) for text, reactions in out.items()}
+    loads = {text: load_sizes(r.forces, r.moments[..., :2]) for text, r in out.items()}
     for text, each in worst_groups(known, loose, ratio, loads).items():
         out[text] = balance.reactions(Links(each))
     return out
-
-
-def _sizes(reactions: Reactions) -> Floats:
-    """The largest force and moment across the pin of each connection, (2 C,)."""
-    across = reactions.moments[..., :2]
-    sizes = (np.linalg.norm(x, axis=-1).max(axis=0) for x in (reactions.forces, across))
-    return np.concatenate(list(sizes))
 
 
 def _raised(force: Complex, z: Floats | float) -> Floats:

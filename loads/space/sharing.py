@@ -21,7 +21,14 @@ from loads.linkage.parts import GROUND
 from loads.space.equations import SpaceEquations
 from loads.space.linkage import SpaceLinkage
 from loads.space.pose import SpacePose
-from loads.space.stiffness import LinkStiffness, cantilever, complete, variations, worst_groups
+from loads.space.stiffness import (
+    LinkStiffness,
+    cantilever,
+    complete,
+    load_sizes,
+    variations,
+    worst_groups,
+)
 from pinbase.arrays import Floats
 
 STIFFNESS_RATIO = 10.0  # of a link whose stiffness is not stated, up and down
@@ -68,12 +75,7 @@ def groups(
 
     reactions: of each of `others`, by its text.
     """
-    loads = {
-        text: np.concatenate(
-            [np.linalg.norm(x, axis=-1).max(axis=0) for x in (r.forces, r.moments)]
-        )
-        for text, r in reactions.items()
-    }
+    loads = {text: load_sizes(r.forces, r.moments) for text, r in reactions.items()}
     loose = unstated(linkage, stressed)
     each = worst_groups(stiffness_of(linkage), loose, STIFFNESS_RATIO, loads)
     return {text: replace(linkage, stiffness=stiffness) for text, stiffness in each.items()}

@@ -151,6 +151,15 @@ def _ends(ratio: float) -> tuple[tuple[float, str], ...]:
     return (ratio, f"{ratio:g} times stiffer"), (1.0 / ratio, f"{ratio:g} times more flexible")
 
 
+def load_sizes(forces: Floats, moments: Floats) -> Floats:
+    """The largest force, then moment, of each of C connections over all instants, (2 C,).
+
+    forces, moments: (T, C, components).
+    """
+    sizes = [np.linalg.norm(x, axis=-1).max(axis=0) for x in (forces, moments)]
+    return np.concatenate(sizes)
+
+
 def worst_groups(
     known: Mapping[str, LinkStiffness],
     loose: Sequence[str],
