@@ -113,13 +113,15 @@ def _moved(
     fields: MeridianFields, loads: PinLoads, rows: Ints, instant: int, angles: Floats
 ) -> Floats:
     """Displacements (P, 3) along r, theta, z at rows on all meridians."""
-    amounts: dict[tuple[int, int], Floats] = {}  # of every harmonic and phase
+    amounts: dict[tuple[int, int], Floats] = {}  # of every harmonic and phase, (P, 3)
     for load, both in loads.coefficients().items():
         unit = fields.displacement[rows, :, fields.loads.index(load)]
         for phase, amount in enumerate(both[instant]):
             amounts[load.n, phase] = amounts.get((load.n, phase), 0.0) + amount * unit
-    out = np.zeros((len(rows), len(angles), 3))
-    for (n, phase), u in amounts.items():
-        psi = n * angles - phase * np.pi / 2.0
-        out += u[:, None] * np.stack([np.cos(psi), np.sin(psi), np.cos(psi)], axis=1)
-    return out.reshape(-1, 3)
+    out = np.zeros((len(angles), len(rows), 3))
+    if amounts:
+        turns = np.array([n * angles - phase * np.pi / 2.0 for n, phase in amounts]).T
+        whole = np.stack(list(amounts.values()))
+        out[..., [0, 2]] = np.tensordot(np.cos(turns), whole[..., [0, 2]], axes=1)
+        out[..., 1] = np.sin(turns) @ whole[..., 1]
+    return out.swapaxes(0, 1).reshape(-1, 3)

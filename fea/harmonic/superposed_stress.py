@@ -33,9 +33,9 @@ Instants = slice | Ints
 
 # The sizes below change the time, never the result; chosen by judgement.
 PAIR_BATCH = 4096  # pairs of points and instants at once: limits the memory of their samples
-# Points and angles of an envelope at once: their samples stay in the cache. Tuned on 240 instants
-# of 13 harmonics, where 16 points at all 120 angles took three times as long.
-CACHED_POINT_BATCH, CACHED_ANGLE_BATCH = 4, 24
+# Pairs of points and instants, and angles, of an envelope at once: their samples stay in the cache.
+# Tuned on 240 instants of 13 harmonics, where 16 points at all 120 angles took three times as long.
+CACHED_PAIR_BATCH, CACHED_ANGLE_BATCH = 960, 24
 ALL_INSTANTS = slice(None)
 ROUND_OFF = 1e-12  # relative, of a stress
 
@@ -232,9 +232,8 @@ class SuperposedStress:
         angles: (A,) rad.
         read: (A, J, T) where it counts, everywhere by default. -1 where it never does.
         """
-        parts = (
-            slice(k, k + CACHED_POINT_BATCH) for k in range(0, len(points), CACHED_POINT_BATCH)
-        )
+        batch = max(1, CACHED_PAIR_BATCH // max(self.count, 1))
+        parts = (slice(k, k + batch) for k in range(0, len(points), batch))
         out = [
             self._squares_over_time(points[part], angles, None if read is None else read[:, part])
             for part in parts

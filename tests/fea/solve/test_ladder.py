@@ -232,7 +232,7 @@ def test_no_beam_where_a_fillet_has_no_factor(steel: Material) -> None:
     assert auto.peak.model == "harmonic"
     (beam,) = solve_pin(tube, steel, (), (bent,), Requirement(model="beam", tolerance=0.9))
     assert beam.peak.verdict == "unconverged"
-    assert beam.peak.error_estimate == beam.peak.max_von_mises
+    assert beam.peak.error_estimate == pytest.approx(beam.peak.max_von_mises, rel=1e-12)
     assert "no-notch-factor" in beam.peak.reasons
 
 
