@@ -26,6 +26,7 @@ from benchmarks.joints import (
     narrow_arcs,
     places,
     shanks,
+    together,
 )
 from benchmarks.motion import motion_accuracy, peers_drop, peers_motion, scissor
 from benchmarks.pins import (
@@ -78,6 +79,7 @@ ACCURACY = {
     "recovery": recovery.recovery,
     "expected": expected.expected,
     "edge-peak": edge_peak.edge_peak,
+    "together": together.together,
     "places": places.places,
     "cells": cells.cells,
     "narrow-arcs": narrow_arcs.narrow_arcs,

@@ -103,6 +103,7 @@ def test_a_size_that_meets_a_check_with_the_joint_as_given_alone_depends() -> No
     swaps = (
         ("[analysis]", "[analysis]\nultimate_factor = 1.0"),
         ("[pin.P]", "[pin.P]\nreplaceable = true"),
+        ("0.3] }", "0.3], stiffness = [1.0, 1.0] }"),  # stiff lugs use up the pin itself
     )
     tight, loose = (worst(solved(x, 20e3, *swaps), REPLACEABLE) for x in (TIGHT, LOOSE))
     results = solved(RANGED, 20e3 / (tight.used * loose.used) ** 0.5, *swaps)

@@ -85,11 +85,9 @@ class PressedJoint:
 class ChangedContact:
     """A contact under some changes of the joint.
 
-    changes: those that could be solved; over: their ratios, and pressures.
-    missing: the others, and why.
+    over: the ratios of those that could be solved, and pressures. missing: the others, and why.
     """
 
-    changes: tuple[JointChange, ...] = ()
     over: tuple[Variation, ...] = ()
     pressures: tuple[VariedPressures, ...] = ()
     missing: tuple[str, ...] = ()
@@ -136,8 +134,7 @@ class JointChanges:
         for contact, like, (solved, missing) in zip(self.at, self.likes, every, strict=True):
             over = [self._variation(contact, like, *one, stress) for one in solved]
             pressures = [VariedPressures(x.lugs or model.lugs, x.waves) for _, x in solved]
-            names = tuple(change for change, _ in solved)
-            out.append(ChangedContact(names, tuple(over), tuple(pressures), tuple(missing)))
+            out.append(ChangedContact(tuple(over), tuple(pressures), tuple(missing)))
         return out, patterns
 
     def _variation(

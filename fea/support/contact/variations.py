@@ -24,7 +24,6 @@ from fea.support.contact.cell_error import (
 from fea.support.contact.coarser_cells import on_coarser_cells
 from fea.support.contact.friction import friction_variations, rubbed, rubbed_across, rubs
 from fea.support.contact.joint_changes import (
-    ChangedContact,
     JointChanges,
     PressedJoint,
     VariedPressures,
@@ -40,7 +39,7 @@ from fea.support.contact.pressure_loads import (
     PressureModes,
 )
 from fea.support.contact.solve_joint import ContactModel
-from fea.support.lugs.changes import JointChange, joint_variations, worst_together
+from fea.support.lugs.changes import joint_variations
 from fea.support.records import JointRange, Variation, range_ends
 from geometry.shape.rings import USUAL_RING_COUNT
 
@@ -158,27 +157,16 @@ def _over_joint(
     likes: the joints as given on the same cells, with their stress.
     vary: the contacts whose joint is varied.
     """
-    singles = tuple(joint_variations(model.whole, model.lugs)) if any(vary) else ()
-    changed = JointChanges(model, at, requirement, likes, _large_cells(model))
-    alone, known = changed.by([singles if so else () for so in vary], known)
-    together, known = changed.by([_worst_of(model, x) for x in alone], known)
+    changes = tuple(joint_variations(model.whole, model.lugs)) if any(vary) else ()
+    joints = JointChanges(model, at, requirement, likes, _large_cells(model))
+    changed, known = joints.by([changes if so else () for so in vary], known)
     by_friction = _by_friction(model, requirement, known, at, vary)
     out = []
-    for of_contact in zip(likes, alone, together, by_friction, strict=True):
-        (_, given), first, second, more = of_contact
-        missing = (*first.missing, *second.missing)
-        left_out = f"not included: {'; '.join(missing)}" if missing else ""
-        pressures = (VariedPressures(model.lugs, given.waves), *first.pressures, *second.pressures)
-        out.append(((*first.over, *second.over, *more), left_out, pressures))
+    for (_, given), contact, more in zip(likes, changed, by_friction, strict=True):
+        left_out = f"not included: {'; '.join(contact.missing)}" if contact.missing else ""
+        pressures = (VariedPressures(model.lugs, given.waves), *contact.pressures)
+        out.append(((*contact.over, *more), left_out, pressures))
     return out
-
-
-def _worst_of(model: ContactModel, alone: ChangedContact) -> Sequence[JointChange]:
-    """The changes together that raise the stress of the row, or that beneath contact, or lower the
-    former.
-    """
-    measures = [(x.max_von_mises, x.beneath or 1.0) for x in alone.over]
-    return worst_together(model.lugs, alone.changes, measures)
 
 
 def _by_friction(

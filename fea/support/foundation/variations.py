@@ -8,7 +8,7 @@ the beam knows no more than these.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
@@ -22,7 +22,6 @@ from fea.support.lugs.changes import (
     joint_variations,
     pressed_in,
     with_stiffness,
-    worst_together,
 )
 from fea.support.lugs.fit import beyond_foundations
 from fea.support.lugs.lug import Lug
@@ -57,26 +56,18 @@ class FoundationRange:
         given = stress_bounds(self.own, own)
         if given.bounds is None:
             return None, given.why
-        changed, left_out, unheld = [], [], []
-
-        def solve(changes: Iterable[JointChange]) -> None:
-            for change in changes:
-                name = f"{change.what} {change.value}"
-                try:
-                    varied = self._variation(name, change, loads, own)
-                except SolveError as error:  # lugs free to tilt may leave a couple on the pin
-                    unheld.append(f"{name} ({error})")
-                    continue
-                if varied is None:
-                    left_out.append(name)
-                else:
-                    changed.append((change, varied))
-
-        lugs = self.own.model.lugs
-        solve(joint_variations(self.own.model.whole, lugs))
-        measures = [(x.max_von_mises / (given.maximum or 1.0),) for _, x in changed]
-        solve(worst_together(lugs, [change for change, _ in changed], measures))
-        over = [variation for _, variation in changed]
+        over, left_out, unheld = [], [], []
+        for change in joint_variations(self.own.model.whole, self.own.model.lugs):
+            name = f"{change.what} {change.value}"
+            try:
+                varied = self._variation(name, change, loads, own)
+            except SolveError as error:  # lugs free to tilt may leave a couple on the pin
+                unheld.append(f"{name} ({error})")
+                continue
+            if varied is None:
+                left_out.append(name)
+            else:
+                over.append(varied)
         bounds = [given.bounds, *(v.interval for v in over if v.interval)]
         ends = min(low for low, _ in bounds), max(high for _, high in bounds)
         beyond = f"beyond the range of the measurements, and not included: {', '.join(left_out)}"

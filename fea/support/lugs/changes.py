@@ -2,8 +2,8 @@
 
 By default a clearance goes from none to twice the given one (to a free running fit where none is
 given), the lugs are half and twice as stiff, and the tilt is free and guided. A lug may have ranges
-of its own. Both ends of each range are tried, for all lugs at once, then the ends of all properties
-that go farthest, together. What a temperature adds to a clearance (Lug.growth) is not varied.
+of its own. Both ends of each range are tried, for all lugs at once, alone and together with the
+ends of the other properties. What a temperature adds to a clearance (Lug.growth) is not varied.
 """
 
 from __future__ import annotations
@@ -21,9 +21,6 @@ DEFAULT_FIT_CLEARANCE = 0.002  # of the diameter: a free running fit, where no c
 DEFAULT_STIFFNESS_FACTOR = 2.0
 LOW_END_TEXT, HIGH_END_TEXT = "low end of its range", "high end of its range"
 RANGE_ENDS = (0, 1)
-# Of the stress: what one property alone does, below which it does not tell what it does together
-# with others. Chosen by judgement.
-LITTLE_EFFECT = 0.02
 
 
 @dataclass(frozen=True)
@@ -44,8 +41,8 @@ class JointChange:
 
 
 def joint_variations(pin: Pin, lugs: Sequence[Lug]) -> Iterator[JointChange]:
-    """The variations of the lugs on a pin's bands, one property at a time, without those that
-    change nothing.
+    """The variations of the lugs on a pin's bands, one property at a time, then all together,
+    without those that change nothing.
     """
     same = (1.0,) * len(lugs)
     changes = []
@@ -61,59 +58,27 @@ def joint_variations(pin: Pin, lugs: Sequence[Lug]) -> Iterator[JointChange]:
         tilted, words = zip(*(_tilted(lug, end) for lug in lugs), strict=True)
         changes.append(JointChange("tilt", _in_words(words), tilted, same))
     unchanged = (tuple(lugs), same)
-    return (change for change in changes if (change.lugs, change.softness) != unchanged)
+    alone = [change for change in changes if (change.lugs, change.softness) != unchanged]
+    yield from alone
+    yield from _corners(lugs, alone)
 
 
-def worst_together(
-    lugs: Sequence[Lug],
-    changes: Sequence[JointChange],
-    measures: Sequence[Sequence[float]],
-) -> list[JointChange]:
-    """The changes of several properties at once that raise one of some measures most, or lower the
-    first of them.
+def _corners(lugs: Sequence[Lug], changes: Sequence[JointChange]) -> Iterator[JointChange]:
+    """Several properties at once, each at one of its ends, in every combination.
 
-    What each raises alone is taken to raise it together, too; of one that alone does little beside
-    others, both ends are tried: in a clearance stiff lugs raise the stress that without it they
-    leave alone.
-    measures: of each change, over those of the joint as given.
+    What each does alone does not tell which: in a clearance stiff lugs may raise the stress that
+    without it soft ones raise. Of a property with one change the other end is as given.
     """
-    out: dict[str, JointChange] = {}
-    for k, way in _ways(len(measures[0])) if measures else ():
-        beyond = [way * (of_change[k] - 1.0) for of_change in measures]
-        by_property: dict[str, list[tuple[float, JointChange]]] = {}
-        for change, amount in zip(changes, beyond, strict=True):
-            by_property.setdefault(change.what, []).append((amount, change))
-        matters = max(map(abs, beyond)) >= LITTLE_EFFECT and way > 0.0
-        each = [_to_combine(ends, matters) for ends in by_property.values()]
-        for several in itertools.product(*each):
-            together = [change for change in several if change is not None]
-            if len(together) > 1:
-                both = _combined(lugs, together)
-                out[both.value] = both
-    return list(out.values())
+    by_property: dict[str, list[JointChange]] = {}
+    for change in changes:
+        by_property.setdefault(change.what, []).append(change)
+    for ends in itertools.product(*([*x, None][:2] for x in by_property.values())):
+        several = [change for change in ends if change is not None]
+        if len(several) > 1:
+            yield combined(lugs, several)
 
 
-def _to_combine(
-    ends: Sequence[tuple[float, JointChange]], matters: bool
-) -> list[JointChange | None]:
-    """The changes of one property that are combined with others; None: it stays as given.
-
-    ends: with how much each raises the measure. matters: whether another property does so much that
-    a little tells nothing.
-    """
-    most, farthest = max(ends, key=lambda x: x[0])
-    if matters and all(abs(amount) < LITTLE_EFFECT for amount, _ in ends):
-        both = [change for _, change in ends]
-        return [*both, None][:2]
-    return [farthest if most > 0.0 else None]
-
-
-def _ways(measures: int) -> list[tuple[int, float]]:
-    """The measures that are raised, 1, or lowered, -1."""
-    return [*((k, 1.0) for k in range(measures)), (0, -1.0)]
-
-
-def _combined(lugs: Sequence[Lug], changes: Sequence[JointChange]) -> JointChange:
+def combined(lugs: Sequence[Lug], changes: Sequence[JointChange]) -> JointChange:
     """Several changes at once, of one property each."""
     whole, softness = list(lugs), [1.0] * len(lugs)
     for change in changes:

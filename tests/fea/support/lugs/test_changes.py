@@ -8,8 +8,9 @@ from dataclasses import replace
 import pytest
 
 from fea.core.material import Material
-from fea.support.lugs.changes import JointChange, joint_variations, worst_together
+from fea.support.lugs.changes import JointChange, joint_variations
 from fea.support.lugs.lug import Lug, LugRange
+from fea.support.records import TOGETHER
 from geometry import ArgumentError, Pin, Segment
 from tests.support.each import each
 
@@ -20,7 +21,9 @@ LOOSE = Lug("M", 0.05, STEEL, clearance=1e-4, tilt=1e5)
 
 
 def by_name(lugs: tuple[Lug, ...]) -> dict[tuple[str, str], JointChange]:
-    return {(change.what, change.value): change for change in joint_variations(PIN, lugs)}
+    """The changes of one property."""
+    every = joint_variations(PIN, lugs)
+    return {(change.what, change.value): change for change in every if change.what != TOGETHER}
 
 
 def test_the_usual_changes() -> None:
@@ -73,33 +76,25 @@ def test_impossible_ranges(given: dict[str, tuple[float, float]], code: str) -> 
     assert error.value.code == code
 
 
-def test_the_ends_that_go_farthest_are_changed_together() -> None:
-    """For two measures, and for the least of the first."""
-    lugs = (TIGHT, LOOSE)
-    changes = list(by_name(lugs).values())
-    first = [0.99, 1.03, 1.10, 0.9, 0.96, 0.95]  # clearance, stiffness, tilt
-    second = [1.0, 1.0, 0.9, 0.8, 0.9, 0.8]  # raised by nothing
-    most, least = worst_together(lugs, changes, list(zip(first, second, strict=True)))
-    assert most.what == least.what == "together"
-    assert most.value == f"clearance {changes[1].value}, stiffness of the lugs times 0.5"
-    assert [(x.clearance, x.tilt) for x in most.lugs] == [
-        (changes[1].lugs[0].clearance, math.inf), (changes[1].lugs[1].clearance, 1e5),
-    ]  # fmt: skip
-    assert most.softness == (2.0, 2.0)
-    assert least.value == "clearance none, stiffness of the lugs times 2, tilt guided"
-    assert [x.tilt for x in least.lugs] == [math.inf, math.inf]
-    assert worst_together(lugs, changes[2:4], [(1.1,), (0.9,)]) == []  # one property alone
-    assert worst_together(lugs, (), ()) == []
-
-
-def test_of_what_does_little_alone_both_ends_are_tried() -> None:
-    """Stiff lugs raise the stress of a loose pin by a third, of a tight one by nothing: the range
-    of pin C of the landing gear ended at half of what both together give.
+def test_all_ends_are_changed_together() -> None:
+    """In every combination: stiff lugs raise the stress of a pin in a clearance by half that they
+    leave alone without it. Of a property with one change the other end is as given.
     """
-    changes = list(by_name((TIGHT,)).values())  # clearance, soft, stiff, free
-    found = worst_together((TIGHT,), changes, [(4.8,), (1.001,), (0.999,), (1.005,)])
+    lugs = (TIGHT, LOOSE)
+    alone = list(by_name(lugs).values())
+    corners = {x.value: x for x in joint_variations(PIN, lugs) if x.what == TOGETHER}
+    assert len(corners) == 8
+    some = alone[1], alone[2], alone[5]  # loose, soft, guided
+    both = corners[", ".join(f"{x.what} {x.value}" for x in some)]
+    assert [x.clearance for x in both.lugs] == [x.clearance for x in alone[1].lugs]
+    assert (both.softness, [x.tilt for x in both.lugs]) == ((2.0, 2.0), [math.inf, math.inf])
+    # Of a tight, guided lug: loose or not, free or not, soft and stiff.
+    every = [x.value for x in joint_variations(PIN, (TIGHT,)) if x.what == TOGETHER]
+    soft, stiff = (f"stiffness of the lugs times {x}" for x in ("0.5", "2"))
     loose = "clearance 0.002 of the diameter"
-    soft, stiff = (f"{loose}, stiffness of the lugs times {x}" for x in ("0.5", "2"))
-    assert [x.value for x in found] == [f"{soft}, tilt free", soft, f"{stiff}, tilt free", stiff]
-    # Where nothing does much there is nothing to look for.
-    assert len(worst_together((TIGHT,), changes, [(1.01,), (1.001,), (0.999,), (1.005,)])) == 1
+    assert every == [
+        f"{loose}, {soft}, tilt free", f"{loose}, {soft}", f"{loose}, {stiff}, tilt free",
+        f"{loose}, {stiff}", f"{soft}, tilt free", f"{stiff}, tilt free",
+    ]  # fmt: skip
+    known = replace(TIGHT, range=LugRange(clearance=(0.0, 0.0), tilt=(math.inf, math.inf)))
+    assert [x.what for x in joint_variations(PIN, (known,))] == ["stiffness of the lugs"] * 2
