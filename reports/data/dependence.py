@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -244,7 +244,8 @@ def _over_joint(
         if judged.turns(v.max_von_mises, v.interval)
         and (judged.safe or (v not in deep and v.what != FRICTION))
     ]
-    turning = _alone_first(turning)
+    way = 1.0 if judged.safe else -1.0
+    turning = _alone_first(turning, lambda v: way * _counted(judged, v))
     for v in turning:
         yield Dependence(
             v.what, v.value, "joint", judged.strength / _counted(judged, v),
@@ -260,7 +261,7 @@ def _over_joint(
         yield Dependence(what, value, "joint", factor)
     if contact is None or not judged.safe or contact.upper_end > judged.permitted:
         return
-    beneath = _alone_first([v for v in deep if v not in turning])
+    beneath = _alone_first([v for v in deep if v not in turning], lambda v: _upper_end(contact, v))
     if any(v.what == TOGETHER for v in turning):  # which says enough
         beneath = [v for v in beneath if v.what != TOGETHER]
     for v in beneath:
@@ -287,11 +288,15 @@ def _top(judged: JudgedStress, v: Variation) -> float:
     return v.interval[1] if v.interval else v.max_von_mises * judged.high / judged.maximum
 
 
-def _alone_first(variations: list[Variation]) -> list[Variation]:
-    """Return the variations of one property each, or else one of several together: what one alone
-    changes, all of them together do, too.
+def _alone_first(
+    variations: list[Variation], beyond: Callable[[Variation], float]
+) -> list[Variation]:
+    """Return the variations of one property each, or else that of several together which goes
+    farthest: what one alone changes, all of them together do, too.
+
+    beyond: tells how far a variation goes.
     """
-    return [v for v in variations if v.what != TOGETHER] or variations[:1]
+    return [v for v in variations if v.what != TOGETHER] or sorted(variations, key=beyond)[-1:]
 
 
 def _upper_end(contact: ContactPlace | None, v: Variation) -> float:

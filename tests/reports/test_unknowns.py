@@ -88,7 +88,9 @@ def test_properties_of_a_joint_that_change_an_outcome_only_together() -> None:
 
     soft, free = ("stiffness", "times 0.5", 1.2), ("tilt", "free", 1.3)
     assert of(soft, free).outcome == SAFE
-    both = of(soft, free, (TOGETHER, "stiffness times 0.5, tilt free", 1.56))
+    # Stiff lugs that are free change it as well, by less.
+    stiff = TOGETHER, "stiffness times 2, tilt free", 1.4
+    both = of(soft, free, stiff, (TOGETHER, "stiffness times 0.5, tilt free", 1.56))
     (d,) = both.depends_on
     assert (d.over, d.what) == ("joint", TOGETHER)
     assert d.factor == pytest.approx(2.0 / 1.56)
