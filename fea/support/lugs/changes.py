@@ -21,6 +21,7 @@ DEFAULT_FIT_CLEARANCE = 0.002  # of the diameter: a free running fit, where no c
 DEFAULT_STIFFNESS_FACTOR = 2.0
 LOW_END_TEXT, HIGH_END_TEXT = "low end of its range", "high end of its range"
 RANGE_ENDS = (0, 1)
+TILT = "tilt"
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,7 @@ def joint_variations(pin: Pin, lugs: Sequence[Lug]) -> Iterator[JointChange]:
         changes.append(JointChange("stiffness of the lugs", _in_words(words), tuple(lugs), by))
     for end in RANGE_ENDS:
         tilted, words = zip(*(_tilted(lug, end) for lug in lugs), strict=True)
-        changes.append(JointChange("tilt", _in_words(words), tilted, same))
+        changes.append(JointChange(TILT, _in_words(words), tilted, same))
     unchanged = (tuple(lugs), same)
     alone = [change for change in changes if (change.lugs, change.softness) != unchanged]
     yield from alone
@@ -67,12 +68,16 @@ def _corners(lugs: Sequence[Lug], changes: Sequence[JointChange]) -> Iterator[Jo
     """Several properties at once, each at one of its ends, in every combination.
 
     What each does alone does not tell which: in a clearance stiff lugs may raise the stress that
-    without it soft ones raise. Of a property with one change the other end is as given.
+    without it soft ones raise. Of a property with one change the other end is as given, and tilt is
+    so, too: some lugs may be free and others guided, which is no end of what all may be.
     """
     by_property: dict[str, list[JointChange]] = {}
     for change in changes:
         by_property.setdefault(change.what, []).append(change)
-    for ends in itertools.product(*([*x, None][:2] for x in by_property.values())):
+    states = (
+        [*ends, None] if what == TILT else [*ends, None][:2] for what, ends in by_property.items()
+    )
+    for ends in itertools.product(*states):
         several = [change for change in ends if change is not None]
         if len(several) > 1:
             yield combined(lugs, several)
