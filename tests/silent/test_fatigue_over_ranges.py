@@ -28,6 +28,27 @@ life = LIFE
 pull = 1
 [analysis]
 """
+CLAMPED = f"""
+title = "A clamp, whose edge is singular, and a fillet"
+units = "mm-N-s"
+[material.steel]
+youngs_modulus = "206 GPa"
+poisson_ratio = 0.3
+{SPECTRUM.replace("LIFE", "1000")}
+model = "harmonic"
+tolerance = 0.1
+[pin.P]
+material = "steel"
+clamp = ["start"]
+profile = [
+  {{ length = 40, diameter = 20, fillet = 3 }},
+  {{ length = LENGTH, diameter = 14 }},
+  {{ length = 10, diameter = 14, connection = "L" }},
+]
+[case.pull]
+kind = "given"
+forces = {{ L = [3000, 0] }}
+"""
 ASKED = '[[require]]\ncheck = "limit load"\nlevel = "limit"\nfactor = 4.0\n'
 ALWAYS = """
 [analysis]
@@ -88,6 +109,22 @@ def test_a_life_within_the_error_of_the_stress_is_not_decided() -> None:
         solved(TIGHT, life=0.5 / worst.damage + 0.5 / worst.damage_over["error"]), "fatigue"
     )
     assert (near.outcome, near.needs) == ("not decided", "a smaller error of the stress")
+
+
+def test_a_life_has_the_error_of_the_surface_where_a_section_governs_a_singular_row() -> None:
+    """It had none, as a section has none and a singular row an interval: a life that the mesh
+    cannot tell was reached.
+    """
+    for length, row_is in ((60.0, ("converged", "surface")), (10.0, ("singular", "section"))):
+        results = remembered(study_from(CLAMPED.replace("LENGTH", f"{length}")))
+        (row,), fatigue = results.pins, results.fatigue
+        assert fatigue is not None
+        assert row.places is not None
+        assert (row.verdict, row.places.governs) == row_is
+        surface, worst = row.places.surface, fatigue.points[0]
+        high = 1.0 + surface.error_estimate / surface.max_von_mises
+        assert high > 1.001
+        assert worst.damage_over["error"] == pytest.approx(worst.damage * high**5, rel=1e-9)
 
 
 def test_a_limit_load_depends_on_the_joint() -> None:
