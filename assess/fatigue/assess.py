@@ -44,7 +44,7 @@ Growth = Mapping[str, Mapping[str, float]]
 class Spectrum:
     """The load spectrum of a pin and how its damage is assessed.
 
-    occurrences: of cases per unit (a flight, say).
+    occurrences: of cases per unit (a flight, say), in the order in which they follow each other.
     probability: of failure at which damage is assessed, by default that of the S-N data.
     life: design life, in units.
     """
@@ -90,7 +90,8 @@ def assess(
     Raises: ArgumentError where the method cannot see the history and the critical plane, which can,
     lacks data (`unseen-history`).
     """
-    cases = [c for c in history.cases if spectrum.occurrences.get(c.case, 0.0) > 0.0]
+    known = {case.case: case for case in history.cases}
+    cases = [known[name] for name, n in spectrum.occurrences.items() if n > 0.0 and name in known]
     if not cases or (material.fkm if spectrum.method == "fkm-p-ram" else material.curve) is None:
         return None
     often, seen = [spectrum.occurrences[c.case] for c in cases], course(cases)

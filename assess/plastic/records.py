@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from pinbase.dimensions import Floats, Force, Length, Lengths, Stresses
+from pinbase.dimensions import Floats, Force, Length, Lengths, Stresses, Time
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,8 @@ class FlowField:
 class LimitLoad:
     """The load factor at which a pin collapses, between lower and upper.
 
-    All loads of the case at its governing instant grow in proportion.
+    All loads of the case grow in proportion, at the instant (`time`, s; None without a motion) at
+    which the pin, as a beam, collapses at the least factor.
     method: beam or solid; "none" without an answer, with the reason in `note`.
     carries: whether the pin carries its loads (factor 1) without collapse; None where that is open.
     permanent_set: the part of the largest displacement that remains after the loads reached the
@@ -89,6 +90,7 @@ class LimitLoad:
     flow: FlowField | None = None
     note: str = ""
     stopped: bool = False
+    time: Time | None = None
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """The limit load of a pin as a margin: no collapse at ultimate load.
 
 The allowable is the lower end of the bracket of the load factor (assess.plastic), the demand one:
-all loads of the case at its governing instant.
+all loads of the case at the instant that is nearest to collapse.
 
 Over the range of the joint the demand is taken to grow as the elastic stress, which grows more than
 the limit load falls: pressure at the edge of a lug does not make the whole section yield.
@@ -32,5 +32,5 @@ def collapse(text: CheckText, s: Situation) -> list[Margin]:
         return [text.lacks(s, needs)]
     bracket = f"{limit.lower:.4g} to {limit.upper:.4g}"
     basis = f"collapse at {bracket} times the loads, by a {limit.method}"
-    margin = text.margin(s, 1.0, limit.lower, WorstPlace(time=s.row.peak.time), basis=basis)
+    margin = text.margin(s, 1.0, limit.lower, WorstPlace(time=limit.time), basis=basis)
     return [replace(margin, over_joint=s.row.joint_growth)]

@@ -48,12 +48,14 @@ class Material:
     thermal_expansion: float | None = None
     strength_range: tuple[float, float] | None = None
 
-    @property
-    def weakest(self) -> Material:
-        """The material at the lower end of the range of its yield strength, if it has one."""
+    def at_end(self, end: int) -> Material:
+        """The material at the lower (0) or upper (1) end of the range of its yield strength, if it
+        has one; without its hardening, which need not go on from there.
+        """
         if self.strength_range is None:
             return self
-        return replace(self, yield_strength=self.strength_range[0], strength_range=None)
+        strength = self.strength_range[end]
+        return replace(self, yield_strength=strength, strength_range=None, hardening=())
 
     @property
     def elastic_part(self) -> Material:

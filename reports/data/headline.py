@@ -81,14 +81,17 @@ def checks_of(results: Results, margins: Iterable[PinMargin]) -> Iterator[Judged
 
 
 def _besides(results: Results) -> list[RequirementRow]:
-    """Return the requirements that neither a row nor a margin judges with the same factor."""
+    """Return the requirements that neither a row nor a margin judges with the same factor, and
+    lives that only the error of the stress may not reach, which the margin does not know.
+    """
     stated = {(s.pin, s.case, s.level, s.check) for s in results.stated}
     factors = {(row.pin, row.case): limit(row) for row in results.pins}
 
     def besides(r: RequirementRow) -> bool:
         if r.check == "yield":
             return r.required > factors.get((r.pin, r.case), inf)
-        return r.key in stated or r.outcome == DEPENDS
+        by_error = (r.check, r.outcome) == ("fatigue", NOT_DECIDED) and r.reached is not None
+        return r.key in stated or r.outcome == DEPENDS or by_error
 
     return [r for r in requirement_rows(results) if besides(r) and not r.left_out]
 

@@ -257,10 +257,19 @@ def _assumed(
         if check == "yield" and row is not None and factor <= (row.required or 0.0):
             continue  # by what is stated, at limit or proof load
         plain = RequirementRow(pin, case, level, check, factor, None, "not checked", stated=False)
+        same = [_with_factor(m, factor) for m in same]
         if check == "fatigue":
             yield replace(_of_fatigue(plain, results, same), stated=True)  # by fatigue.life
         else:
             yield _judged(plain, same, row)
+
+
+def _with_factor(margin: Margin, factor: float) -> Margin:
+    """Return a margin with another factor on its demand and the same utilisation: the checks of
+    several codes each have the factor of their own.
+    """
+    demand = margin.demand and margin.demand * (margin.factor / factor)
+    return replace(margin, factor=factor, demand=demand)
 
 
 def _judged(plain: RequirementRow, margins: list[Margin], row: PinResult | None) -> RequirementRow:

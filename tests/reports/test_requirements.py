@@ -213,3 +213,40 @@ def test_fatigue_without_a_spectrum_and_rows_that_are_left_out(strong: RunResult
 
 def test_strengths_of_the_study_are_all_used() -> None:
     assert set(STRENGTHS) == {f"{x}_strength" for x in ("yield", "ultimate", "shear", "bearing")}
+
+
+def test_checks_of_two_codes_each_have_the_factor_of_their_own() -> None:
+    """F / (d t) = 100 MPa: the pin, which "aircraft" checks with 1.15, has 120 MPa, the lug, which
+    "general" alone checks, 110 MPa. Both are carried, and 1.10 was said to miss 1.15. With 112 MPa
+    the pin misses it, whatever the lug has.
+    """
+    text = """
+title = "Two codes"
+units = "mm-N-s"
+[material.pin]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+yield_strength = YIELD
+[material.plate]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+yield_strength = 110
+[analysis]
+joints = "prescribed"
+model = "beam"
+limit_load = "never"
+code = ["general", "aircraft"]
+[case.pull]
+kind = "given"
+forces = { L = [0, 40000] }
+[pin.P]
+material = "pin"
+clamp = ["start"]
+profile = [{ length = 2, diameter = 20 }, { length = 20, diameter = 20, connection = "L" }]
+lug.L = { outer_diameter = 100, material = "plate" }
+"""
+    for strength, outcome in ((120, "met"), (112, "missed")):
+        rows = requirement_rows(run(study_from(text.replace("YIELD", f"{strength}"))))
+        (bearing,) = (r for r in rows if (r.level, r.check) == ("limit", "bearing"))
+        assert (bearing.required, bearing.outcome) == (1.15, outcome)
+        assert bearing.reached == pytest.approx(min(strength / 100.0, 1.15 * 1.10))

@@ -136,6 +136,54 @@ def test_checks_by_formula_hold_at_the_lower_end(tmp_path: Path) -> None:
         assert ranged[name] == pytest.approx(expected[name])
 
 
+def test_a_net_section_is_judged_at_the_end_at_which_it_carries_less() -> None:
+    """Of a wide plate 0.6 b F_u/F_y sqrt(D/b) carries: less, the higher F_y is. By hand, with D 20,
+    b 40, t 20, F_u 420, N_d 2: P_t is 121,691 N at F_y = 410 MPa and 199,574 N at 250 MPa, which
+    let 150 kN pass. The metal hardens to less than the upper end, which is no error.
+    """
+    study = study_from("""
+title = "A wide plate"
+units = "mm-N-s"
+[material.pin]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+[material.plate]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+yield_strength = 350
+ultimate_strength = 420
+range = { yield_strength = [250, 410] }
+hardening = [[0.02, 400]]
+[analysis]
+joints = "prescribed"
+model = "beam"
+code = ["general", "lifting"]
+design_factor = 2
+[case.pull]
+kind = "given"
+forces = { L = [0, 150000] }
+[pin.P]
+material = "pin"
+clamp = ["start"]
+profile = [{ length = 20, diameter = 20 }, { length = 20, diameter = 20, connection = "L" }]
+lug.L = { outer_diameter = 100, material = "plate" }
+""")
+    (row,) = pinstress.run(study).pins
+    got = {f"{m.method}, {m.level}": m for m in row.worst if m.at == "L"}
+    carries = {fy: 0.6 * 40.0 * 420.0 / fy * 0.5**0.5 for fy in (250.0, 410.0)}
+    tension, bearing = (got[f"BTH-1 plate, {x}, limit"] for x in ("tension", "bearing"))
+    assert tension.allowable == pytest.approx(420.0 * 40.0 * carries[410.0] / 2.4)
+    assert 420.0 * 40.0 * carries[410.0] / 2.4 < 150e3 < 420.0 * 40.0 * carries[250.0] / 2.4
+    assert "upper end" in tension.basis
+    assert bearing.allowable == pytest.approx(1.25 * 250.0 * 400.0 / 2.0)
+    assert "lower end" in bearing.basis
+    for level, strength, end in (("limit", 250.0, 250.0), ("ultimate", 420.0, 410.0)):
+        net = got[f"lug, net section, {level}"]
+        used = 150e3 / (40.0 * carries[end]) / strength
+        assert net.demand and net.allowable  # noqa: PT018
+        assert net.demand / net.allowable == pytest.approx(used)
+
+
 def test_requirements_on_collapse_know_the_range_and_those_on_rupture_do_not() -> None:
     """A factor on the limit load that the lower end of the strength misses, which a run at that
     end shows, was met. Rupture, by another strength, depended on it.

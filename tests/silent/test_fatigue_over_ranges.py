@@ -7,10 +7,13 @@ from dataclasses import replace
 import pytest
 
 import pinstress
+from assess.judgement import BELOW_YIELD, NOT_DECIDED
 from assess.plastic.records import LimitLoad
 from pinstress.analysis.results import RunResults
 from pinstress.study.reading.in_python import study_from
+from reports.data.headline import worst_checks
 from reports.data.requirements import RequirementRow, requirement_rows
+from reports.format.words import headline
 from reports.tables.strength.fatigue import fatigue_sentence
 from tests.conftest import ROOT
 from tests.silent.test_checks_over_the_joint import LOOSE, RANGED, TEXT, TIGHT
@@ -28,6 +31,28 @@ life = LIFE
 pull = 1
 [analysis]
 """
+CLAMPED = f"""
+title = "A clamp, whose edge is singular, and a fillet"
+units = "mm-N-s"
+[material.steel]
+youngs_modulus = "206 GPa"
+poisson_ratio = 0.3
+{SPECTRUM.replace("LIFE", "1000")}
+model = "harmonic"
+tolerance = 0.1
+[pin.P]
+material = "steel"
+clamp = ["start"]
+profile = [
+  {{ length = 40, diameter = 20, fillet = 3 }},
+  {{ length = LENGTH, diameter = 14 }},
+  {{ length = 10, diameter = 14, connection = "L" }},
+]
+[case.pull]
+kind = "given"
+forces = {{ L = [3000, 0] }}
+"""
+STRONG = '[material.steel]\nyield_strength = "3000 MPa"'
 ASKED = '[[require]]\ncheck = "limit load"\nlevel = "limit"\nfactor = 4.0\n'
 ALWAYS = """
 [analysis]
@@ -88,6 +113,35 @@ def test_a_life_within_the_error_of_the_stress_is_not_decided() -> None:
         solved(TIGHT, life=0.5 / worst.damage + 0.5 / worst.damage_over["error"]), "fatigue"
     )
     assert (near.outcome, near.needs) == ("not decided", "a smaller error of the stress")
+
+
+def test_a_life_has_the_error_of_the_surface_where_a_section_governs_a_singular_row() -> None:
+    """It had none, as a section has none and a singular row an interval: a life that the mesh
+    cannot tell was reached.
+    """
+    for length, row_is in ((60.0, ("converged", "surface")), (10.0, ("singular", "section"))):
+        results = remembered(study_from(CLAMPED.replace("LENGTH", f"{length}")))
+        (row,), fatigue = results.pins, results.fatigue
+        assert fatigue is not None
+        assert row.places is not None
+        assert (row.verdict, row.places.governs) == row_is
+        surface, worst = row.places.surface, fatigue.points[0]
+        high = 1.0 + surface.error_estimate / surface.max_von_mises
+        assert high > 1.001
+        assert worst.damage_over["error"] == pytest.approx(worst.damage * high**5, rel=1e-9)
+
+
+def test_a_life_within_the_error_decides_no_pin_either() -> None:
+    """The requirement was not decided, and the headline said that the pin stays below yield."""
+    text = CLAMPED.replace("LENGTH", "60").replace("[material.steel]", STRONG, 1)
+    alone = remembered(study_from(text)).fatigue
+    assert alone is not None
+    ends = alone.points[0].damage, alone.points[0].damage_over["error"]
+    for damage, decided in ((sum(ends) / 2.0, False), (1.01 * ends[1], True)):
+        results = remembered(study_from(text.replace("life = 1000", f"life = {1.0 / damage}")))
+        assert results.pins[0].outcome == BELOW_YIELD
+        assert (worst_checks(results)["P"].outcome != NOT_DECIDED) == decided
+        assert ("not decided" not in headline(results)) == decided
 
 
 def test_a_limit_load_depends_on_the_joint() -> None:

@@ -11,17 +11,19 @@ flow of a bar that stretches and twists, by quadrature; and for shear stress fie
 """
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.optimize import linprog, minimize_scalar
 
+import pinstress
 from assess.plastic.hinge import beam_bounds
 from assess.plastic.limit_load import bracket
 from assess.plastic.solve import MESH_SIZES, limit_load
 from assess.situation import Situation, SolvedRow
-from assess.strength.collapse import collapse
+from assess.strength.collapse import COLLAPSE_METHOD, collapse
 from fea.beam.plastic_interaction import bending_and_axial_use
 from fea.beam.round_section import Circle
 from fea.core.peak import Maximum
@@ -31,6 +33,31 @@ from tests.support.each import each
 from tests.support.exact.plastic import STEEL, YIELD, D, bar, limit
 
 R, SHEAR_YIELD = D / 2.0, YIELD / math.sqrt(3.0)
+
+SWING = """
+title = "A notch, and a root that collapses at another time"
+units = "mm-N-s"
+[material.steel]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+yield_strength = 250
+[analysis]
+model = "harmonic"
+tolerance = 0.5
+[case.swing]
+kind = "given"
+table = "swing.csv"
+[pin.P]
+material = "steel"
+clamp = ["start"]
+profile = [
+  { length = 100, diameter = 40 },
+  { length = 20, diameter = 40, connection = "A" },
+  { length = 10, diameter = 40, fillet = 0.2 },
+  { length = 40, diameter = 16 },
+  { length = 20, diameter = 16, connection = "B" },
+]
+"""
 
 
 def _strips(bore: float, moment: float, axial: float, strips: int = 4000) -> float:
@@ -268,3 +295,23 @@ def test_the_solids_bracket_of_torsion_has_the_exact_factor() -> None:
     lower, upper = bracket(meshes)
     assert lower <= exact <= upper
     assert upper < 1.03 * lower
+
+
+def test_the_instant_is_that_of_collapse_and_not_that_of_a_notch(tmp_path: Path) -> None:
+    """A sharp corner has the largest stress at 2 s, where the thin end carries 1.7 times its load;
+    at 1 s the root collapses, between M_p / (110 F) and, 0.75 diameters off the clamp,
+    M_p / (80 F). The pin was said to bend, with a margin of collapse of +0.14.
+    """
+    rows = ((0, 0.0, 0.0), (1, 42000.0, 0.0), (2, 0.0, 2000.0))
+    lines = [f"{name},{f},0,{t}" for t, *both in rows for name, f in zip("AB", both, strict=True)]
+    (tmp_path / "swing.csv").write_text("\n".join(["connection,fx,fy,time", *lines]))
+    (tmp_path / "study.toml").write_text(SWING)
+    (row,) = pinstress.run(pinstress.load_study(tmp_path / "study.toml")).pins
+    assert row.maximum.time == 2.0
+    limit, root = row.limit_load, 4.0 / 3.0 * 250.0 * 20.0**3 / 42000.0
+    assert limit is not None and limit.lower and limit.upper  # noqa: PT018
+    assert (limit.time, limit.carries) == (1.0, False)
+    assert root / 110.0 * 0.98 < limit.lower < limit.upper < root / 80.0 * 1.02
+    (margin,) = (m for m in row.worst if m.method == COLLAPSE_METHOD)
+    assert margin.time == 1.0
+    assert margin.margin == pytest.approx(limit.lower / 1.5 - 1.0)

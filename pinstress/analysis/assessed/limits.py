@@ -10,17 +10,21 @@ Whether it is computed may depend on the computer; its value never does.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from assess.margin import strength_key
 from assess.plastic.records import LimitLoad, LugCollapse
 from assess.requirement import LEVELS_OF_CHECK
 from fea.core.material import Material
 from fea.core.peak import Maximum, meets_limit
+from fea.core.pin_loads import PinLoads
 from fea.support.lugs.fit import on_structure
 from fea.support.lugs.lug import Lug
-from geometry import ArgumentError, Pin
+from geometry import ArgumentError, Pin, PinLike, body_of_revolution
 from geometry.shape.lug_outline import LugOutline
 from pinbase.keys import lug_key
 from pinbase.memo import Memo
@@ -38,7 +42,8 @@ if TYPE_CHECKING:
 NOT_HARDENED_NOTE = "not for a pin with a hardened surface, which has two yield strengths"
 NOT_ON_FOUNDATIONS_NOTE = 'not for a pin on elastic foundations: use joints = "contact"'
 
-
+BOUNDS_BATCH = 64  # instants whose bounds as a beam are found at once: limits memory
+SAME_BOUND = 0.01  # relative: the instant of the largest stress is kept where it is as near
 UNASKED_LIMIT_LOAD_SECONDS = 20.0  # s of processor time of a limit load that was not asked for
 
 
@@ -102,17 +107,46 @@ def _limit_load(
     from assess.plastic.solve import limit_load  # imports a model
 
     tell(f"pin {task.pin.name}, limit load in {peak.case}")
-    pin, loads = task.pin, peak.governing
-    assert loads is not None
-    if task.lugs and pin.revolved:
+    pin, in_lugs = task.pin, bool(task.lugs) and task.pin.revolved
+    if in_lugs:
         if solved.rings is None:
             return LimitLoad("none", note=NOT_ON_FOUNDATIONS_NOTE)
-        pin, loads = solved.rings, solved.pressed(loads)
+        pin = solved.rings
     clamps = tuple(pin.surface(name) for name in task.clamps)
     try:
-        return limit_load(pin, task.material, clamps, loads, rung, plan.requirement.memory, seconds)
+        links = nearest_to_collapse(solved, pin, task.material, clamps)
+        loads = solved.pressed(links) if in_lugs else links
+        memory = plan.requirement.memory
+        limit = limit_load(pin, task.material, clamps, loads, rung, memory, seconds)
     except ArithmeticError as error:  # the elastic answer stands
         return LimitLoad("none", note=str(error))
+    return replace(limit, time=links.time())
+
+
+def nearest_to_collapse(
+    solved: Solution, pin: PinLike, material: Material, clamps: tuple[str, ...]
+) -> PinLoads:
+    """Return the loads of the links at the instant at which the pin, as a beam, collapses at the
+    least factor: that of the largest stress need not be it, as a notch raises stress alone.
+
+    pin: on which the loads act.
+    """
+    from assess.plastic.hinge import beam_bounds  # imports a model
+
+    governing, every, profile = solved.peak.governing, solved.loads, body_of_revolution(pin)
+    assert governing is not None
+    if profile is None or not profile.stepped or every.times is None or governing.times is None:
+        return governing
+    rings, instants = every.on_rings, np.arange(len(every))
+    lower = np.concatenate([
+        beam_bounds(profile, material, clamps, rings.at(instants[k : k + BOUNDS_BATCH])).lower
+        for k in range(0, len(every), BOUNDS_BATCH)
+    ])  # fmt: skip
+    at_largest = int(np.abs(every.times - governing.times[0]).argmin())
+    least = int(lower.argmin())
+    if lower[at_largest] <= (1.0 + SAME_BOUND) * lower[least]:
+        return governing
+    return every.links.at(np.array([least]))
 
 
 def limit_asked(peak: Maximum, task: Task, rung: Rung) -> bool:

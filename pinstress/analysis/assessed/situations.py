@@ -42,8 +42,10 @@ from reports.data.row import PinResult
 
 L = TypeVar("L", LimitLoad | None, LugCollapse)
 FORMULA_KINDS = "hand", "clause"
+RANGE_BASES = tuple(
+    f"with the {end} end of the range of the yield strength" for end in ("lower", "upper")
+)
 # What checks by formula take as the yield strength of a pin with a hardened surface.
-WEAKEST_BASIS = "with the lower end of the range of the yield strength"
 CORE_BASIS, CASED_BASIS = "with the core's yield strength", "with the strengths of case and core"
 CASED_METHODS = BENDING_METHODS | {PLASTIC_METHOD}
 FORCE_OF_CLAMP = (
@@ -83,7 +85,8 @@ def assessed(study: Study, task: Task, row: PinResult) -> PinResult:
 
 
 def _with_ranges(s: Situation, margins: Sequence[Margin]) -> list[Margin]:
-    """Return margins that hold over the ranges of yield strengths: those at their lower ends.
+    """Return margins that hold over the ranges of yield strengths: each at its worse end, which is
+    the upper one where a check takes F_u / F_y (the width of a net section that carries).
 
     The margin of the model against yield stays as it is, since the range is part of the outcome of
     its row (reports.data.dependence).
@@ -91,37 +94,42 @@ def _with_ranges(s: Situation, margins: Sequence[Margin]) -> list[Margin]:
     made_of = [s.material, *(m for x in s.lugs for m in x.materials)]
     if all(m.strength_range is None for m in made_of):
         return list(margins)
-    weak = replace(
-        s,
-        material=s.material.weakest,
-        lugs=tuple(x.with_materials(lambda m: m.weakest) for x in s.lugs),
-        sized=tuple(x.with_materials(lambda m: m.weakest) for x in s.sized),
-        row=s.row and replace(s.row, limit_load=_weakened(s.row.limit_load, s.material)),
-        lug_collapses=tuple(
-            _weakened(limit, lug.material)
-            for limit in s.lug_collapses
-            for lug in s.lugs
-            if lug.connection == limit.connection
-        ),
+    ends = [[replace(m, basis=_joined(m.basis, basis)) if m not in margins else m
+             for m in margins_of(_at_end(s, end)) if m.method != YIELD_METHOD]
+            for end, basis in enumerate(RANGE_BASES)]  # fmt: skip
+    worse = [max(both, key=lambda m: m.used) for both in zip(*ends, strict=True)]
+    return [m for m in margins if m.method == YIELD_METHOD] + worse
+
+
+def _at_end(s: Situation, end: int) -> Situation:
+    """Return a situation at the lower (0) or upper (1) ends of the ranges of yield strengths."""
+    lugs, sized = (
+        tuple(x.with_materials(lambda m: m.at_end(end)) for x in some) for some in (s.lugs, s.sized)
     )
-    of_row = [m for m in margins if m.method == YIELD_METHOD]
-    others = [m for m in margins_of(weak) if m.method != YIELD_METHOD]
-    return of_row + [
-        m if m in margins else replace(m, basis="; ".join(filter(None, (m.basis, WEAKEST_BASIS))))
-        for m in others
-    ]
+    of_lugs = {lug.connection: lug.material for lug in s.lugs}
+    return replace(
+        s, material=s.material.at_end(end), lugs=lugs, sized=sized,
+        row=s.row and replace(s.row, limit_load=_limit_at_end(s.row.limit_load, s.material, end)),
+        lug_collapses=tuple(
+            _limit_at_end(x, of_lugs[x.connection], end) for x in s.lug_collapses
+        ),
+    )  # fmt: skip
 
 
-def _weakened(limit: L, material: Material) -> L:
-    """Return a limit load at the lower end of the yield strength, to which it is in proportion.
+def _limit_at_end(limit: L, material: Material, end: int) -> L:
+    """Return a limit load at an end of the yield strength, to which it is in proportion.
 
     One with hardening follows the material's curve, which has no range.
     """
     if limit is None or material.strength_range is None or getattr(limit, "hardening", False):
         return limit
-    ratio = material.strength_range[0] / (material.yield_strength or 1.0)
+    ratio = material.strength_range[end] / (material.yield_strength or 1.0)
     lower, upper = (None if x is None else ratio * x for x in (limit.lower, limit.upper))
     return replace(limit, lower=lower, upper=upper)
+
+
+def _joined(*texts: str) -> str:
+    return "; ".join(filter(None, texts))
 
 
 def _of_core(s: Situation, margin: Margin) -> Margin:
@@ -131,7 +139,7 @@ def _of_core(s: Situation, margin: Margin) -> Margin:
         return margin
     method = margin.method.removesuffix(f", {COMPARISON_SUFFIX}")
     known = CASED_BASIS if method in CASED_METHODS else CORE_BASIS
-    return replace(margin, basis="; ".join(filter(None, (margin.basis, known))))
+    return replace(margin, basis=_joined(margin.basis, known))
 
 
 def _without_cuts(pin: PinLike, margins: Sequence[Margin]) -> list[Margin]:

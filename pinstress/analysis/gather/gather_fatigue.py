@@ -136,14 +136,15 @@ def _growth(plan: Plan, rows: Iterable[PinResult]) -> Growth:
 
 
 def _growth_of(row: PinResult) -> dict[str, float]:
-    """Return the largest stress over that of a row, by what is open of it."""
-    stress = row.max_von_mises
-    if not stress:
+    """Return the largest stress over that of a row, by what is open of it.
+
+    The error is that of the surface, on which the critical points are; a section has none.
+    """
+    at = row if row.places is None else row.places.surface
+    if not row.max_von_mises or not at.max_von_mises:
         return {}
-    growth = {"joint": row.joint_growth, **row.most_loads}
-    if row.max_von_mises_interval is None:
-        growth[ERROR_OF_STRESS] = 1.0 + (row.error_estimate or 0.0) / stress
-    return growth
+    error = 1.0 + (at.error_estimate or 0.0) / at.max_von_mises
+    return {"joint": row.joint_growth, **row.most_loads, ERROR_OF_STRESS: error}
 
 
 def _points(

@@ -38,8 +38,8 @@ LIMIT_COLUMNS: list[Column[tuple[PinResult, LimitLoad]]] = [
 ]
 
 LIMIT_LOAD = fields(  # the keys of results.json
-    "lower upper method carries permanent_set permanent_set_factor=permanent_at hardening seconds "
-    "meshes note"
+    "lower upper method time carries permanent_set permanent_set_factor=permanent_at hardening "
+    "seconds meshes note"
 )
 
 

@@ -114,6 +114,23 @@ def test_spectra_that_cannot_be_counted(often: list[float], code: str) -> None:
     assert caught.value.code == code
 
 
+def test_cases_follow_each_other_in_the_order_of_the_spectrum() -> None:
+    """Up and down in turn is two cycles of 400 MPa, whatever the order of the cases in the study;
+    twice up before twice down is one, and two of 200 MPa, a little more than half of the damage.
+    """
+    up, down = _uniaxial([400e6]), _uniaxial([-400e6])
+    history = _history(up=up, over=up, down=down, under=down)
+    material = FatigueMaterial(SnCurve((300e6, 1e6), 5.0, 5.0))
+    for names, cycles in (
+        (("up", "down", "over", "under"), [400.0, 400.0]),
+        (("up", "over", "down", "under"), [400.0, 200.0, 200.0]),
+    ):
+        for method in ("signed-von-mises", "critical-plane"):
+            spectrum = Spectrum(dict.fromkeys(names, 1.0), method)
+            found = _assessed(history, spectrum, material)
+            assert found.damage == pytest.approx(sum((x / 300.0) ** 5 * 1e-6 for x in cycles))
+
+
 def test_damage_by_hand() -> None:
     # 2 pulses of 600 MPa and 1 of 800: amplitudes 300, 400 and, without mean stress, N = 1e6 and
     # 1e6 (300/400)^5.
