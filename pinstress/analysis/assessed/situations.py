@@ -97,7 +97,12 @@ def _with_ranges(s: Situation, margins: Sequence[Margin]) -> list[Margin]:
     ends = [[replace(m, basis=_joined(m.basis, basis)) if m not in margins else m
              for m in margins_of(_at_end(s, end)) if m.method != YIELD_METHOD]
             for end, basis in enumerate(RANGE_BASES)]  # fmt: skip
-    worse = [max(both, key=lambda m: m.used) for both in zip(*ends, strict=True)]
+    low, high = ends
+    # A check whose number of margins changes with the strength has those of both ends.
+    alike = [m.method for m in low] == [m.method for m in high]
+    worse = (
+        [max(x, key=lambda m: m.used) for x in zip(low, high, strict=True)] if alike else low + high
+    )
     return [m for m in margins if m.method == YIELD_METHOD] + worse
 
 
