@@ -185,8 +185,9 @@ def names_in(text: str, known: Container[str]) -> list[str]:
         single = [part.strip() for part in parts[begin:end]]
         if joined[end] in known and len(single) > 1 and all(part in known for part in single):
             several = ",".join(f'"{part}"' for part in single)
+            whole = joined[end]
             raise InputError(
-                f"{joined[end]} may be one name or {len(single)} names; write '\"{joined[end]}\"' or "
+                f"{whole} may be one name or {len(single)} names; write '\"{whole}\"' or "
                 f"'{several}'",
                 code="ambiguous-names",
             )
