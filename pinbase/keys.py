@@ -5,15 +5,19 @@ from __future__ import annotations
 import re
 
 PLAIN_NAME_PATTERN = re.compile(r"[A-Za-z0-9_-]+")  # that TOML needs no quotes for
-QUOTED = r'"[^"]*"|(?<![^.])\'[^\']*\''  # a name in quotes; single ones begin a part of a key
+# A name in quotes: double ones, in which a backslash escapes, or single ones, which begin a part
+QUOTED = r'"(?:[^"\\]|\\.)*"|(?<![^.])\'[^\']*\''
 NAME_PATTERN = re.compile(rf"{QUOTED}|[^.\"']+")  # a part of a key
 
 
 def key_part(name: str) -> str:
-    """Return a name as a key has it: in quotes where TOML needs them, single ones around double."""
+    """Return a name as a key has it: in quotes where TOML needs them, single ones around a double
+    quote or a backslash, unless the name has a single one, too.
+    """
     if PLAIN_NAME_PATTERN.fullmatch(name):
         return name
-    return f"'{name}'" if '"' in name else f'"{name}"'
+    escaped = re.sub(r'(["\\])', r"\\\1", name)
+    return f"'{name}'" if escaped != name and "'" not in name else f'"{escaped}"'
 
 
 def names_in(key: str) -> list[str]:
@@ -23,7 +27,9 @@ def names_in(key: str) -> list[str]:
 
 def unquoted(part: str) -> str:
     """Return the name that a part of a key is, without its quotes."""
-    return part[1:-1] if part[0] in "\"'" and part[0] == part[-1] else part
+    if len(part) < 2 or part[0] not in "\"'" or part[0] != part[-1]:
+        return part
+    return re.sub(r"\\(.)", r"\1", part[1:-1]) if part[0] == '"' else part[1:-1]
 
 
 def lug_key(pin: str, connection: str, *parts: str) -> str:

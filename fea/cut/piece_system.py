@@ -150,7 +150,8 @@ class PieceSystem:
         if not lost.max() < MAX_UNBALANCED_TRACTION:
             raise SolveError(
                 f"pin {self.pin}: the stress of the uncut pin on the cuts is not in "
-                f"equilibrium (by {lost.max():.1e}), so a load acts on the removed area",
+                f"equilibrium (by {lost.max():.1e}), so a load or the weight of the pin acts on "
+                'the removed area; use model = "solid"',
                 "cut-unbalanced",
             )
         force_size = np.linalg.norm(forces.reshape(len(forces) // 3, -1), axis=1)

@@ -24,6 +24,7 @@ KIND_CODES: dict[Kind, str] = {
     "open": "does-not-close",
 }
 SNAP_SPEED_RATIO = 1e-2  # of the fastest body: near a dead point, a slower one counts as at rest
+AS_DRAWN = 1e-3  # of the way of a drive, up to which a linkage has not moved
 MAX_LISTED_NAMES = 6  # in a message
 Show = Callable[[float, bool], str]
 
@@ -81,8 +82,12 @@ class MotionBlocked(LinkageError):
             apart = f" (at best {show(self.gap, True)} apart)" if self.gap else ""
             what = "".join(f" or {decides}" for decides, _ in self.besides_lengths)
             where = "".join(f" and {described}" for _, described in self.besides_lengths)
+            moved = np.abs(self.reached - self.drawn) > AS_DRAWN * np.abs(self.wanted - self.drawn)
+            beyond = f"does not close beyond {at(self.reached)}"
+            if not moved.any():
+                beyond = f"closes only as drawn, at {at(self.drawn)}"
             return (
-                f"the linkage does not close beyond {at(self.reached)} (requested: "
+                f"the linkage {beyond} (requested: "
                 f"{at(self.wanted)}): {connections} do not meet{apart}, because the lengths of its "
                 f"redundant links{what} are inconsistent; check the coordinates of the joints"
                 f"{where}"

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import errno
 import hashlib
+import os
 import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -60,7 +61,7 @@ def stamp(path: Path) -> str:
         content = content_sent(path)
         if content is not None:
             return hashlib.sha256(content).hexdigest()
-        return str(path.stat().st_mtime_ns) if path.is_file() else ""
+        return str(path.stat().st_mtime_ns) if os.path.isfile(path) else ""
     except FileNotFoundError:
         return ""
 

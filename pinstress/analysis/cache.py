@@ -90,7 +90,7 @@ class Cache:
 
     def has(self, key: str) -> bool:
         """Return whether there is an answer of this name, which may turn out to be damaged."""
-        return self._path(key).is_file()
+        return os.path.isfile(self._path(key))  # False, too, in a folder that may not be searched
 
     def write(self, key: str, value: object) -> None:
         """Store an answer if possible; its file is complete or absent."""

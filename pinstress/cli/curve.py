@@ -13,6 +13,7 @@ from pinstress.cli.run import console, progress_bar
 from pinstress.cli.streams import unneeded
 from pinstress.explore.curve import Ends, curve
 from pinstress.study.reading.file import Study
+from pinstress.study.schema.units import split
 from reports.data.curve import CURVE_NAME
 from reports.plots.curve import curve_plot
 from reports.tables.curve import curve_table
@@ -57,7 +58,7 @@ def number_or_text(value: str | None) -> float | str | None:
     """Return what an option gives: a number, in the study's units, or a text with a unit."""
     if value is None:
         return None
-    try:
-        return float(value)
-    except ValueError:
-        return value
+    match split(value):
+        case number, "":
+            return number
+    return value

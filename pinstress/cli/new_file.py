@@ -70,9 +70,9 @@ def require_junit(path: Path, directory: Path) -> None:
         )
     if not path.parent.is_dir():
         raise InputError(f"--junit: there is no folder {path.parent}", code="no-folder")
-    if path.is_dir():
+    if os.path.isdir(path):
         raise InputError(f"--junit: {path} is a folder; give a file", code="not-a-file")
-    if not os.access(path if path.exists() else path.parent, os.W_OK):
+    if not os.access(path if os.path.exists(path) else path.parent, os.W_OK):
         raise InputError(f"--junit: {path} cannot be written", code="cannot-write")
     try:
         with path.open("rb") as file:

@@ -173,6 +173,8 @@ def names_in(text: str, known: Container[str]) -> list[str]:
     """Return the names in the text A,B.
 
     known: names that may have commas; other names with commas are in quotes.
+
+    Raises: InputError where a text is the name of one and a list of several.
     """
     parts, entries, begin = text.split(","), list[str](), 0
     while begin < len(parts):
@@ -180,6 +182,15 @@ def names_in(text: str, known: Container[str]) -> list[str]:
         inner = {n: x[1:-1] for n, x in joined.items() if QUOTED.fullmatch(x)}
         ends = [n for n in joined if joined[n] in known or inner.get(n) in known]
         end = max(ends, default=min(inner, default=begin + 1))
+        single = [part.strip() for part in parts[begin:end]]
+        if joined[end] in known and len(single) > 1 and all(part in known for part in single):
+            several = ",".join(f'"{part}"' for part in single)
+            whole = joined[end]
+            raise InputError(
+                f"{whole} may be one name or {len(single)} names; write '\"{whole}\"' or "
+                f"'{several}'",
+                code="ambiguous-names",
+            )
         entries.append(joined[end] if joined[end] in known else inner.get(end, joined[end]))
         begin = end
     return [entry for entry in entries if entry]

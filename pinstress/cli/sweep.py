@@ -4,6 +4,7 @@ summary.
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -126,13 +127,13 @@ def _require_usable(directory: Path, parts: BatchFolder, resume: bool) -> None:
     Raises: InputError for a folder with other files than those of a sweep, with a sweep that did
     not end and is not to be resumed, or with none to resume.
     """
-    if directory.is_dir() and (link := manifest.first_link(directory)):
+    if os.path.isdir(directory) and (link := manifest.first_link(directory)):
         raise InputError(
             f"--out: {directory}: {link} is a link, a pipe or a device, which pinstress did not "
             "make; remove it or choose another folder",
             code="not-ours",
         )
-    if directory.exists() and (not directory.is_dir() or manifest.entries(directory)):
+    if os.path.exists(directory) and (not directory.is_dir() or manifest.entries(directory)):
         begun = directory.is_dir() and (parts.folder / IDENTITY_FILE).is_file()
         mark = f"{PARTS_FOLDER}/{IDENTITY_FILE}" if begun else DESIGNS_FILE
         require_replaceable(directory, mark, is_ours)
@@ -168,7 +169,7 @@ def _claimed(directory: Path, parts: BatchFolder, resume: bool) -> Iterator[None
     Where no batch was solved, nothing is left of a sweep that was begun.
     """
     release: Release | None = None
-    existed = directory.exists()
+    existed = os.path.exists(directory)
     try:
         directory.mkdir(parents=True, exist_ok=True)
         release = _locked(directory)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from fea.support.records import JointRange
 from reports.data.decision import limit, utilisation
 from reports.data.row import PinResult, SharingRange
@@ -27,7 +29,7 @@ def error_range(pin: PinResult, to: str = " to ") -> str:
     interval = pin.max_von_mises_interval
     if interval is None:
         return engineering(pin.error_estimate, 2) if pin.maximum.bounded else UNKNOWN
-    return to.join(engineering(end, END_DIGITS) for end in interval)
+    return _joined((engineering(end, END_DIGITS) for end in interval), to)
 
 
 def percent_error(pin: PinResult) -> str:
@@ -42,7 +44,12 @@ def percent_error(pin: PinResult) -> str:
 def factor_range(pin: PinResult, to: str = " to ") -> str:
     """Return the safety factor or its interval with three digits, which is what loads deserve."""
     ends = pin.safety_factor_interval or (pin.safety_factor,)
-    return to.join(factor_text(end, limit(pin)) for end in ends)
+    return _joined((factor_text(end, limit(pin)) for end in ends), to)
+
+
+def _joined(ends: Iterable[str], to: str = " to ") -> str:
+    """Return the ends of a range, once where both are the same: at a section that governs."""
+    return to.join(dict.fromkeys(ends))
 
 
 def factor_text(factor: float | None, required: float, digits: int = END_DIGITS) -> str:
@@ -63,7 +70,7 @@ def utilisation_range(pin: PinResult, required: float) -> str:
     if used is None:
         return DASH
     ends = (used_text(end).removesuffix(" %") for end in used)
-    return f"{' to '.join(dict.fromkeys(ends))} %"
+    return f"{_joined(ends)} %"
 
 
 def variation_range(over: JointRange | SharingRange | None) -> str:
@@ -84,4 +91,6 @@ def error_words(pin: PinResult) -> str:
     """Return the error or interval for use in a sentence."""
     if pin.max_von_mises_interval is None:
         return f"± {error_range(pin)}" if pin.maximum.bounded else "error unknown"
-    return f"{error_range(pin)} over half and twice the excluded distance"
+    low, high = pin.max_von_mises_interval
+    ends = error_range(pin) if low < high else "unchanged"
+    return f"{ends} over half and twice the excluded distance"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from pinbase.counted import counted
 from reports.data.comparison import NOT_SOLVED, UNCHANGED, RowPair, RunComparison, Side, ValuePair
 from reports.data.requirement_pairs import REQUIREMENT_CHANGES, RequirementPair
 from reports.data.requirements import RequirementRow
@@ -115,7 +116,8 @@ def margins_table(comparison: RunComparison) -> Table[ValuePair]:
 def left_out(comparison: RunComparison) -> str:
     """Return a note on the number of forces that the table leaves out."""
     more = len(comparison.forces) - MAX_SHOWN_FORCES
-    return f"{more} more forces differ by less." if more > 0 else ""
+    verb = "differs" if more == 1 else "differ"
+    return f"{counted(more, 'more force')} {verb} by less." if more > 0 else ""
 
 
 def _text(value: object) -> str:

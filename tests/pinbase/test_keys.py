@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 
 from pinbase.keys import key_part, lug_key, names_in
@@ -12,9 +13,15 @@ from tests.support.each import each
 from tests.support.programs.command_line import QUICK
 
 
-@each("name", ['a"b', "a b", "a.b, c", "o'ring", 'a, "b".c', "plain"])
+@each(
+    "name",
+    ['a"b', "a b", "a.b, c", "o'ring", 'a, "b".c', "plain", "a\\n", "5\"'", "'\"\\, b.c'"],
+)
 def test_all_read_a_name_as_it_is_written(name: str, tmp_path: Path) -> None:
-    """One with a double quote stands in single ones, which [vary] refused as no key."""
+    """One with a double quote stands in single ones, which [vary] refused as no key, and one with
+    both is escaped as TOML does.
+    """
+    assert tomllib.loads(f"{key_part(name)} = 1") == {name: 1}
     key = lug_key(name, "L", "shank")
     assert names_in(key) == ["pin", name, "lug", "L", "shank"]
     study = parse_study(tmp_path / "study.toml", QUICK)

@@ -16,11 +16,12 @@ from reports.data.comparison import (
     UNCHANGED,
     WITHIN_ERRORS,
     RunComparison,
+    ValuePair,
     compared,
 )
 from reports.page.comparison import PicturePair, write_comparison
 from reports.plots.comparison import comparison_plot
-from reports.tables.comparison import inputs_table, per_cent, rows_table
+from reports.tables.comparison import MAX_SHOWN_FORCES, inputs_table, left_out, per_cent, rows_table
 from reports.tables.json_results import to_json
 from reports.text.comparison import headline, review, write_markdown
 from tests.support.each import each
@@ -48,6 +49,14 @@ def test_the_same_run_has_no_change(run: dict[str, Any]) -> None:
     assert {row.kind for row in found.rows} == {UNCHANGED}
     assert (found.inputs, found.forces, found.margins, found.versions) == ((), (), (), ())
     assert comparison_plot(found) is None
+
+
+@each(
+    ("beyond", "text"), [(0, ""), (1, "1 more force differs by less."), (2, "2 more forces differ")]
+)
+def test_forces_that_are_left_out_are_counted(run: dict[str, Any], beyond: int, text: str) -> None:
+    pairs = (ValuePair(("B", "landing"), 1.0, 2.0),) * (MAX_SHOWN_FORCES + beyond)
+    assert left_out(replace(compare(run, run), forces=pairs)).startswith(text)
 
 
 @each(

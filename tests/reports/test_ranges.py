@@ -59,6 +59,15 @@ def test_an_error_that_is_unknown_is_not_shown_as_a_number(results: Results) -> 
     assert "unknown" not in accuracy(pin_lines(results), results)[0]
 
 
+def test_a_range_whose_ends_are_equal_is_one_number(found: Results) -> None:
+    """Where a section governs, it does not change with the excluded distance: "60.9 to 60.9"."""
+    pin = with_values(
+        found.pins[0], max_von_mises_interval=(72_430.0,) * 2, safety_factor_interval=(3.107,) * 2
+    )
+    assert (error_range(pin), factor_range(pin)) == ("72,400", "3.11")
+    assert error_words(pin) == "unchanged over half and twice the excluded distance"
+
+
 def singular(pin: PinResult) -> PinResult:
     return with_values(
         pin,

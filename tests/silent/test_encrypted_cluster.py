@@ -11,6 +11,7 @@ own programs, started as a user starts them.
 from __future__ import annotations
 
 import os
+import resource
 import shlex
 import shutil
 import signal
@@ -75,6 +76,22 @@ def _alone(folder: Path) -> bytes:
 
 def _kept(folder: Path) -> int:
     return len(list((folder / "out" / "parts").glob("*.parquet")))
+
+
+def test_on_a_full_disk_no_folder_of_keys_is_left(tmp_path: Path) -> None:
+    """An empty one was left. Writing is limited to no bytes, which fails as a full disk does."""
+    limited = subprocess.run(
+        [sys.executable, "-m", "pinstress", "cluster-keys", "new/keys"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=False,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)),
+    )
+    assert limited.returncode == 2, limited.stderr
+    assert limited.stderr.startswith("Error: new/keys: cannot be written")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_keys_that_do_not_fit_are_refused_and_nothing_is_written(tmp_path: Path) -> None:

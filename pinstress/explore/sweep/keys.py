@@ -113,6 +113,7 @@ def write_keys(folder: Path) -> KeyFiles:
             code="exists",
         )
     written: list[Path] = []
+    new_folders = [path for path in (folder, *folder.parents) if not os.path.lexists(path)]
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         for path, content in zip(paths, _new_keys(), strict=True):
@@ -124,6 +125,9 @@ def write_keys(folder: Path) -> KeyFiles:
         for path in written:
             with suppress(OSError):
                 path.unlink()
+        for path in new_folders:
+            with suppress(OSError):
+                path.rmdir()
         if not isinstance(error, OSError):
             raise
         raise cannot_write(error.filename or folder, error) from None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
@@ -98,23 +99,24 @@ def _reasons(rows: list[dict[str, Any]]) -> list[str]:
         text = text if len(text) <= MAX_REASON_LENGTH else text[: MAX_REASON_LENGTH - 1] + "…"
         lines.append(f"  {many:,} {code}: for instance design {examples[0]['design']}, {text}")
     if len(counts) > MAX_PRINTED_REASONS:
-        lines.append(f"  and {len(counts) - MAX_PRINTED_REASONS} other reasons")
+        lines.append(f"  and {counted(len(counts) - MAX_PRINTED_REASONS, 'other reason')}")
     return lines
 
 
 def _range(rows: list[dict[str, Any]], required: float | None) -> tuple[str, str, str, str]:
     """Return a pin's factors, the worst and best design by their worst case, and its maximum."""
-    solved = [row for row in rows if row["max_von_mises"]]
+    solved = [row for row in rows if row["max_von_mises"] is not None]
     if not solved:
         return DASH, DASH, DASH, DASH
     worst_of: dict[int, float] = {}
     for row in solved:
         number, stress = row["design"], row["max_von_mises"]
-        size = -row["safety_factor"] if row["safety_factor"] is not None else stress
-        worst_of[number] = max(worst_of.get(number, -float("inf")), size)
+        factor = row["safety_factor"]  # None without a strength, and without stress, the best
+        size = -factor if factor is not None else stress or -math.inf
+        worst_of[number] = max(worst_of.get(number, -math.inf), size)
     worst = max(worst_of, key=lambda number: worst_of[number])
     best = min(worst_of, key=lambda number: worst_of[number])
-    factors = [-x for x in worst_of.values() if x < 0.0]
+    factors = [-x for x in worst_of.values() if -math.inf < x < 0.0]
     ends = [min(factors), max(factors)] if factors else []
     told = (engineering(x) if required is None else factor_text(x, required, 4) for x in ends)
     between = " to ".join(told) or DASH

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 from geometry import (
@@ -46,8 +47,9 @@ def imported_text(path: Path, name: str | None, unit: str, material: str) -> str
             raise InputError(f"{what}: {error}", code="unusable-name") from None
     file = BodyFile(name, path, METRES_PER_UNIT[unit], ())
     try:
-        if not path.exists():
-            raise GeometryError(f"file {path} does not exist", "no-such-file")
+        with suppress(PermissionError):  # said by require_readable
+            if not path.exists():
+                raise GeometryError(f"file {path} does not exist", "no-such-file")
         require_readable(file)
         if file.meshed:
             raise GeometryError(

@@ -51,7 +51,7 @@ def cannot_write(path: object, error: OSError) -> InputError:
 
 def cannot_write_out(directory: Path, error: OSError) -> InputError:
     """Return the error that the folder of --out cannot be written to."""
-    why = "it is a file, not a folder" if directory.is_file() else error.strerror
+    why = "it is a file, not a folder" if os.path.isfile(directory) else error.strerror
     text = f"--out: cannot write to {directory} ({why})"
     return InputError(text, code="cannot-write")
 

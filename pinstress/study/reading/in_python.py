@@ -16,9 +16,9 @@ from pinstress.study.reading.materials import looked_up, with_materials
 from pinstress.study.schema.lugs import with_lug_defaults
 from pinstress.study.schema.shown import as_text
 
-KEY_PART_PATTERN = re.compile(rf'({QUOTED}|[^.\["]+)((?:\[\d+\])*)(?:\.|$)')
-INDEX_PATTERN = re.compile(r"\[(\d+)\]")
-INDEX_RANGE_PATTERN = re.compile(r"\[(\d+)-(\d+)\]")  # neighbours that have a number in common
+KEY_PART_PATTERN = re.compile(rf'({QUOTED}|[^.\["]+)((?:\[[0-9]+\])*)(?:\.|$)')
+INDEX_PATTERN = re.compile(r"\[([0-9]+)\]")
+INDEX_RANGE_PATTERN = re.compile(r"\[([0-9]+)-([0-9]+)\]")  # neighbours with one number
 # Between keys of one dimension (geometry.shape.dimensions.KEY_JOINT), not within a name
 JOINT_PATTERN = re.compile(r" & (?=profile\[|meridian\[|bore_meridian\[|band\.)")
 PIN_PATTERN = re.compile(rf'pin\.(?:{QUOTED}|[^.\["]+)\.')

@@ -68,7 +68,7 @@ LETTERS = {  # of the deviations that are included at some size
 FINE_LETTERS = "abcrs"  # whose deviations are by FINE_SIZE_LIMITS
 MAX_GRADE_OF_K = 7  # in which k is above the nominal size
 COARSE_GRADE = 14  # from which, as a and b, classes are for more than 1 mm
-CLASS_PATTERN = re.compile(r"([A-Za-z]{1,2})(\d{1,2})")
+CLASS_PATTERN = re.compile(r"([A-Za-z]{1,2})([0-9]{1,2})")
 MISSING_VALUES_TEXT = (
     "its values are not at hand; there are those of a to h, js, k, m, n, p, r and s for shafts and "
     "of A to H and JS for holes"

@@ -52,7 +52,7 @@ DIMENSIONS_NEEDING_UNIT = {
 
 MINUS_SIGN = "\N{MINUS SIGN}"  # which reports print
 DECIMAL_COMMA_PATTERN = re.compile(r"\s*[-+]?\d*,\d")
-NUMBER_PATTERN = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+NUMBER_PATTERN = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 MAX_QUANTITY_LENGTH = 200  # characters of a quantity with its unit
 # A power of a unit: a small number, or a ratio of two in brackets. Other numbers in a unit are
 # refused: pint would spend hours on 9^9^9.
@@ -261,6 +261,11 @@ def _parse(text: str, dimension: str, system: UnitSystem) -> float:
             f"{as_text(text)} has {len(text):,} characters; write a number and a unit like "
             f"{example!r}",
             "too-long",
+        )
+    if any(c.isdecimal() and not c.isascii() for c in text):
+        raise ArgumentError(
+            f"{as_text(text)} has digits other than 0 to 9; write for instance {example!r}",
+            "not-a-number",
         )
     if DECIMAL_COMMA_PATTERN.match(text):
         raise ArgumentError(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import inspect
 import math
+import re
+import shlex
 import subprocess
 import sys
 from functools import partial
@@ -18,6 +20,7 @@ from pinbase.processes.pool import processes
 from pinstress.analysis.gather.gather import loads_only
 from pinstress.cli.commands import run_command_line
 from pinstress.cli.shared import names_in
+from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from tests.conftest import ROOT
 from tests.support.each import each
@@ -202,6 +205,17 @@ def test_an_argument_without_a_name_is_not_told_as_an_option(
 def test_a_name_with_a_comma_is_one_name(text: str, names: list[str]) -> None:
     known = ["a", "b", "lift, cold"] + ["'a'"] * (text == "'a'")
     assert names_in(text, known) == names
+
+
+def test_a_list_that_is_also_a_name_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """`size --pins a,b` sized the pin "a,b" of a study that has pins a and b, too."""
+    known = ["a", "b", "a,b"]
+    with pytest.raises(InputError) as caught:
+        names_in("a,b", known)
+    said = [shlex.split(word)[0] for word in re.findall(r"'[^']*'", str(caught.value))]
+    assert [names_in(text, known) for text in said] == [["a,b"], ["a", "b"]]
 
 
 @each("command", ["run", "sweep", "reliability", "loads"])

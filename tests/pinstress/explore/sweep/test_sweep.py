@@ -306,6 +306,23 @@ def test_a_factor_that_is_missed_is_not_rounded_to_it(capsys: pytest.CaptureFixt
     assert "the required factor of 1.5: B 1" in told
 
 
+def test_a_design_without_stress_is_the_best(capsys: pytest.CaptureFixture[str]) -> None:
+    """It was left out, and the best was the next, or none where there was no other."""
+    for stresses, factors, told in (
+        ([0.0, 500.0, 250.0], [None, 2.0, 4.0], "2.000 to 4.000 2 1"),
+        ([500.0, 0.0, 250.0], [None, None, None], "– 1 2"),
+    ):
+        table = made_up_designs(3, 1, failing=0.0)
+        for name, values in ("max_von_mises", stresses), ("safety_factor", factors):
+            at = table.column_names.index(name)
+            field = table.schema.field(at)
+            table = table.set_column(at, field, [pa.array(values, field.type)])
+        summary(table, Console(width=200))
+        lines = capsys.readouterr().out.splitlines()
+        (line,) = (" ".join(line.split()) for line in lines if line.startswith("B"))
+        assert line.startswith(f"B {told} 500"), line
+
+
 UNHELD = """
 title = "A pin that is not held in one of two cases"
 units = "mm-N-s"
