@@ -290,7 +290,7 @@ def _contact(at: Attempt) -> dict[str, Solution]:
         if held.finest
         or (limit := limit_of(requirement.of_case(case), problem.material)) is None
         or solution.peak.verdict == "singular"
-        or not cells_matter(solution.peak, limit)
+        or not cells_matter(solution, limit)
     }
 
 

@@ -40,12 +40,24 @@ from geometry import CutPin, PinLike
 from geometry.shape.rings import USUAL_RING_COUNT, whole_names
 
 
-def cells_matter(peak: Maximum, limit: float) -> bool:
-    """Return whether a limit, Pa, is within the error, and would not be if cells had none."""
-    if peak.parts is None or meets_limit(peak, limit) is not None:
-        return meets_limit(peak, limit) is None
-    low, high = peak.lower_end, peak.upper_end
-    return not low + peak.parts.cells <= limit < high - peak.parts.cells
+def cells_matter(solution: Solution, limit: float) -> bool:
+    """Return whether a limit, Pa, is within the error, and would not be if cells had none; or
+    whether the pin meets it, and over the range of its joint only the error may not.
+    """
+    peak = solution.peak
+    meets = meets_limit(peak, limit)
+    if meets is None and peak.parts is not None:
+        low, high = peak.lower_end, peak.upper_end
+        return not low + peak.parts.cells <= limit < high - peak.parts.cells
+    if not meets:
+        return meets is None
+    joint, contact = solution.joint, None if peak.places is None else peak.places.contact
+    over = () if joint is None or joint.range is None else joint.range.variations
+    row, deep = peak.upper_end / (peak.max_von_mises or 1.0), 1.0
+    if contact is not None and contact.beneath:
+        deep = contact.upper_end / contact.beneath
+    tops = [(x.max_von_mises, row) for x in over] + [(x.beneath or 0.0, deep) for x in over]
+    return any(stress <= limit < stress * error for stress, error in tops)
 
 
 @dataclass(frozen=True)
