@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from loads import Body, LinkageError, Slider, Turn
+from loads import GROUND, Body, LinkageError, Slider, Turn
 from loads.linkage.mass_properties import flat_bar, round_bar
 from pinstress.study.model.mechanism.drawing import Drawing, joints_on
 from pinstress.study.model.mechanism.drives import drive_table
@@ -14,7 +14,8 @@ from pinstress.study.model.mechanism.joint_layout import Point
 from pinstress.study.model.mechanism.masses import body_mass
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.drives import RotaryDrive, drive_name
-from pinstress.study.schema.mechanism import BodyTable, SliderTable, StopTable
+from pinstress.study.schema.mechanism import BodyTable, MechanismTable, SliderTable, StopTable
+from pinstress.study.schema.space import SpaceMechanismTable
 
 
 def body_anywhere(item: tuple[str, BodyTable]) -> Body:
@@ -76,6 +77,31 @@ def _direction(line: tuple[str, str], at: dict[str, Point]) -> float:
     return math.atan2(y2 - y1, x2 - x1)
 
 
+def missing_centre(body: str, joints: int, form: str) -> LinkageError:
+    """Return the error of a body with mass, of which its joints do not tell the centre."""
+    text = f"body {body}: a body with {joints} joint{'s' * (joints != 1)} needs a centre = {form}"
+    return LinkageError(text, "missing-centre", ("body", body))
+
+
+def geared(mechanism: MechanismTable | SpaceMechanismTable) -> set[str]:
+    """Return the bodies with teeth around a joint."""
+    pairs = {body for gear in mechanism.gear.values() for body in gear.bodies}
+    return pairs | {rack.pinion for rack in mechanism.rack.values()}
+
+
+def _at_its_joint(mechanism: MechanismTable, name: str, body: BodyTable) -> bool:
+    """Return whether a body has its centre at its only joint: a gear, what slides on the ground
+    without turning, and a particle, whose angle nothing holds.
+    """
+    if name in geared(mechanism) or body.inertia is not None:
+        return name in geared(mechanism)
+    slides = [slider.bodies for slider in mechanism.slider.values() if name in slider.bodies]
+    turned = {d.body for d in mechanism.drive if isinstance(d, RotaryDrive)}
+    turned |= {end for stop in mechanism.stop.values() for end in stop.bodies}
+    turned |= {end for n, b in mechanism.body.items() if b.welded_to for end in (n, b.welded_to)}
+    return any(GROUND in pair for pair in slides) or not (slides or name in turned)
+
+
 def body_of(study: Study, drawing: Drawing, name: str, b: BodyTable) -> Body:
     """Return a body with its mass, its centre and its inertia, of a bar by its section.
 
@@ -95,11 +121,8 @@ def body_of(study: Study, drawing: Drawing, name: str, b: BodyTable) -> Body:
     centre = b.centre
     if centre is None:
         on = [at[key] for key in joints_on(drawing.mechanism, name)]
-        if not on or (len(on) > 2 and mass):
-            raise LinkageError(
-                f"body {name}: a body with {len(on)} joints needs a centre = [x, y]",
-                "missing-centre",
-                ("body", name),
-            )
+        known = len(on) == 2 or (len(on) == 1 and _at_its_joint(drawing.mechanism, name, b))
+        if not on or (mass and not known):
+            raise missing_centre(name, len(on), "[x, y]")
         centre = (sum(x for x, _ in on) / len(on), sum(y for _, y in on) / len(on))
     return Body(name, mass, centre, b.inertia)
