@@ -70,6 +70,18 @@ def test_a_wedge_lifts_by_its_slope() -> None:
     assert ledger(forces).violation < 1e-12
 
 
+def test_two_guides_of_one_body_are_named() -> None:
+    """A platen on two columns: nothing says what each of them carries, but no pin is concerned."""
+    linkage = wedge()
+    lift = linkage.sliders[2]
+    for at in (-0.3, 0.4):
+        moved = replace(lift, name="column", start=(at, 0.0), end=(at, 0.5))
+        twice = replace(linkage, sliders=(*linkage.sliders, moved))
+        assert mobility(twice).shared == ("lift", "column")
+        with raises(LinkageError, "redundant-sliders", "lift, column guide"):
+            motion_reactions("x", move(twice, [StateDrive(1.0)], np.zeros(1)))
+
+
 def test_pads_whose_couple_is_open_are_refused_in_any_order() -> None:
     """Three sliders for two bodies that cannot turn: of their couples one is open. Of it depends
     what pads rub, so that the drive's force would depend on the order of the sliders; without pads
