@@ -147,7 +147,7 @@ def test_a_trailing_arm_keeps_the_momentum_of_its_fall() -> None:
     rate = sum(k * (fell[k] @ masses - 1j * sunk[k] * masses.sum()) for k in (-1, 1)) / (2.0 * h)
     found = motion_reactions("drop", course.at(times), pushes(linkage, landing, place))
     f = landing.at(times).forces
-    fixed = sum(found.reactions.force(name)[:, :2] for name in ("O", "T"))
+    fixed = np.sum([found.reactions.force(name)[:, :2] for name in ("O", "T")], axis=0)
     given = 1j * f.vertical + f.on_leg - 1j * G * masses.sum()  # aft is to the right
     force = float(f.vertical.max())
     assert fixed[:, 0] + 1j * fixed[:, 1] == pytest.approx(given - rate, abs=1e-4 * force)

@@ -25,6 +25,7 @@ from pinbase.arrays import Floats
 from tests.support.each import each
 from tests.support.errors import raises
 
+UNIT = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 PHI, TORQUE = math.radians(20.0), 12.0
 TURN = np.linalg.qr(np.random.default_rng(5).standard_normal((3, 3)))[0]
 TURN = TURN * np.linalg.det(TURN)  # the axes of the drawing, in no direction of the world's
@@ -46,7 +47,7 @@ def at_rest(mesh: Mesh, first: GearWheel, second: SpaceJoint | GearWheel) -> Spa
     held = JointAngle("held", joints[1].name)
     measured = measured if isinstance(second, SpaceJoint) else (*measured, held)
     driven = measured[1].name if isinstance(second, SpaceJoint) else "held"
-    bodies = tuple(RigidBody(j.moving, 1.0, j.at, tuple(map(tuple, np.eye(3)))) for j in joints)
+    bodies = tuple(RigidBody(j.moving, 1.0, j.at, UNIT) for j in joints)
     linkage = SpaceLinkage(bodies, tuple(joints), measured, (driven,), ratios=(ratio,))
     motion = space_move(linkage, [StateDrive(0.0)], np.zeros(1))
     load = SpaceForce(first.body, first.centre, couple=vector(TORQUE * first.axis))

@@ -15,7 +15,7 @@ from pinstress.study.model.mechanism.masses import body_mass
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.drives import RotaryDrive, drive_name
 from pinstress.study.schema.mechanism import BodyTable, MechanismTable, SliderTable, StopTable
-from pinstress.study.schema.space import SpaceMechanismTable
+from pinstress.study.schema.tables import AnyMechanism
 
 
 def body_anywhere(item: tuple[str, BodyTable]) -> Body:
@@ -83,17 +83,23 @@ def missing_centre(body: str, joints: int, form: str) -> LinkageError:
     return LinkageError(text, "missing-centre", ("body", body))
 
 
-def geared(mechanism: MechanismTable | SpaceMechanismTable) -> set[str]:
+def geared(mechanism: AnyMechanism) -> set[str]:
     """Return the bodies with teeth around a joint."""
     pairs = {body for gear in mechanism.gear.values() for body in gear.bodies}
     return pairs | {rack.pinion for rack in mechanism.rack.values()}
 
 
-def _at_its_joint(mechanism: MechanismTable, name: str, body: BodyTable) -> bool:
-    """Return whether a body has its centre at its only joint: a gear, what slides on the ground
-    without turning, and a particle, whose angle nothing holds.
+def knows_centre(mechanism: AnyMechanism, name: str) -> bool:
+    """Return whether the centre of mass of a body is stated or follows from its bar or joints: from
+    one joint that of a gear, and in a plane of what slides on the ground without turning and of a
+    particle, whose angle nothing holds.
     """
-    if name in geared(mechanism) or body.inertia is not None:
+    body = mechanism.body[name]
+    joints = len(joints_on(mechanism, name))
+    stated = body.centre is not None or body.bar is not None
+    if stated or joints != 1:
+        return stated or joints == 2
+    if not isinstance(mechanism, MechanismTable) or body.inertia is not None:
         return name in geared(mechanism)
     slides = [slider.bodies for slider in mechanism.slider.values() if name in slider.bodies]
     turned = {d.body for d in mechanism.drive if isinstance(d, RotaryDrive)}
@@ -121,8 +127,7 @@ def body_of(study: Study, drawing: Drawing, name: str, b: BodyTable) -> Body:
     centre = b.centre
     if centre is None:
         on = [at[key] for key in joints_on(drawing.mechanism, name)]
-        known = len(on) == 2 or (len(on) == 1 and _at_its_joint(drawing.mechanism, name, b))
-        if not on or (mass and not known):
+        if not on or (mass and not knows_centre(drawing.mechanism, name)):
             raise missing_centre(name, len(on), "[x, y]")
         centre = (sum(x for x, _ in on) / len(on), sum(y for _, y in on) / len(on))
     return Body(name, mass, centre, b.inertia)

@@ -11,7 +11,7 @@ from loads import LinkageError
 from loads.space.linkage import Inertia, RigidBody, Vector
 from pinbase.arrays import Floats
 from pinstress.study.model.mechanism.masses import body_mass
-from pinstress.study.model.mechanism.parts import geared, missing_centre
+from pinstress.study.model.mechanism.parts import knows_centre, missing_centre
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.space import SpaceBarTable, SpaceBodyTable, SpaceMechanismTable
 
@@ -39,7 +39,7 @@ def body_in_space(
             for joint in mechanism.joint.values()
             if name in (joint.fixed_in, *joint.connections.values())
         ]
-        if not on or (mass and len(on) != 2 and not (len(on) == 1 and name in geared(mechanism))):
+        if not on or (mass and not knows_centre(mechanism, name)):
             raise missing_centre(name, len(on), "[x, y, z]")
         middle = tuple(np.mean(on, axis=0).tolist())
     body = RigidBody(name, mass, middle)

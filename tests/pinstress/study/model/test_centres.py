@@ -54,6 +54,15 @@ def changed(mechanism: dict[str, Any], name: str, **keys: Any) -> dict[str, Any]
     return raw
 
 
+def torque(raw: dict[str, Any]) -> float:
+    """Torque of the drive, N m."""
+    rest = all_loads(study_from(raw), ["rest"])["rest"]
+    if rest.space is not None:
+        return float(rest.space.dynamics.drive[0, 0])
+    assert rest.dynamics is not None
+    return float(rest.dynamics.drive[0, 0])
+
+
 @each(
     ("raw", "bodies"),
     [
@@ -79,10 +88,7 @@ def test_the_weight_of_an_arm_and_of_a_ram_has_its_moment() -> None:
         changed(PLANE["mechanism"], "arm", centre=[0.7, 0.1]),
         changed(SPACE | {"gravity": [0, -G, 0]}, "arm", centre=[0.7, 0.1, 0.0]),
     ):
-        rest = all_loads(study_from(raw), ["rest"])["rest"]
-        solved = rest.dynamics or (rest.space and rest.space.dynamics)
-        assert solved is not None
-        assert solved.drive[0, 0] == pytest.approx(50.0 * G * 0.7)
+        assert torque(raw) == pytest.approx(50.0 * G * 0.7)
     raw = changed(RAM, "barrel", centre=[0.3, -0.5])
     raw["mechanism"]["body"]["rod"]["centre"] = [0.7, -0.1]
     force = all_loads(study_from(raw), ["rest"])["rest"].reactions.force("Q")[0]
@@ -90,6 +96,25 @@ def test_the_weight_of_an_arm_and_of_a_ram_has_its_moment() -> None:
     about_p = 40.0 * G * (0.3 - 0.2) + 20.0 * G * (0.7 - 0.2)
     assert 0.6 * (force[1] - force[0]) == pytest.approx(-about_p)
     assert force[1] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_force_at_a_centre_that_nothing_states_is_refused() -> None:
+    """Of an arm without mass the centre may be left out; then a force does not act there."""
+    push: dict[str, Any] = {"body": "arm", "force": [0.0, -100.0]}
+    law = {"position_of": "arm", "points": [["-9 deg", 100], ["9 deg", 100]]}
+    varies: dict[str, Any] = {"body": "arm", "direction": [0, -1], "force_law": law}
+    about = {"body": "arm", "couple": 70.0}
+    for mechanism, two in ((PLANE["mechanism"], True), (SPACE, False)):
+        raw = changed(mechanism | {"gravity": [0.0] * (2 if two else 3)}, "arm", mass=0.0)
+        for load in (push, varies) if two else ({"body": "arm", "force": [0.0, -100.0, 0.0]},):
+            raw["case"]["rest"]["apply"] = [load]
+            with raises(InputError, "missing-key", "apply[1]: give at", "of arm"):
+                all_loads(study_from(raw), ["rest"])
+            raw["case"]["rest"]["apply"] = [load | {"at": [0.7, 0.2] if two else [0.7, 0.2, 0.0]}]
+            assert torque(raw) == pytest.approx(70.0)
+    raw = changed(PLANE["mechanism"] | {"gravity": [0.0, 0.0]}, "arm", mass=0.0)
+    raw["case"]["rest"]["apply"] = [about]
+    assert torque(raw) == pytest.approx(-70.0)
 
 
 def test_gears_blocks_and_weights_have_their_centre_at_their_joint() -> None:
@@ -102,6 +127,4 @@ def test_gears_blocks_and_weights_have_their_centre_at_their_joint() -> None:
     }
     mechanism["body"] |= {"weight": {"mass": 10.0}, "gear": {"mass": 4.0, "inertia": 0.1}}
     mechanism["gear"] = {"g": {"bodies": ["ground", "gear"], "joints": ["O", "S"], "teeth": [4, 1]}}
-    solved = all_loads(study_from(raw), ["rest"])["rest"].dynamics
-    assert solved is not None
-    assert solved.drive[0, 0] == pytest.approx(G * (50.0 * 0.7 + 10.0 * 1.0 + 4.0 * 0.5))
+    assert torque(raw) == pytest.approx(G * (50.0 * 0.7 + 10.0 * 1.0 + 4.0 * 0.5))
