@@ -1,4 +1,4 @@
-"""An arm about a tilted axis: extremes, means and work of its motion, and what holds it at rest, by
+"""An arm about a tilted axis: extremes, means and work of its motion, and what locks it at rest, by
 closed forms.
 """
 

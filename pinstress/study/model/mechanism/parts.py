@@ -92,7 +92,7 @@ def geared(mechanism: AnyMechanism) -> set[str]:
 def knows_centre(mechanism: AnyMechanism, name: str) -> bool:
     """Return whether the centre of mass of a body is stated or follows from its bar or joints: from
     one joint that of a gear, and in a plane of what slides on the ground without turning and of a
-    particle, whose angle nothing holds.
+    particle, on whose angle neither a drive nor a stop acts.
     """
     body = mechanism.body[name]
     joints = len(joints_on(mechanism, name))
