@@ -70,7 +70,7 @@ def falling(linkage: Linkage, place: Touchdown) -> Landing:
     return land(
         Drop(
             1050.0, effective_mass(linkage, place, STROKE), 2.5, PowerTyre(1.2e6, 1.25, 0.05),
-            strut, WHEEL, 0.9, duration=0.6, travel=travel(linkage, place, STROKE),
+            strut, WHEEL, 0.9, duration=0.4, travel=travel(linkage, place, STROKE),
         )
     )  # fmt: skip
 
@@ -85,8 +85,8 @@ def test_an_upright_strut_carries_what_the_fall_says(forward: str, turned: float
     assert np.array(place.aft) == pytest.approx(turn @ -ahead)
     assert effective_mass(linkage, place, STROKE) == pytest.approx(60.0)
     landing = falling(linkage, place)
-    course = Course(linkage, laws(landing, place), 0.0, 0.6)
-    times = np.linspace(0.0, 0.6, 41)[1:]
+    course = Course(linkage, laws(landing, place), 0.0, 0.4)
+    times = np.linspace(0.0, 0.4, 41)[1:]
     found = motion_reactions("drop", course.at(times), pushes(linkage, landing, place))
     f = landing.at(times).forces
     force = f.vertical.max()
@@ -139,8 +139,8 @@ def test_a_trailing_arm_keeps_the_momentum_of_its_fall() -> None:
     """
     linkage, place = trailing()
     landing = falling(linkage, place)
-    course = Course(linkage, laws(landing, place), 0.0, 0.6)
-    h, times = 2e-5, np.array([0.03, 0.08, 0.19, 0.33])
+    course = Course(linkage, laws(landing, place), 0.0, 0.4)
+    h, times = 2e-5, np.array([0.03, 0.08, 0.19, 0.27])
     sunk = {k: landing.at(times + k * h).sink_velocity for k in (-1, 1)}
     fell = {k: course.at(times + k * h).centres[1] for k in (-1, 1)}
     masses = np.array([item.mass for item in linkage.items])
