@@ -91,21 +91,23 @@ def geared(mechanism: AnyMechanism) -> set[str]:
 
 def knows_centre(mechanism: AnyMechanism, name: str) -> bool:
     """Return whether the centre of mass of a body is stated or follows from its bar or joints: from
-    one joint that of a gear, and in a plane of what slides on the ground without turning and of a
-    particle, on whose angle neither a drive nor a stop acts.
+    one joint that of a gear, and in a plane of what slides and never rotates (on the ground, or as
+    its inertia of 0 says), and of a point mass on whose angle neither a drive nor a stop acts.
     """
     body = mechanism.body[name]
     joints = len(joints_on(mechanism, name))
     stated = body.centre is not None or body.bar is not None
     if stated or joints != 1:
         return stated or joints == 2
-    if not isinstance(mechanism, MechanismTable) or body.inertia is not None:
+    if name in geared(mechanism) or not isinstance(mechanism, MechanismTable) or body.inertia:
         return name in geared(mechanism)
     slides = [slider.bodies for slider in mechanism.slider.values() if name in slider.bodies]
     turned = {d.body for d in mechanism.drive if isinstance(d, RotaryDrive)}
     turned |= {end for stop in mechanism.stop.values() for end in stop.bodies}
     turned |= {end for n, b in mechanism.body.items() if b.welded_to for end in (n, b.welded_to)}
-    return any(GROUND in pair for pair in slides) or not (slides or name in turned)
+    if slides:  # a stated inertia of 0 says that it never rotates
+        return body.inertia is not None or any(GROUND in pair for pair in slides)
+    return name not in turned
 
 
 def body_of(study: Study, drawing: Drawing, name: str, b: BodyTable) -> Body:
