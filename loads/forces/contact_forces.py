@@ -11,6 +11,7 @@ import numpy as np
 from loads.forces.force_balance import ForceBalance
 from loads.linkage.friction import MAX_ENUMERATED_CONTACTS, JammingError, contact_sizes
 from loads.linkage.linkage import LinkageError
+from loads.motion.joint_forces import loops_of_sliders
 from pinbase.arrays import Complex, Floats
 
 MIN_SLIDING_SPEED = 1e-13  # of the fastest coordinate of the course: a slider this slow is at rest
@@ -49,13 +50,26 @@ def _opposing(balance: ForceBalance, speed: Floats) -> Floats:
 
 
 def _rubbing_sliders(balance: ForceBalance) -> Iterator[ContactSource]:
-    """The friction of each slider that has some."""
+    """The friction of each slider that has some.
+
+    Raises: LinkageError for a slider whose couple, and so whose friction, is indeterminate.
+    """
     motion, first = balance.motion, balance.loops.frames - 1
+    unguided = loops_of_sliders(balance.loops)
     for k, s in enumerate(motion.linkage.sliders):
         if s.friction:
             push = np.zeros_like(motion.q)
             push[:, first + k] = -1.0
             share = s.friction * _opposing(balance, motion.v[:, first + k])
+            if s.bearing is not None and share.any() and (loop := unguided.get(k)):
+                raise LinkageError(
+                    f"sliders {', '.join(loop)} form a loop in which no body can turn, so "
+                    "rigid-body statics does not divide the couple among them, by which the pads "
+                    f"of {s.name} rub; remove its bearing (the couple is then carried without "
+                    "friction), or let a body of the loop turn on a pin",
+                    "couple-indeterminate",
+                    ("slider", s.name),
+                )
             f = balance.multipliers(push, balance.no_forces)
             yield ContactSource(
                 f"slider {s.name}", "slider", k, share, f, balance.no_couples, balance.no_spread

@@ -13,7 +13,16 @@ from pinbase.arrays import Complex, Floats
 
 
 def undetermined(linkage: Linkage, freedom: Mobility) -> LinkageError:
-    """The error of connections whose forces rigid-body statics leaves open, without a rule."""
+    """The error of connections whose forces rigid-body statics leaves open, without a rule, or of
+    sliders, for which there is none.
+    """
+    if not set(freedom.shared) & {name for name, _ in linkage.forces}:
+        text = (
+            f"sliders {', '.join(freedom.shared)} guide the same bodies, and rigid-body statics "
+            "does not divide the load among them; keep one, with their distance or length as its "
+            "bearing"
+        )
+        return LinkageError(text, "redundant-sliders", ("slider", freedom.shared[0]))
     text = (
         f"{_open(freedom)}; state how they share the load: [[mechanism.sharing]] with connections "
         "= [...] and stiffness = [...], one entry for each degree of redundancy"

@@ -293,3 +293,6 @@ def _particle_contradictions(linkage: Linkage, body: Body) -> Iterator[Contradic
             "connection, at its centre; give its inertia, or place its centre at that joint"
         )
         yield text, "particle", ("body", body.name)
+    elif turned := [t.name for t in linkage.turns if body.name in (t.base, t.body)]:
+        text = f"body {body.name}: {turned[0]} acts on its angle; give its inertia (0 is allowed)"
+        yield text, "missing-inertia", ("body", body.name)

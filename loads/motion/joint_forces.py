@@ -66,6 +66,17 @@ def _members(loops: Loops, slides: bool, count: int) -> Members:
     return Members(from_items, from_closures)
 
 
+def loops_of_sliders(loops: Loops) -> dict[int, tuple[str, ...]]:
+    """The names of the sliders that alone form a loop, by the number of each of them."""
+    out = dict[int, tuple[str, ...]]()
+    for (slides, which), body, carrier in zip(loops.closing, *loops.closing_ends[:2], strict=False):
+        if slides:
+            between = {e.which for e in loops.tree if (body in e.away) != (carrier in e.away)}
+            loop = sorted(between | {which})
+            out |= dict.fromkeys(loop, tuple(loops.linkage.sliders[k].name for k in loop))
+    return out
+
+
 def slider_couple(
     loops: Loops,
     which: int,
@@ -79,7 +90,8 @@ def slider_couple(
 ) -> Floats:
     """Couple of the base on the moving body of a slider, (T,) N m.
 
-    A slider that closes a loop of sliders alone is assumed to carry no couple.
+    A slider that closes a loop of sliders alone is taken to carry no couple, which nothing but its
+    own friction depends on (`loops_of_sliders`).
     which: number of the slider.
     about: (T,) points, complex, m.
     centres, needed, couples: (T, items) centres of mass, and forces and couples that items require.

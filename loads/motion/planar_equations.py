@@ -10,7 +10,7 @@ from loads.linkage.linkage import Linkage
 from loads.linkage.parts import GROUND, Slider
 from loads.motion.complex_points import Pose
 from loads.motion.equations import CLOSING_GEARS, MIN_PARTICIPATION
-from loads.motion.joint_forces import connection_members
+from loads.motion.joint_forces import connection_members, slider_members
 from loads.motion.loop_equations import Loops
 from pinbase.arrays import Floats
 
@@ -71,18 +71,25 @@ class PlanarEquations(Loops):
         return ""
 
     def stressed(self, pose: Pose, multipliers: Floats) -> tuple[str, ...]:
-        """Names of the connections and teeth that carry any of k self-equilibrated sets of forces.
+        """Names of the connections and teeth that carry any of k self-equilibrated sets of forces;
+        of the sliders where these alone do.
 
-        pose: at a single instant. multipliers: (rows, k).
+        pose: at a single instant. multipliers: (rows, k), unit vectors.
         """
         closing = self.closing_forces(pose, multipliers.T)
         if not closing.size:
             return ()
         no_forces = np.zeros((len(closing), len(self.linkage.items)), dtype=complex)
-        forces = connection_members(self).forces(no_forces, closing)
-        size = np.abs(np.hstack([forces, closing[:, len(self.closing) :]])).max(axis=0)
-        named = zip((name for name, _ in self.linkage.forces), size, strict=True)
-        return tuple(name for name, f in named if f > MIN_PARTICIPATION * size.max())
+        pins, sliders = (
+            m.forces(no_forces, closing) for m in (connection_members(self), slider_members(self))
+        )
+        size = np.abs(np.hstack([pins, closing[:, len(self.closing) :]])).max(axis=0)
+        names = [name for name, _ in self.linkage.forces]
+        if size.max() <= MIN_PARTICIPATION:
+            size, names = np.abs(sliders).max(axis=0), [s.name for s in self.linkage.sliders]
+        return tuple(
+            n for n, f in zip(names, size, strict=True) if f > MIN_PARTICIPATION * size.max()
+        )
 
     def apart(self, q: Floats, drives: Floats) -> tuple[tuple[str, ...], float]:
         """Names of the members that do not meet at coordinates q (n,), and the largest gap, m.

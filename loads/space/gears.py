@@ -168,9 +168,10 @@ def _on_cylinders(
     first, second = (centre + (height - h) * axis for centre, h in zip(centres, along, strict=True))
     line, total = second - first, sum(sizes)
     distance = float(np.linalg.norm(line))
-    if not distance or not total or max(sizes) <= 0.0:
+    coincide = distance <= PARALLEL * float(np.linalg.norm(np.subtract(*centres)))
+    if coincide or not total or max(sizes) <= 0.0:
         raise LinkageError(
-            f"gear {name}: {'its axes coincide' if not distance else 'ring and gear are equal'}"
+            f"gear {name}: {'its axes coincide' if coincide else 'ring and gear are equal'}"
             ", so the pitch circles cannot touch; check joints, radii and teeth",
             "gears-apart",
             ("gear", name),

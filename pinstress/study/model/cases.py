@@ -31,6 +31,7 @@ from loads import (
 from loads.landing import Landing, pushes
 from loads.landing import laws as landing_laws
 from loads.space.linkage import SpaceLinkage
+from loads.space.out_of_plane import SideLoad
 from loads.space.over_time import SpaceOverTime
 from pinbase.arrays import Floats
 from pinbase.keys import key_part
@@ -49,7 +50,7 @@ from pinstress.study.model.landing import drop, drop_note, fallen, still
 from pinstress.study.model.mechanism.drives import laws, span, state
 from pinstress.study.model.mechanism.forces import springs
 from pinstress.study.model.mechanism.linkage import AnyLinkage, fit_offer
-from pinstress.study.model.mechanism.sideways import Sideways, sideways
+from pinstress.study.model.mechanism.sideways import Sideways, axle_height, sideways
 from pinstress.study.model.moving_loads import Acting, MovingLoads, acting
 from pinstress.study.model.space_cases import (
     InSpace,
@@ -253,8 +254,10 @@ def _drop(study: Study, name: str, case: DropCase, mechanism: Linkage, extremes:
         return CaseLoads(solved.reactions, solved)
     landing = fallen(study, name, leg)
     course = Course(mechanism, landing_laws(landing, where), 0.0, leg.duration)
-    loads: list[Load] = [*springs(study, mechanism), *pushes(mechanism, landing, where)]
-    moved = _Moved(name, course, tuple(loads), sideways(study, case, mechanism, ()))
+    ground, *masses = pushes(mechanism, landing, where)
+    beside = SideLoad(ground, axle_height(study, where.body, where.joint))
+    side = sideways(study, case, mechanism, [beside])
+    moved = _Moved(name, course, (*springs(study, mechanism), ground, *masses), side)
     return replace(_over_time(moved, case.samples, drop_note(case, leg)), landing=landing)
 
 

@@ -21,7 +21,7 @@ from loads.space.linkage import SpaceLinkage, Vector
 from loads.space.out_of_plane import SideLoad
 from pinbase.keys import key_part
 from pinstress.study.model.landing import drop, fallen, place, still
-from pinstress.study.model.mechanism.drives import mechanism_of
+from pinstress.study.model.mechanism.sideways import axle_height
 from pinstress.study.model.mechanism.space import place as place_in_space
 from pinstress.study.model.mechanism.space import space_mechanism
 from pinstress.study.model.space_forces import vector
@@ -52,7 +52,8 @@ class Grounded:
 
     def loads(self, study: Study, case: GroundCase, mechanism: Linkage) -> tuple[SideLoad, ...]:
         """Return the forces on the axle, with their moments about it."""
-        at, z = mechanism.joint(case.joint).at, mechanism_of(study).joint[case.joint].z
+        at = mechanism.joint(case.joint).at
+        z = axle_height(study, case.body, case.joint)
         return tuple(
             SideLoad(
                 Applied(case.body, at, force.force[:2], force.couple[2]),

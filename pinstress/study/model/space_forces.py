@@ -17,6 +17,7 @@ from pinstress.study.model.mechanism.forces import (
     column,
     curve,
     line_law,
+    require_centre,
     torsion_law,
 )
 from pinstress.study.model.mechanism.space import (
@@ -91,6 +92,8 @@ def load_in_space(
         nominal = nominal_size(table.impulse)
         force = along(table.impulse.direction, nominal if size is None else size)
     if table.at is None:
+        if any(force) or table.force_law is not None:
+            require_centre(study, f"case.{key_part(case)}.apply[{number + 1}]", table.body)
         at = next(body.centre for body in linkage.bodies if body.name == table.body)
     else:
         stated = table.at if isinstance(table.at, str) else vector(table.at)

@@ -136,7 +136,9 @@ def _of_dimension(where: str, load: ApplyTable, dimension: int) -> Iterator[Wron
 
 
 def _of_time(where: str, load: ApplyTable, moves: bool) -> Iterator[Wrong]:
-    """Yield an error for what depends on time in a case that is no motion."""
+    """Yield errors for what depends on time in a case that is no motion, and for the range of an
+    impulse in one that is.
+    """
     timed = [key for key in ("begin", "end") if getattr(load, key) is not None]
     for key in ("force_law", "couple_law"):
         law = getattr(load, key)
@@ -147,6 +149,12 @@ def _of_time(where: str, load: ApplyTable, moves: bool) -> Iterator[Wrong]:
             f'{where}.{timed[0]}: depends on time, which only a case of kind "motion" has; for a '
             "table of another argument give position_of or length_between",
             code="needs-motion",
+        )
+    if moves and load.impulse is not None and load.impulse.range is not None:
+        yield Wrong(
+            f'{where}.impulse.range: a case of kind "motion" has the impulse as stated alone; '
+            'remove it, or give a case of kind "static" or "instant" this range',
+            code="needs-instant",
         )
 
 

@@ -166,8 +166,8 @@ class BodyTable(StrictTable):
     bar: BarTable | None = None
     """A uniform straight bar, which determines mass, centre and inertia."""
     centre: Point | None = None
-    """Centre of mass in the drawn position. Default: midway between the joints, if there are
-    two."""
+    """Centre of mass in the drawn position. Default: midway between the joints, if there are two;
+    at the only joint of a gear, a point mass, and what slides without rotating (inertia = 0)."""
     inertia: Inertia | None = None
     """Moment of inertia about the centre of mass. Default: that of the bar; without a bar the body
     is a particle, which has one connection or slides on the ground. Static cases need none."""

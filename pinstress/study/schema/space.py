@@ -207,8 +207,8 @@ class SpaceBodyTable(StrictTable):
     bar: SpaceBarTable | None = None
     """A uniform straight bar, which determines mass, centre and inertia."""
     centre: Point3 | None = None
-    """Centre of mass in the drawn position. Default: midway between the joints, if there are
-    two."""
+    """Centre of mass in the drawn position. Default: midway between the joints, if there are two;
+    at the only joint of a gear."""
     inertia: Annotated[list[SignedInertia], Field(min_length=3, max_length=6)] | None = None
     """Inertia about the centre of mass along the world's axes as drawn: [xx, yy, zz] or [xx, yy,
     zz, xy, xz, yz], the entries of the tensor, so that xy is minus the integral of x y dm. Default:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import permutations
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from loads import (
     ConstantDrive,
     Joint,
     Linkage,
+    LinkageError,
     Slider,
     StateDrive,
     Turn,
@@ -23,6 +25,7 @@ from loads import (
     motion_reactions,
     move,
 )
+from tests.support.errors import raises
 
 SLOPE = 0.4
 
@@ -65,6 +68,38 @@ def test_a_wedge_lifts_by_its_slope() -> None:
     assert forces.drive[0, 0] == pytest.approx(-7.0 * 9.81 * np.tan(SLOPE))
     assert forces.reactions.force("P")[0, :2] == pytest.approx([0.0, -4.0 * 9.81])
     assert ledger(forces).violation < 1e-12
+
+
+def test_two_guides_of_one_body_are_named() -> None:
+    """A platen on two columns: nothing says what each of them carries, but no pin is concerned."""
+    linkage = wedge()
+    lift = linkage.sliders[2]
+    for at in (-0.3, 0.4):
+        moved = replace(lift, name="column", start=(at, 0.0), end=(at, 0.5))
+        twice = replace(linkage, sliders=(*linkage.sliders, moved))
+        assert mobility(twice).shared == ("lift", "column")
+        with raises(LinkageError, "redundant-sliders", "lift, column guide"):
+            motion_reactions("x", move(twice, [StateDrive(1.0)], np.zeros(1)))
+
+
+def test_pads_whose_couple_is_open_are_refused_in_any_order() -> None:
+    """Three sliders for two bodies that cannot turn: of their couples one is open. Of it depends
+    what pads rub, so that the drive's force would depend on the order of the sliders; without pads
+    it does not.
+    """
+    law = ConstantDrive(1.0, 0.8, 1.0)
+    side = Applied("follower", (0.9, 1.0), (30.0, -40.0))
+    alone = list[float]()
+    for order in permutations(replace(s, friction=0.2) for s in wedge().sliders):
+        rubbing = replace(wedge(), sliders=order)
+        motion = move(rubbing, [law], np.array([0.3, 0.6]))
+        alone.append(float(motion_reactions("lift", motion, [side]).drive[0, 0]))
+        padded = replace(rubbing, sliders=tuple(replace(s, bearing=0.2) for s in order))
+        motion = move(padded, [law], np.array([0.3, 0.6]))
+        with raises(LinkageError, "couple-indeterminate", "push", "slope", "lift"):
+            motion_reactions("lift", motion, [side])
+        motion_reactions("still", move(padded, [StateDrive(0.9)], np.zeros(1)), [side])
+    assert alone == pytest.approx([alone[0]] * 6, rel=1e-12)
 
 
 def test_a_wedge_with_friction_holds_itself() -> None:

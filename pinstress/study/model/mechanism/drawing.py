@@ -9,6 +9,7 @@ from loads import LinkageError
 from pinstress.study.model.mechanism.joint_layout import Point
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.mechanism import MechanismTable
+from pinstress.study.schema.tables import AnyMechanism
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class Drawing:
             )
 
 
-def joints_on(mechanism: MechanismTable, body: str) -> list[str]:
+def joints_on(mechanism: AnyMechanism, body: str) -> list[str]:
     """Return the joints at which a body turns or of which it carries the pin."""
     joints = mechanism.joint.items()
     return [name for name, j in joints if body in (j.fixed_in, *j.connections.values())]

@@ -28,6 +28,8 @@ from loads import (
 from loads.linkage.parts import Point
 from loads.space.out_of_plane import SideLoad
 from pinbase.keys import key_part
+from pinstress.study.model.mechanism.drives import mechanism_of
+from pinstress.study.model.mechanism.parts import knows_centre
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import ApplyTable
 from pinstress.study.schema.forces import (
@@ -171,6 +173,16 @@ def _at(mechanism: Linkage, place: JointOrPoint) -> Point:
     return mechanism.joint(place).at if isinstance(place, str) else place
 
 
+def require_centre(study: Study, where: str, body: str) -> None:
+    """Raise InputError for a force at the centre of mass of a body of which that is not known.
+
+    where: the key of the load.
+    """
+    if not knows_centre(mechanism_of(study), body):
+        text = f"{where}: give at; the centre of mass of {body}, where it would act, is not stated"
+        raise study.error(text, code="missing-key")
+
+
 def load(
     study: Study, where: str, table: ApplyTable, force: Sequence[float], mechanism: Linkage
 ) -> tuple[SideLoad, ...]:
@@ -181,6 +193,8 @@ def load(
     Raises: InputError.
     """
     if table.at is None:
+        if any(force):
+            require_centre(study, where, table.body)
         at, z = next(b.centre for b in mechanism.bodies if b.name == table.body), None
     elif isinstance(table.at, str):
         at, z = mechanism.joint(table.at).at, None

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from loads import Body, LinkageError, Slider, Turn
+from loads import GROUND, Body, LinkageError, Slider, Turn
 from loads.linkage.mass_properties import flat_bar, round_bar
 from pinstress.study.model.mechanism.drawing import Drawing, joints_on
 from pinstress.study.model.mechanism.drives import drive_table
@@ -14,7 +14,8 @@ from pinstress.study.model.mechanism.joint_layout import Point
 from pinstress.study.model.mechanism.masses import body_mass
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.drives import RotaryDrive, drive_name
-from pinstress.study.schema.mechanism import BodyTable, SliderTable, StopTable
+from pinstress.study.schema.mechanism import BodyTable, MechanismTable, SliderTable, StopTable
+from pinstress.study.schema.tables import AnyMechanism
 
 
 def body_anywhere(item: tuple[str, BodyTable]) -> Body:
@@ -76,6 +77,39 @@ def _direction(line: tuple[str, str], at: dict[str, Point]) -> float:
     return math.atan2(y2 - y1, x2 - x1)
 
 
+def missing_centre(body: str, joints: int, form: str) -> LinkageError:
+    """Return the error of a body with mass, of which its joints do not tell the centre."""
+    text = f"body {body}: a body with {joints} joint{'s' * (joints != 1)} needs a centre = {form}"
+    return LinkageError(text, "missing-centre", ("body", body))
+
+
+def geared(mechanism: AnyMechanism) -> set[str]:
+    """Return the bodies with teeth around a joint."""
+    pairs = {body for gear in mechanism.gear.values() for body in gear.bodies}
+    return pairs | {rack.pinion for rack in mechanism.rack.values()}
+
+
+def knows_centre(mechanism: AnyMechanism, name: str) -> bool:
+    """Return whether the centre of mass of a body is stated or follows from its bar or joints: from
+    one joint that of a gear, and in a plane of what slides and never rotates (on the ground, or as
+    its inertia of 0 says), and of a point mass on whose angle neither a drive nor a stop acts.
+    """
+    body = mechanism.body[name]
+    joints = len(joints_on(mechanism, name))
+    stated = body.centre is not None or body.bar is not None
+    if stated or joints != 1:
+        return stated or joints == 2
+    if name in geared(mechanism) or not isinstance(mechanism, MechanismTable) or body.inertia:
+        return name in geared(mechanism)
+    slides = [slider.bodies for slider in mechanism.slider.values() if name in slider.bodies]
+    turned = {d.body for d in mechanism.drive if isinstance(d, RotaryDrive)}
+    turned |= {end for stop in mechanism.stop.values() for end in stop.bodies}
+    turned |= {end for n, b in mechanism.body.items() if b.welded_to for end in (n, b.welded_to)}
+    if slides:  # a stated inertia of 0 says that it never rotates
+        return body.inertia is not None or any(GROUND in pair for pair in slides)
+    return name not in turned
+
+
 def body_of(study: Study, drawing: Drawing, name: str, b: BodyTable) -> Body:
     """Return a body with its mass, its centre and its inertia, of a bar by its section.
 
@@ -95,11 +129,7 @@ def body_of(study: Study, drawing: Drawing, name: str, b: BodyTable) -> Body:
     centre = b.centre
     if centre is None:
         on = [at[key] for key in joints_on(drawing.mechanism, name)]
-        if not on or (len(on) > 2 and mass):
-            raise LinkageError(
-                f"body {name}: a body with {len(on)} joints needs a centre = [x, y]",
-                "missing-centre",
-                ("body", name),
-            )
+        if not on or (mass and not knows_centre(drawing.mechanism, name)):
+            raise missing_centre(name, len(on), "[x, y]")
         centre = (sum(x for x, _ in on) / len(on), sum(y for _, y in on) / len(on))
     return Body(name, mass, centre, b.inertia)

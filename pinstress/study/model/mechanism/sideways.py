@@ -111,6 +111,19 @@ def _offsets(study: Study, mechanism: Linkage) -> tuple[Offsets, str]:
     )
 
 
+def axle_height(study: Study, body: str, joint: str) -> float | None:
+    """Return the z at which the ground pushes on a body at an axle, m: amid the other links on it,
+    as the wheel, or else at the body. None where no z of the axle is stated.
+    """
+    table = plane_of(study).joint[joint]
+    if table.z is None or joint not in study.table.pin:
+        return table.z
+    shape, ears = pin(study, joint), study.table.pin[joint].ears
+    on = {c: b for c, b in table.connections.items() if c in shape.connections}
+    wheels = [c for c, b in on.items() if b != body] or [*on]
+    return table.z + sum(middle_of(c, shape, ears) for c in wheels) / max(len(wheels), 1)
+
+
 def _arms(mechanism: Linkage) -> dict[str, list[Floats]]:
     """Return the vectors (2,) m from the centre of mass of every body to its joints."""
     return {

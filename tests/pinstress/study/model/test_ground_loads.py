@@ -207,6 +207,38 @@ def test_a_wheel_beside_the_plane_rolls_its_leg() -> None:
     assert loads.reactions.moments[0, k] == pytest.approx(expected, abs=1e-4)
 
 
+def test_a_wheel_beside_the_plane_twists_its_leg_in_a_drop_too() -> None:
+    """A leg without mass: what the ground does amid the wheel's band balances the fixed pins."""
+    raw = raw_study(load_study(ROOT / "studies" / "drop.toml"))
+    del raw["lug_defaults"]
+    mechanism = raw["mechanism"]
+    for body in mechanism["body"].values():
+        body |= {"mass": 0.0} | ({"inertia": 0.0} if "inertia" in body else {})
+    for name, z in (("A", -39.0), ("B", -25.0), ("C", -25.0), ("W", 130.0)):
+        mechanism["joint"][name]["z"] = z
+    bands = [{"length": 50, "diameter": 20, "name": "root"},
+             {"length": 40, "diameter": 20, "connection": "W"}]  # fmt: skip
+    raw["pin"] = {"W": {"material": "AISI 4340", "profile": bands, "clamp": ["root"]}}
+    loads = all_loads(study_from(raw), ["landing", "drag"])
+    landing = loads["landing"].landing
+    assert landing is not None
+    f = landing.at(np.array(loads["landing"].reactions.times)).forces
+    on_ground = loads["drag"].ground
+    assert on_ground is not None
+    steady = np.sum([force.force for force in on_ground.forces], axis=0)[None]
+    falling = np.stack([f.on_leg, f.vertical, 0.0 * f.vertical], axis=1)
+    for name, push in (("landing", falling), ("drag", steady)):
+        r, motion = loads[name].reactions, loads[name].dynamics
+        assert motion is not None
+        axle = np.append(motion.motion.joint("W")[0], np.full((len(push), 1), 0.2), axis=1)
+        moment = np.cross(axle, push)
+        for pin, at in (("A", (0.0, 0.0)), ("C", (0.18, 0.33))):
+            k, z = r.connections.index(pin), (-0.039 if pin == "A" else -0.025)
+            moment -= np.cross([*at, z], r.forces[:, k]) + r.moments[:, k]
+        size = np.abs(np.cross(axle, push)).max()
+        np.testing.assert_allclose(moment, 0.0, atol=1e-7 * size, err_msg=name)
+
+
 def test_a_wheel_without_inertia_carries_no_brake() -> None:
     study = study_from(leg(part=None, factors=[BRAKED], body="wheel"))
     with raises(InputError, "particle", "body wheel"):

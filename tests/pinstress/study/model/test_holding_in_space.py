@@ -169,6 +169,7 @@ fixed_in = "leg"
 connections = { W1 = "wheel" }
 [mechanism.body.wheel]
 mass = 1
+centre = [0, 0, -2]
 inertia = [1, 1, 1]
 [mechanism.stop.brake]
 joint = "W"

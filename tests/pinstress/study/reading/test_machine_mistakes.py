@@ -15,6 +15,15 @@ from tests.support.errors import raises
 STUDIES = ROOT / "studies"
 GAS = 'table = "engine/gas_force.csv"        # columns position_deg,force'
 TURN = 'ground_motion = { rate = "1 rad/s" }'
+PUSH = "[[case.two_turns.apply]]"
+IMPULSE = """body = "piston"
+[case.two_turns.apply.impulse]
+mass = 1
+velocity_change = 1
+impulse_time = 1
+direction = [1, 0]
+range = { impulse_time = [1, 2] }
+"""
 HOLD, OFF = 'hold = ["downlock"]', "outside-table"
 LOAD = 'force = { value = ["40 kN", "90 kN"], provenance = "assumed" }'
 SUN = 'bodies = ["sun", "planet1"]'
@@ -39,6 +48,7 @@ LOCKS = 'bodies = ["upper_lock", "lower_lock"]'
         ("engine", 'at = "C"\n', 'at = "C"\nbegin = 2\nend = 1\n', "out-of-range", "begin"),
         ("main_gear", LOAD, "couple_law = { points = [[0, 0], [1, 1]] }", "needs-motion", "time"),
         ("main_gear", LOAD, f"{LOAD}\nend = 2", "needs-motion", "end"),
+        ("engine", PUSH, f"{PUSH}\n{IMPULSE}\n{PUSH}", "needs-instant", "range"),
         ("main_gear", HOLD, 'hold = ["uplock"]', "unknown-stop", "'uplock'"),
         ("main_gear", HOLD, 'hold = ["downlock", "actuator"]', "hold-too-many", "parallel"),
         ("main_gear", HOLD, "hold = []", "list-too-short", "hold"),
