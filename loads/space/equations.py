@@ -356,8 +356,8 @@ class SpaceEquations:
             joints = [j for j in self.linkage.joints if body in (j.base, j.moving)]
             arms = np.array([pose.arm(k, j.at)[0] for j in joints] or [(1.0, 0.0, 0.0)])
             speed = each.velocity[0, k] + np.cross(each.spin[0, k], arms)
-            still = np.abs(speed).max() <= MIN_PARTICIPATION * size.max() * self._length
-            if not body or not still:
+            least = MIN_PARTICIPATION * size.max() * self.linkage.length_scale
+            if not body or np.abs(speed).max() > least:
                 return ""
             ends = " and ".join(j.name for j in joints)
             spinning.append(
@@ -365,10 +365,6 @@ class SpaceEquations:
                 'these joints "universal", its axes square to that line'
             )
         return "; ".join(dict.fromkeys(spinning))
-
-    @property
-    def _length(self) -> float:
-        return self.linkage.length_scale
 
     def stressed(self, pose: SpacePose, multipliers: Floats) -> tuple[str, ...]:
         """Names of the joints and gears that carry any of k self-equilibrated sets of forces.
