@@ -52,7 +52,7 @@ class CutFaces:
         # Cylinders first; then slots, which use some of them; then each remaining face belongs to a
         # cylinder, and what still remains must be flats with their fillets.
         across, along, bent = self._cylinders([f for f in self.faces if not f.plane])
-        slots, used = self._slots(pin, planes, across, along)
+        slots, used = self._slots(pin, planes, across)
         planes = [f for f in planes if f.tag not in used]
         across = [c for c in across if not any(f.tag in used for f in c.faces)]
         along = [c for c in along if not any(f.tag in used for f in c.faces)]
@@ -127,11 +127,7 @@ class CutFaces:
         return None
 
     def _slots(
-        self,
-        pin: Pin,
-        planes: Sequence[SampledFace],
-        across: Sequence[DrilledFaces],
-        along: Sequence[DrilledFaces],
+        self, pin: Pin, planes: Sequence[SampledFace], across: Sequence[DrilledFaces]
     ) -> tuple[list[Slot], set[int]]:
         """Slots, between parallel planes on both sides of the axis, and the tags of their faces."""
         out, used = [], set[int]()

@@ -356,9 +356,8 @@ class SpaceEquations:
             joints = [j for j in self.linkage.joints if body in (j.base, j.moving)]
             arms = np.array([pose.arm(k, j.at)[0] for j in joints] or [(1.0, 0.0, 0.0)])
             speed = each.velocity[0, k] + np.cross(each.spin[0, k], arms)
-            fastest = size.max() * self.linkage.length_scale
-            still = np.abs(speed).max() <= MIN_PARTICIPATION * fastest
-            if not body or not still:
+            least = MIN_PARTICIPATION * size.max() * self.linkage.length_scale
+            if not body or np.abs(speed).max() > least:
                 return ""
             ends = " and ".join(j.name for j in joints)
             spinning.append(

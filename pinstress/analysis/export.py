@@ -119,7 +119,7 @@ def review_deck(study: Study, pin: str, case: str, dialect: Dialect, tell: Tell)
                               code="no-deck") from None  # fmt: skip
     results = results_of(plan, outcomes)
     numbers = ExpectedNumbers(results[pin, case], results, deck, units)
-    return [*_head(study, numbers, dialect), *deck.lines]
+    return [*_head(numbers, dialect), *deck.lines]
 
 
 def _deck(
@@ -135,7 +135,7 @@ def _deck(
     return contact_deck(PinInLugs(profile, task.material, task.lugs), row.maximum, units, dialect)
 
 
-def _head(study: Study, numbers: ExpectedNumbers, dialect: Dialect) -> Iterator[str]:
+def _head(numbers: ExpectedNumbers, dialect: Dialect) -> Iterator[str]:
     """Yield the comments above the deck, in ASCII."""
     row, results, deck = numbers.row, numbers.results, numbers.deck
     u = results.units

@@ -9,7 +9,8 @@ from typing import Literal
 
 from fea.support.records import FRICTION, TOGETHER
 from pinbase.grouped import grouped
-from reports.data.dependence import BENEATH_CONTACT, YIELD_STRENGTH, landing_axes
+from reports.data.dependence import YIELD_STRENGTH
+from reports.data.over_loads import BENEATH_CONTACT, landing_axes
 from reports.data.row import Dependence, LandingRange, PinResult
 
 Owner = Literal["joint", "landing", "links", "strength"]

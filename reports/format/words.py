@@ -8,8 +8,9 @@ from dataclasses import replace
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
 from fea.support.records import TOGETHER
 from reports.data.decision import worst_first
-from reports.data.dependence import BENEATH_CONTACT, PRESS_FIT, SEVERAL_TOGETHER
+from reports.data.dependence import PRESS_FIT, SEVERAL_TOGETHER
 from reports.data.headline import JudgedCheck, worst_checks
+from reports.data.over_loads import BENEATH_CONTACT
 from reports.data.results import Results
 from reports.data.row import Dependence, PinResult, Units
 from reports.format.numbers import engineering, margin_text, short, threshold

@@ -23,10 +23,8 @@ if TYPE_CHECKING:
 FIXED_CREATION_TIME = datetime(2000, 1, 1)
 MAX_COLUMN_WIDTH = 60  # characters of a column
 WIDTH_SAMPLE_ROWS = 200  # rows whose texts decide how wide a column is
-MAX_PLAIN_NUMBER, MIN_PLAIN_NUMBER = (
-    1e7,
-    1e-3,
-)  # from and below which numbers are shown with a power of ten
+# From and below which numbers are shown with a power of ten
+MAX_PLAIN_NUMBER, MIN_PLAIN_NUMBER = 1e7, 1e-3
 # Of four digits each, by the power of ten of the largest number of a column.
 FORMATS_BY_POWER = {
     -3: "0.000000",

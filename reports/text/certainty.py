@@ -7,11 +7,8 @@ from collections.abc import Sequence
 from assess.judgement import DEPENDS, FAILS, NOT_DECIDED
 from fea.support.records import TOGETHER
 from reports.data.decision import limit
-from reports.data.dependence import (
-    BENEATH_CONTACT,
-    IMPULSE_RANGES_TOGETHER,
-    PRESS_FIT,
-)
+from reports.data.dependence import PRESS_FIT
+from reports.data.over_loads import BENEATH_CONTACT, IMPULSE_RANGES_TOGETHER
 from reports.data.overview import GOOD, PinLine
 from reports.data.results import Results
 from reports.data.row import Dependence, PinResult, Units

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
 from geometry.shape.lug_outline import LugOutline
+from pinbase.errors import ArgumentError
+from tests.support.errors import raises
 
 
 def test_a_plate_with_a_small_hole_bends_as_a_beam() -> None:
@@ -52,3 +55,35 @@ def test_beside_lugs_in_three_dimensions(
     outline = LugOutline("round", 20.0, head, width, length, head / 2.0)
     stiffness = 0.8 / outline.bending
     assert pulled < stiffness < min(1.3 * pulled, pushed)
+
+
+ROUND = LugOutline("round", 0.02, 0.05, 0.05, 0.05, 0.025)
+SQUARE = LugOutline("square", 0.02, 0.0, 0.05, 0.05, 0.03)
+REFUSED: list[tuple[LugOutline, dict[str, float], str]] = [
+    (ROUND, {"end": 0.01}, "lug-too-narrow"),
+    (ROUND, {"head": 0.0199, "width": 0.0198}, "lug-too-narrow"),
+    (ROUND, {"interface": 0.06}, "lug-too-narrow"),
+    (SQUARE, {"width": 0.02}, "lug-too-narrow"),
+    (ROUND, {"width": 0.019}, "shank-too-narrow"),
+    (ROUND, {"width": 0.051}, "shank-too-wide"),
+    (ROUND, {"length": 0.024}, "shank-too-short"),
+    (SQUARE, {"length": 0.009}, "shank-too-short"),
+]
+
+
+def test_outlines_that_cannot_be() -> None:
+    for outline, change, code in REFUSED:
+        with raises(ArgumentError, code):
+            replace(outline, **change)  # type: ignore[arg-type]
+
+
+def test_similar_lugs_are_one_in_radii() -> None:
+    for k in (1.0, 3.7, 1.0 / 3.0):
+        sizes = {n: k * getattr(ROUND, n) for n in ("bore", "head", "width", "length", "end")}
+        assert replace(ROUND, **sizes).in_radii() == ROUND.in_radii()
+    assert ROUND.in_radii().head == pytest.approx(5.0)
+    # Widest across a concentric head; an eccentric one has its chord through the bore's centre.
+    assert ROUND.width_at_bore == pytest.approx(0.05)
+    assert replace(ROUND, width=0.03, end=0.021).width_at_bore == pytest.approx(
+        2.0 * math.sqrt(0.025**2 - 0.004**2)
+    )

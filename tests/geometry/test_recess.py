@@ -121,3 +121,38 @@ def test_what_it_takes_of_the_surface_is_within_its_mouth(cut: Hole | Slot) -> N
     c, s = math.cos(0.4), math.sin(0.4)
     there = x @ [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]] - [0.0, 0.0, 0.01]
     assert (recess.moved(0.01, 0.4).takes(there, 0.01) == wanted).mean() > 0.999
+
+
+def test_a_recess_that_is_turned_and_moved_is_the_same_elsewhere() -> None:
+    """Beside the hole of which it is made, turned and moved by hand."""
+    angle, shift, chance = 0.7, 0.004, np.random.default_rng(2)
+    (recess,) = as_recesses(CutPin.of(SHAFT, [Hole(0.03, 0.006, 0.3)])).recesses
+    moved = recess.turned(recess.angle + angle).along(lambda a, b: (a + shift, b + shift))
+    c, s = math.cos(angle), math.sin(angle)
+    turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    assert moved.extent == pytest.approx([z + shift for z in recess.extent])
+    assert (moved.size, moved.faces) == (recess.size, ())
+    for ours, before in zip(
+        moved.lines(moved.solid.mouth), recess.lines(recess.solid.mouth), strict=True
+    ):
+        assert ours == pytest.approx(before @ turn + [0.0, 0.0, shift], abs=1e-12)
+        # On the cylinder about the drill's own axis, turned with it.
+        along = np.array([math.cos(0.3 + angle), math.sin(0.3 + angle), 0.0])
+        off = np.cross(ours - [0.0, 0.0, 0.03 + shift], along)
+        assert np.linalg.norm(off, axis=1) == pytest.approx(0.003, rel=1e-3)
+    theta, z = chance.uniform(-math.pi, math.pi, 400), chance.uniform(0.02, 0.045, 400)
+    x = np.stack([0.01 * np.cos(theta), 0.01 * np.sin(theta), z], axis=1)
+    off = np.cross(x - [0.0, 0.0, 0.03 + shift], along)
+    distance = np.linalg.norm(off, axis=1)
+    clear = np.abs(distance - 0.003) > 2e-5
+    assert (moved.takes(x, 0.01) == (distance < 0.003))[clear].all()
+    (wall, part) = moved.nearest_part(ours)
+    assert wall < 2e-4
+    (surface,) = moved.surfaces(SHAFT)
+    assert surface.part == part
+    gap, spacing = np.abs(distance - 0.003), max(f.spacing for f in moved.solid.faces) * moved.unit
+    assert (surface.off(x) <= gap + 1e-6).all()
+    assert (surface.off(x) >= gap - spacing - 1e-6).all()
+    assert moved.mirrored("x") is moved
+    assert not moved.like(moved, 1e-6)
+    moved.check(SHAFT, "recess 1", ("recess", 1))

@@ -15,7 +15,17 @@ from fea.support.contact.resolution import Resolution
 from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from geometry import Band, Pin, Segment
-from geometry.shape.rings import MAX_RING_LENGTH, graded, ring_ends, ringed, rings
+from geometry.shape.profile import Edge, meridian
+from geometry.shape.rings import (
+    MAX_RING_LENGTH,
+    beside_fillets,
+    graded,
+    ring_ends,
+    ringed,
+    ringed_name,
+    rings,
+    whole_names,
+)
 from tests.support.each import each
 
 BAND = Band("A", 0.0, 0.02, 0.01)
@@ -130,3 +140,48 @@ def test_a_rounded_edge_is_a_flat_rounded_punchs(interference: float, cells: Res
     last = np.flatnonzero(pressure)[-1]
     assert ends[last] - 1e-12 < reach + (ends[last + 1] - ends[last])
     assert reach < ends[last + 2]
+
+
+STEPPED = Pin(
+    "P",
+    (
+        Segment(0.03, 0.02, bore=0.008),
+        Segment(0.02, 0.03, bore=0.012, connection="A"),
+        Segment(0.025, 0.024, bore=0.012, connection="B", name="seat"),
+        Segment(0.01, 0.02, bore=0.01),
+    ),
+    fillet=0.002,
+)
+
+
+def test_names_of_a_ringed_pin_are_those_of_the_same_place_on_the_whole() -> None:
+    """An edge of its section lies on the edge of that name in the section of the whole."""
+    ends = {"A": graded(0.02, 5), "B": graded(0.025, 4)}
+    cut = ringed(STEPPED, ends)
+    names = whole_names(STEPPED, ends)
+    assert set(rings("A", ends["A"])) <= set(cut.labels)
+    assert cut.volume == pytest.approx(STEPPED.volume, rel=1e-12)
+    whole: dict[str | None, list[Edge]] = {}
+    for edge in meridian(STEPPED):
+        whole.setdefault(edge.name, []).append(edge)
+    for edge in meridian(cut):
+        assert edge.name is not None
+        if edge.name.startswith("fillet "):  # nothing is named after these
+            continue
+        name = names.get(edge.name, edge.name)
+        middle = edge.beside(np.array([0.5]), 0.0)
+        assert min(float(x.distance(middle)[0]) for x in whole[name]) < 1e-12, edge.name
+    for name in ("segment 1", "segment 4", "shoulder 1", "shoulder 2", "shoulder 3"):
+        assert names[ringed_name(cut, name)] == name
+    assert ringed_name(cut, "bore A") == "bore A"
+
+
+def test_outermost_rings_beside_fillets() -> None:
+    """A quarter of the radius beyond the arc's tangent point; without a fillet they may be long."""
+    most = beside_fillets(STEPPED, STEPPED.band("B"))
+    assert most == pytest.approx((0.25 * 0.002, 0.25 * 0.002))
+    plain = Pin("P", (Segment(0.03, 0.02), Segment(0.02, 0.02, connection="A")))
+    assert beside_fillets(plain, plain.band("A")) == (math.inf, math.inf)
+    parts = np.diff(ring_ends(BAND, 0.0, 8, None, (1e-4, math.inf)))
+    assert parts[0] <= 1e-4 * (1.0 + 1e-9)
+    assert parts.sum() == pytest.approx(0.02)

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, SAFE
 from reports.data.decision import beneath_factor, low_factor
-from reports.data.dependence import BENEATH_CONTACT, PRESS_FIT
+from reports.data.dependence import PRESS_FIT
 from reports.data.headline import JudgedCheck, worst_checks
+from reports.data.over_loads import BENEATH_CONTACT
 from reports.data.results import Results
 from reports.data.row import PinResult
 from reports.format.numbers import DASH, engineering

@@ -151,9 +151,8 @@ class Evaluator:
         self.study = with_raw(study, self._raw)
         plan = prepare(self.study, pins=pins, cases=cases)
         self.files: tuple[Path, ...] = ()
-        self._memory = (
-            plan.requirement.memory
-        )  # free when it began: to ask again takes a millisecond
+        # Free when it began: to ask again takes a millisecond.
+        self._memory = plan.requirement.memory
         self._cases = tuple(plan.loads)
         rows = {(t.pin.name, case.case): None for t in plan.tasks for case in t.loads}
         self._pins = tuple(dict.fromkeys(pin for pin, _ in rows))

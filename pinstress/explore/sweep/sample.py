@@ -57,9 +57,8 @@ def _points(vary: VaryTable, count: int) -> Floats:
     if vary.sample == "random":
         return np.random.default_rng(vary.seed).random((vary.count, count))
     engine = qmc.Sobol if vary.sample == "sobol" else qmc.LatinHypercube
-    with (
-        warnings.catch_warnings()
-    ):  # of a count that is no power of 2, which docs/sweep.md explains
+    # They warn of a count that is no power of 2, which docs/sweep.md explains.
+    with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         points = engine(count, rng=np.random.default_rng(vary.seed)).random(vary.count)
     return np.asarray(points, np.float64)

@@ -7,7 +7,7 @@ machines: the same study gives the same bytes.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -162,5 +162,4 @@ def _unit(system: UnitSystem, dimension: str) -> tuple[str, float]:
 def _field(name: str, kind: pa.DataType, unit: str = "") -> pa.Field:
     import pyarrow as pa
 
-    metadata: Mapping[str, str] = {"unit": unit}
-    return pa.field(name, kind, metadata=dict(metadata))
+    return pa.field(name, kind, metadata={"unit": unit})

@@ -7,6 +7,7 @@ from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.force_tables import TableFile, Tables
 from pinstress.study.schema.forces import ForceLawTable
+from pinstress.study.schema.rules import exactly_one, not_zero
 from pinstress.study.schema.types import (
     NOT_NEGATIVE,
     POSITIVE,
@@ -27,8 +28,6 @@ from pinstress.study.schema.types import (
     Velocity,
     Weight,
     Whole,
-    exactly_one,
-    not_zero,
     of_usual_length,
 )
 

@@ -59,28 +59,45 @@ class LawTable(StrictTable):
         return self.table is not None or self.duration is not None
 
 
-class SliderDrive(LawTable):
-    """A drive of a slider's length (hydraulic piston, screw)."""
+class SlidingDrive(LawTable):
+    """Keys of all drives of a length."""
 
-    slider: str
-    """The driven slider."""
     start: Length | None = None
-    """Length at the start."""
+    """Length, travel or distance at the start."""
     end: Length | None = None
-    """Length at the end."""
+    """The same at the end."""
     position_offset: Length = 0.0
-    """Offset that plots subtract from the length."""
+    """Offset that plots subtract from it."""
 
     slides: ClassVar[bool] = True
 
 
-def require_few_turns(start: float | None, end: float | None) -> None:
-    """Raise ArgumentError for a drive that turns too often. start, end: rad."""
-    if abs((end or 0.0) - (start or 0.0)) > MAX_TURNS * 2.0 * math.pi:
-        raise ArgumentError(f"start and end are more than {MAX_TURNS} turns apart", "out-of-range")
+class TurningDrive(LawTable):
+    """Keys of all drives of an angle."""
+
+    start: Angle | None = None
+    """Angle at the start."""
+    end: Angle | None = None
+    """Angle at the end."""
+
+    slides: ClassVar[bool] = False
+
+    @model_validator(mode="after")
+    def _few_turns(self) -> "TurningDrive":
+        if abs((self.end or 0.0) - (self.start or 0.0)) > MAX_TURNS * 2.0 * math.pi:
+            text = f"start and end are more than {MAX_TURNS} turns apart"
+            raise ArgumentError(text, "out-of-range")
+        return self
 
 
-class RotaryDrive(LawTable):
+class SliderDrive(SlidingDrive):
+    """A drive of a slider's length (hydraulic piston, screw)."""
+
+    slider: str
+    """The driven slider."""
+
+
+class RotaryDrive(TurningDrive):
     """A drive of a body's angle: the direction of a line between two of its joints,
     counter-clockwise from x or, for a drive between two bodies, from a line of the other; without
     a line what the body has turned since the drawing.
@@ -95,12 +112,6 @@ class RotaryDrive(LawTable):
     """The body from which the angle is measured."""
     against_line: tuple[str, str] | None = None
     """Two joints of that body; required with `line` and `against`."""
-    start: Angle | None = None
-    """Angle at the start."""
-    end: Angle | None = None
-    """Angle at the end."""
-
-    slides: ClassVar[bool] = False
 
     @model_validator(mode="after")
     def _both(self) -> "RotaryDrive":
@@ -110,7 +121,6 @@ class RotaryDrive(LawTable):
                 "together; without one, give no against_line",
                 "give-both",
             )
-        require_few_turns(self.start, self.end)
         return self
 
 

@@ -15,6 +15,7 @@ from pydantic import (
 )
 
 from pinbase.errors import ArgumentError
+from pinstress.study.schema.rules import exactly_one
 from pinstress.study.schema.shown import in_toml
 from pinstress.study.schema.types import (
     Duration,
@@ -24,7 +25,6 @@ from pinstress.study.schema.types import (
     Time,
     Whole,
     complete_schema,
-    exactly_one,
     unknown_key,
 )
 from pinstress.study.schema.units import UNIT_SYSTEMS, to_si

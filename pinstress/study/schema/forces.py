@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from pinbase.errors import ArgumentError
+from pinstress.study.schema.rules import both_or_none, exactly_one
 from pinstress.study.schema.types import (
     Angle,
     Coordinate,
@@ -17,8 +18,6 @@ from pinstress.study.schema.types import (
     StrictTable,
     TorsionalDamping,
     TorsionalStiffness,
-    both_or_none,
-    exactly_one,
 )
 
 

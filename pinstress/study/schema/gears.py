@@ -6,6 +6,7 @@ from typing import Annotated
 from pydantic import AfterValidator, Field, model_validator
 
 from pinbase.errors import ArgumentError
+from pinstress.study.schema.rules import both_or_none, exactly_one, require_one
 from pinstress.study.schema.types import (
     Angle,
     Point3,
@@ -14,9 +15,6 @@ from pinstress.study.schema.types import (
     StrictTable,
     Switch,
     Whole,
-    both_or_none,
-    exactly_one,
-    require_one,
 )
 
 Count = Annotated[Whole, Field(ge=1, le=100_000)]  # of teeth

@@ -7,6 +7,7 @@ from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 from loads.landing.requirements import RULES_OF_PART
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.cases import CaseTable, Coordinates
+from pinstress.study.schema.rules import exactly_one
 from pinstress.study.schema.types import (
     NOT_NEGATIVE,
     ONE_OR_SEVERAL,
@@ -27,7 +28,6 @@ from pinstress.study.schema.types import (
     Velocity,
     Weight,
     Whole,
-    exactly_one,
 )
 
 Positive = Annotated[Length, POSITIVE]

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, Field, Tag
 
 from pinstress.study.schema.iso286 import classes_of
+from pinstress.study.schema.rules import at_most_one
 from pinstress.study.schema.types import (
     ONE_OR_BOTH,
     Angle,
@@ -16,7 +17,6 @@ from pinstress.study.schema.types import (
     PositiveLength,
     StrictTable,
     Tilt,
-    at_most_one,
 )
 
 

@@ -12,6 +12,7 @@ from pinstress.study.schema.forces import (
     TorsionSpringTable,
 )
 from pinstress.study.schema.gears import GearTable, RackTable
+from pinstress.study.schema.rules import both_or_none, exactly_one, require_one
 from pinstress.study.schema.types import (
     NOT_NEGATIVE,
     ONE_OR_SEVERAL,
@@ -32,10 +33,7 @@ from pinstress.study.schema.types import (
     StrictTable,
     Switch,
     Weight,
-    both_or_none,
-    exactly_one,
     of_usual_length,
-    require_one,
 )
 
 

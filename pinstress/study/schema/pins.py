@@ -10,6 +10,7 @@ from pinbase.errors import ArgumentError
 from pinbase.keys import key_part
 from pinstress.study.schema.lugs import LugTable
 from pinstress.study.schema.materials import HardenedTable
+from pinstress.study.schema.rules import exactly_one
 from pinstress.study.schema.types import (
     Angle,
     Length,
@@ -20,7 +21,6 @@ from pinstress.study.schema.types import (
     StrictTable,
     Switch,
     Tapered,
-    exactly_one,
 )
 
 

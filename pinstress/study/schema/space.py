@@ -1,7 +1,7 @@
 """The study file's form: a mechanism in space."""
 
 import math
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
@@ -11,7 +11,7 @@ from loads.space.conditions import directions
 from loads.space.kinds import KINDS, Kind
 from loads.space.linkage import RIGHT_ANGLE_TOLERANCE
 from pinbase.errors import ArgumentError
-from pinstress.study.schema.drives import LawTable, require_few_turns
+from pinstress.study.schema.drives import SlidingDrive, TurningDrive
 from pinstress.study.schema.forces import LineLawTable, TorsionLawTable
 from pinstress.study.schema.gears import SpaceGearTable, SpaceRackTable
 from pinstress.study.schema.mechanism import (
@@ -20,10 +20,10 @@ from pinstress.study.schema.mechanism import (
     SharingTable,
     require_single_mass,
 )
+from pinstress.study.schema.rules import both_or_none, exactly_one, not_zero, rule
 from pinstress.study.schema.types import (
     ONE_OR_SEVERAL,
     Acceleration,
-    Angle,
     Direction,
     JointOrPoint3,
     Length,
@@ -34,9 +34,6 @@ from pinstress.study.schema.types import (
     SignedInertia,
     StrictTable,
     Weight,
-    both_or_none,
-    exactly_one,
-    require_both,
 )
 
 # Nearer to each other, the axes of a universal joint do not say which second axis was meant.
@@ -100,6 +97,9 @@ class SpaceJointTable(StrictTable):
     diameter: PositiveLength | None = None
     """Diameter of the pin, for friction."""
 
+    _with_diameter = both_or_none("friction", "diameter")
+    _directed = not_zero("axis", "second_axis", "pin_axis")
+
     @model_validator(mode="before")
     @classmethod
     def _in_space(cls, data: Any) -> Any:
@@ -110,7 +110,6 @@ class SpaceJointTable(StrictTable):
 
     @model_validator(mode="after")
     def _complete(self) -> "SpaceJointTable":
-        require_both("friction and diameter", self.friction, self.diameter)
         if self.friction and self.fixed_in is None:
             raise ArgumentError(
                 "a floating pin cannot have friction; give fixed_in", "friction-floats"
@@ -120,10 +119,6 @@ class SpaceJointTable(StrictTable):
                 "a floating pin needs two connections or more; give fixed_in, or another one",
                 "too-few-connections",
             )
-        for key in ("axis", "second_axis", "pin_axis"):
-            if (value := getattr(self, key)) is not None and not any(value):
-                text = f"{key} must not be zero; give its direction, {key} = [x, y, z]"
-                raise ArgumentError(text, "no-direction")
         _require_axes(self)
         return self
 
@@ -155,28 +150,28 @@ def _require_axes(joint: SpaceJointTable) -> None:
             )
 
 
+def _depth_of(what: str) -> Any:
+    """Return the validator of a rectangular section, which must say where its depth is."""
+
+    def check(table: Any) -> None:
+        section, along = table.section, table.depth_along
+        if (section is None) != (along is None) or not any(along or (1.0,)):
+            raise ArgumentError(
+                f"a rectangular {what} needs depth_along = [x, y, z], the direction of its depth; "
+                "a round one has none",
+                "give-both",
+            )
+
+    return rule(check)
+
+
 class SpaceBarTable(BarTable):
     """A uniform straight bar in space between two joints, round or rectangular."""
 
     depth_along: Direction | None = None
     """Direction of the depth of a rectangular bar as drawn; its part across the bar counts."""
 
-    @model_validator(mode="after")
-    def _known_depth(self) -> "SpaceBarTable":
-        _require_depth("bar", self.section, self.depth_along)
-        return self
-
-
-def _require_depth(
-    what: str, section: tuple[float, float] | None, depth_along: Direction | None
-) -> None:
-    """Raise ArgumentError where a rectangular section does not say where its depth is."""
-    if (section is None) != (depth_along is None) or not any(depth_along or (1.0,)):
-        raise ArgumentError(
-            f"a rectangular {what} needs depth_along = [x, y, z], the direction of its depth; a "
-            "round one has none",
-            "give-both",
-        )
+    _known_depth = _depth_of("bar")
 
 
 class SpaceLinkStiffnessTable(LinkStiffnessTable):
@@ -190,10 +185,7 @@ class SpaceLinkStiffnessTable(LinkStiffnessTable):
     """Direction of the depth of a rectangular link as drawn; its part across the line from the
     centre of mass to a joint counts."""
 
-    @model_validator(mode="after")
-    def _known_depth(self) -> "SpaceLinkStiffnessTable":
-        _require_depth("link", self.section, self.depth_along)
-        return self
+    _known_depth = _depth_of("link")
 
 
 class SpaceBodyTable(StrictTable):
@@ -222,8 +214,7 @@ class SpaceBodyTable(StrictTable):
         _with_three(data, "centre")
         if isinstance(data, dict) and "inertia" in data and not isinstance(data["inertia"], list):
             raise ArgumentError(
-                "inertia: in space (dimension = 3) give [xx, yy, zz], with [.., xy, xz, yz] if "
-                "there are products",
+                "inertia: in space (dimension = 3) give [xx, yy, zz] or [xx, yy, zz, xy, xz, yz]",
                 "wrong-dimension",
             )
         return data
@@ -239,7 +230,7 @@ class SpaceBodyTable(StrictTable):
         return self
 
 
-class AngleDrive(LawTable):
+class AngleDrive(TurningDrive):
     """A drive of the angle of a revolute or cylindrical joint: of the body on a connection about
     the joint's axis, right-handed, zero as drawn.
     """
@@ -248,20 +239,9 @@ class AngleDrive(LawTable):
     """The joint."""
     connection: str | None = None
     """The driven one of its connections. Default: the only one that moves on the pin."""
-    start: Angle | None = None
-    """Angle at the start."""
-    end: Angle | None = None
-    """Angle at the end."""
-
-    slides: ClassVar[bool] = False
-
-    @model_validator(mode="after")
-    def _few_turns(self) -> "AngleDrive":
-        require_few_turns(self.start, self.end)
-        return self
 
 
-class TravelDrive(LawTable):
+class TravelDrive(SlidingDrive):
     """A drive of the travel of a prismatic or cylindrical joint: of the body on a connection along
     the joint's axis, zero as drawn.
     """
@@ -270,17 +250,9 @@ class TravelDrive(LawTable):
     """The joint."""
     connection: str | None = None
     """The driven one of its connections. Default: the only one that moves on the pin."""
-    start: Length | None = None
-    """Travel at the start."""
-    end: Length | None = None
-    """Travel at the end."""
-    position_offset: Length = 0.0
-    """Offset that plots subtract from the travel."""
-
-    slides: ClassVar[bool] = True
 
 
-class LengthDrive(LawTable):
+class LengthDrive(SlidingDrive):
     """A drive of the distance between two points of two bodies, between which it pulls and pushes.
     An actuator whose pins are of interest has bodies and joints of its own, and drives its travel.
     """
@@ -289,14 +261,6 @@ class LengthDrive(LawTable):
     """A point of each body, a joint or [x, y, z]; pins are not loaded at these joints."""
     bodies: tuple[str, str]
     """The two bodies; one may be "ground"."""
-    start: Length | None = None
-    """Distance at the start."""
-    end: Length | None = None
-    """Distance at the end."""
-    position_offset: Length = 0.0
-    """Offset that plots subtract from the distance."""
-
-    slides: ClassVar[bool] = True
 
     @model_validator(mode="after")
     def _named(self) -> "LengthDrive":

@@ -6,7 +6,7 @@ For editors and for the reference in the documentation the JSON Schema gives of 
 
 import ast
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
@@ -334,59 +334,6 @@ class StrictTable(BaseModel):
             wrong = [unknown_key(key, known) for key in data if key in unknown]
             raise ValidationError.from_exception_data(cls.__name__, wrong)
         return data
-
-
-def require_one(what: str, *given: Any) -> None:
-    """Raise ArgumentError unless exactly one is given."""
-    if sum(x is not None for x in given) != 1:
-        raise ArgumentError(f"give {what}", "give-one")
-
-
-def require_both(what: str, one: Any, other: Any) -> None:
-    """Raise ArgumentError unless both are given, or neither."""
-    if (one is None) != (other is None):
-        raise ArgumentError(f"{what} must be given together", "give-both")
-
-
-def exactly_one(what: str, *keys: str) -> Any:
-    """Return the validator of a table in which one of some keys must be given, and no other."""
-    return _rule(lambda table: require_one(what, *(getattr(table, key) for key in keys)))
-
-
-def both_or_none(one: str, other: str) -> Any:
-    """Return the validator of a table in which two keys must be given together."""
-    what = f"{one} and {other}"
-    return _rule(lambda table: require_both(what, getattr(table, one), getattr(table, other)))
-
-
-def at_most_one(one: str, other: str) -> Any:
-    """Return the validator of a table in which two keys may not be given together."""
-
-    def check(table: StrictTable) -> None:
-        if getattr(table, one) is not None and getattr(table, other) is not None:
-            raise ArgumentError(f"give {one} or {other}, not both", "give-one")
-
-    return _rule(check)
-
-
-def not_zero(key: str) -> Any:
-    """Return the validator of a table in which a vector has a direction."""
-
-    def check(table: StrictTable) -> None:
-        if not any(getattr(table, key)):
-            raise ArgumentError(f"{key} must not be zero", "no-direction")
-
-    return _rule(check)
-
-
-def _rule(check: Callable[[StrictTable], None]) -> Any:
-    """Return the validator of a whole table that raises what `check` raises."""
-
-    def checked(table: StrictTable) -> StrictTable:
-        check(table)
-        return table
-
-    return model_validator(mode="after")(checked)
 
 
 @cache

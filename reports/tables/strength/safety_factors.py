@@ -9,8 +9,8 @@ from pathlib import Path
 from assess.judgement import DEPENDS
 from fea.support.records import JointRange
 from reports.data.decision import common_factor, limit, worst_first
-from reports.data.dependence import BENEATH_CONTACT
 from reports.data.envelope import detailed_rows, omitted_note
+from reports.data.over_loads import BENEATH_CONTACT
 from reports.data.results import Results
 from reports.data.row import PinResult, SharingRange, Units
 from reports.format.files import markdown

@@ -25,7 +25,6 @@ from fea.singular.singularities import singularities_of
 from fea.solve.refine import MESH_RATIO
 from fea.support.contact.pressure_loads import PressureLoads
 from geometry import Pin, Segment
-from geometry.mesh.outline_motion import OtherShapeError, OutlineNodes, Reach
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 from geometry.shape.dimensions import dimensions
 from tests.support.each import each, sampled
@@ -295,18 +294,3 @@ def test_the_work_is_that_of_the_stiffness(steel: Material) -> None:
         assert ours == pytest.approx(float(v @ (space.stiffness(steel, n) @ u)), rel=1e-9)
         along = shape_gradient(space, elasticity(steel), n, u, v)[:, 1]
         assert abs(along.sum()) < 1e-9 * np.abs(along).sum()  # along the axis nothing changes
-
-
-def test_nodes_stay_on_the_outline() -> None:
-    """Of a pin with every dimension 2 % larger, one after the other, and on the same edges."""
-    mesh = meridian_mesh(TUBE, SectionSize())
-    nodes = OutlineNodes(mesh, TUBE, [Reach((0.01, 0.03), 0.001)])
-    assert nodes.at(TUBE) == pytest.approx(mesh.nodes[nodes.rows], abs=1e-12)
-    for one in dimensions(TUBE):
-        pin = one.changed(1.02 * one.value)
-        outer = 0.5 * max(max(s.diameters) for s in pin.segments)
-        at = nodes.at(pin)
-        assert at[:, 0].max() == pytest.approx(outer, rel=1e-12)
-        assert at[:, 1].max() == pytest.approx(pin.length, rel=1e-12)
-    with pytest.raises(OtherShapeError):
-        nodes.at(replace(TUBE, fillet=0.0))

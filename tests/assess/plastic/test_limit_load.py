@@ -35,15 +35,6 @@ Points = tuple[tuple[float, float], ...]
 COARSE, FINE = HexSize(2, 0.5), HexSize(4, 0.25)
 
 
-def test_a_mesh_fills_the_pin() -> None:
-    pin = Pin("p", (Segment(1.0, 2.0), Segment(2.0, 3.0), Segment(1.0, 2.0, bore=1.0)))
-    for quarters in (1, 2, 4):
-        mesh = hexahedra(pin, FINE, quarters)
-        volume = hexahedral(mesh.nodes, mesh.elements, 3).weights
-        assert volume.min() > 0.0
-        assert volume.sum() == pytest.approx(quarters / 4 * pin.volume, rel=2e-4)
-
-
 def test_the_face_of_a_shoulder_has_its_whole_force() -> None:
     pin = Pin("p", (Segment(1.0, 2.0), Segment(2.0, 3.0), Segment(1.0, 2.0)))
     for name, force in (("shoulder 1", 7.0), ("shoulder 2", -4.0)):
@@ -52,25 +43,6 @@ def test_the_face_of_a_shoulder_has_its_whole_force() -> None:
         elements = hexahedral(mesh.nodes, mesh.elements)
         total = nodal_forces(pin, RULE, mesh, elements, acting_at(loads, 0)).sum(axis=0)
         assert total == pytest.approx([0.0, 0.0, force], rel=1e-3, abs=1e-9)
-
-
-def test_a_mesh_has_the_fillets() -> None:
-    """Small, and as large as their shoulder, outwards and inwards: volume, tangents, arcs."""
-    parts = Segment(1.0, 2.0), Segment(1.5, 3.0, fillet=0.5), Segment(1.0, 2.0, bore=1.0)
-    for fillet in (0.01, 0.1, 0.4):
-        pin = Pin("p", parts, fillet=fillet)
-        errors = []
-        for size in (COARSE, FINE):
-            mesh = hexahedra(pin, size, 1)
-            volume = hexahedral(mesh.nodes, mesh.elements, 3).weights
-            assert volume.min() > 0.0
-            errors.append(abs(volume.sum() / (pin.volume / 4.0) - 1.0))
-        assert errors[1] < 2e-4
-        r, z = np.hypot(*mesh.nodes.T[:2]), mesh.nodes[:, 2]
-        from_centre = np.hypot(r - 1.0 - fillet, z - 1.0 + fillet)
-        near = (r < 1.0 + fillet) & (z > 1.0 - fillet) & (z < 1.0)
-        assert from_centre[near].min() == pytest.approx(fillet, rel=1e-6)
-        assert (np.abs(from_centre[near] - fillet) < 1e-6).sum() > 4
 
 
 @pytest.mark.parametrize("hardening", [(), ((0.02, 400e6),)])

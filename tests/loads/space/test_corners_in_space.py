@@ -11,8 +11,8 @@ import pytest
 from loads import Applied, Clock, ConstantDrive, Course, ForceLaw, ForceTable, Spring, Varying
 from loads.forces.corners import corners_of
 from loads.forces.measures import Distance
-from loads.space.lift import lift
 from loads.space.motion import SpaceCourse
+from tests.support.mechanism.lift import lift
 from tests.support.mechanism.mechanisms import four_bar
 
 

@@ -12,7 +12,6 @@ from loads import Dynamics, LinkageError, Slider, StateDrive, Turn
 from loads.forces.corners import Kinks
 from loads.space.acting import SpaceLoad, SpacePush
 from loads.space.dynamics import SpaceDynamics, space_reactions
-from loads.space.lift import lamina, lift
 from loads.space.motion import SpaceMotion, space_move
 from pinbase.arrays import Floats
 from pinstress import load_study
@@ -23,6 +22,7 @@ from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import MotionCase
 from tests.conftest import ROOT
 from tests.support.each import each, sampled
+from tests.support.mechanism.lift import lamina, lift
 
 MAX_SAMPLES = 41  # of a motion that are compared
 TOLERANCE = 1e-9  # of the largest force of the case

@@ -11,12 +11,12 @@ from loads import ConstantDrive, StateDrive, move
 from loads.motion.transmission_angles import transmission_angles
 from loads.space.acting import SpaceForce
 from loads.space.dynamics import space_reactions
-from loads.space.lift import lift
 from loads.space.linkage import JointAngle, SpaceLinkage, Vector
 from loads.space.motion import space_move
 from loads.space.transmission import transmission_angles_in_space
 from tests.loads.space.test_loops_in_space import bennett
 from tests.support.each import each
+from tests.support.mechanism.lift import lift
 from tests.support.mechanism.mechanisms import four_bar
 from tests.support.mechanism.space import about, grounded, joint, light, vector
 

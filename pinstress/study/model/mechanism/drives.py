@@ -22,10 +22,10 @@ from pinbase.keys import key_part
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import Coordinates, InstantCase, StaticCase
-from pinstress.study.schema.drives import RotaryDrive, SliderDrive, drive_name
+from pinstress.study.schema.drives import RotaryDrive, SliderDrive, SlidingDrive, drive_name
 from pinstress.study.schema.landing import AtWheel
 from pinstress.study.schema.mechanism import MechanismTable, SharingTable
-from pinstress.study.schema.space import LengthDrive, SpaceDrive, TravelDrive
+from pinstress.study.schema.space import SpaceDrive
 from pinstress.study.schema.tables import AnyMechanism
 from pinstress.study.schema.units import to_si
 
@@ -82,9 +82,8 @@ def laws(study: Study) -> tuple[Law, ...]:
 
 def offsets(study: Study) -> dict[str, float]:
     """Return the offset subtracted from each driven slider's length to display its position, m."""
-    sliding = (SliderDrive, TravelDrive, LengthDrive)
     drives = drive_tables(study)
-    return {drive_name(d): d.position_offset for d in drives if isinstance(d, sliding)}
+    return {drive_name(d): d.position_offset for d in drives if isinstance(d, SlidingDrive)}
 
 
 def drive_tables(study: Study) -> list[AnyDriveTable]:
