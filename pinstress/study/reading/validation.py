@@ -139,7 +139,7 @@ def _key(loc: tuple[int | str, ...], kind: str) -> str:
         key += (
             f"[{part + 1}]"
             if isinstance(part, int)
-            else f"{'.' if key else ''}{key_part(printable(part))}"
+            else f"{'.' if key else ''}{printable(key_part(part))}"
         )
     return f"{key}.kind" if kind.startswith("union_tag") else key
 
