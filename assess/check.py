@@ -14,15 +14,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, Protocol
 
-import numpy as np
-
 from assess.margin import Kind, Level, Margin, skipped, strength_key
 from assess.situation import Situation
 from assess.work import Work, WorkQuantity
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from geometry import Band
-from pinbase.arrays import Floats
+from pinbase.arrays import Floats, first_largest
 
 # By the number of a place: the work of the allowable there, and the dimension that would just pass,
 # by the utilisation.
@@ -168,10 +166,10 @@ class CheckText:
         shown: Shown | None,
     ) -> Margin:
         used = demand / allowable
-        t, k = np.unravel_index(np.argmax(used), used.shape)
-        place = WorstPlace(at[int(k)], time=None if times is None else float(times[t]))
+        t, k = first_largest(used)
+        place = WorstPlace(at[k], time=None if times is None else float(times[t]))
         margin = self.margin(s, float(demand[t, k]), float(allowable[k]), place, basis=basis)
-        return margin if shown is None else _with_work(margin, *shown(int(k)))
+        return margin if shown is None else _with_work(margin, *shown(k))
 
     def along(
         self,

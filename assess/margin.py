@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
 from assess.work import Work, WorkQuantity
+from pinbase.arrays import ROUND_OFF
 from pinbase.dimensions import Length, Time
 from pinbase.keys import key_part
 
@@ -143,7 +144,7 @@ def worst_places(margins: Iterable[Margin]) -> list[Margin]:
     worst: dict[tuple[str, Level, str, str], Margin] = {}
     for margin in margins:
         key = margin.method, margin.level, margin.needs, margin.basis
-        if key not in worst or margin.used > worst[key].used:
+        if key not in worst or margin.used > worst[key].used + ROUND_OFF * abs(worst[key].used):
             worst[key] = margin
     return [_without_place(m) if m.needs else _with_formula(m) for m in worst.values()]
 

@@ -30,7 +30,7 @@ from fea.core.pin_loads import PinLoads
 from fea.support.lugs.lug import Lug
 from fea.support.records import JointForces, LugStress
 from geometry import ArgumentError, Pin
-from pinbase.arrays import Floats
+from pinbase.arrays import Floats, first_largest
 
 if TYPE_CHECKING:
     from fea.lug.in_joint import ShankAngle  # with the elements of lugs
@@ -128,9 +128,9 @@ class SectionForces:
             return self.exact(resists)
         force = self.moment if resists == "modulus" else self.shear
         stress = force / self.of_sections(resists)
-        t, k = np.unravel_index(stress.argmax(), stress.shape)
+        t, k = first_largest(stress)
         time = None if self.times is None else float(self.times[t])
-        at, z, section = self.labels[int(k)], float(self.z[k]), self.sections[int(k)]
+        at, z, section = self.labels[k], float(self.z[k]), self.sections[k]
         return NominalStress(float(stress[t, k]), at, z, time, section)
 
 

@@ -9,3 +9,17 @@ Complex = NDArray[np.complex128]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
+
+ROUND_OFF = 1e-9  # relative: values that differ by no more are equal
+
+
+def first_largest(values: Floats) -> tuple[int, ...]:
+    """Return the place of the first of the largest values of an array.
+
+    Values that differ by round-off alone are equal: otherwise the processor would decide which of
+    two places that are loaded alike is named.
+    """
+    top = float(values.max())
+    least = top - ROUND_OFF * abs(top) if np.isfinite(top) else top
+    at = np.unravel_index(int((values >= least).argmax()), values.shape)
+    return tuple(int(i) for i in at)

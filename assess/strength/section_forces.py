@@ -30,7 +30,7 @@ from fea.beam.round_section import thinnest_section
 from fea.beam.stress import sample
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
 from fea.support.records import JointForces
-from pinbase.arrays import Floats
+from pinbase.arrays import ROUND_OFF, Floats, first_largest
 
 EVEN_LOAD_BASIS = "even load on each band"
 SHARED_COUPLE_BASIS = "the couple that is left over is shared by all bands"
@@ -173,7 +173,7 @@ def _largest(s: Situation, forces: InternalForces, c: Floats, resists: Resists) 
     values = np.einsum("sk,tpk->spt", forces.inside(cells, z)[:, component], c)
     per = np.array([1.0 / getattr(x, resists) for x in forces.sections])  # Pa per N, or per N m
     size = np.hypot(values[:, 0], values[:, 1]) * per[cells, None]
-    k, t = np.unravel_index(size.argmax(), size.shape)
+    k, t = first_largest(size)
     best = int(cells[k]), float(z[k]), float(size[k, t])
     for cell in forces.free:
         a, b = forces.stations[cell : cell + 2]
@@ -183,7 +183,7 @@ def _largest(s: Situation, forces: InternalForces, c: Floats, resists: Resists) 
             here = float(root.real)
             if 0.0 < here < b - a:
                 value = math.sqrt(max(float(square(here)), 0.0)) * per[cell]
-                if value > best[2]:
+                if value > best[2] * (1.0 + ROUND_OFF):
                     best = cell, float(a) + here, float(value)
     cell, at, stress = best
     middle = 0.5 * (forces.stations[cell] + forces.stations[cell + 1])
