@@ -85,19 +85,23 @@ def test_a_life_that_a_loose_joint_does_not_reach_depends() -> None:
     """A run with the clearance at its end shows it; the requirement was said to be met."""
     (given, _), (there, _) = damages(solved(TIGHT)), damages(solved(LOOSE))
     assert there > 1.5 * given
-    ranged = solved(RANGED)
+    loose_alone = RANGED.replace("0.3] }", "0.3], stiffness = [1.0, 1.0] }")
+    ranged = solved(loose_alone)
     assert ranged.fatigue is not None
     assert ranged.fatigue.points[0].damage == given
     worst = max(p.damage_over["joint"] for p in ranged.fatigue.points)
     assert there <= worst < 4.0 * there
-    between = solved(RANGED, life=(given * there) ** -0.5)
+    between = solved(loose_alone, life=(given * there) ** -0.5)
     assert (row_of(between, "fatigue").outcome, row_of(between, "fatigue").over) == (
         "depends", "joint"
     )  # fmt: skip
     assert between.fatigue is not None
     assert "by the range of its joint" in fatigue_sentence(between.fatigue)
-    enough = solved(RANGED, life=0.9 / damages(ranged)[1])
+    enough = solved(loose_alone, life=0.9 / damages(ranged)[1])
     assert row_of(enough, "fatigue").outcome == "met"
+    stiff = solved(RANGED).fatigue  # whose stress grows more in the same clearance
+    assert stiff is not None
+    assert max(p.damage_over["joint"] for p in stiff.points) > worst
 
 
 def test_a_life_within_the_error_of_the_stress_is_not_decided() -> None:
