@@ -13,13 +13,15 @@ Mask = NDArray[np.bool_]
 ROUND_OFF = 1e-9  # relative: values that differ by no more are equal
 
 
-def first_largest(values: Floats) -> tuple[int, ...]:
+def first_largest(values: Floats, preferred: Mask | None = None) -> tuple[int, ...]:
     """Return the place of the first of the largest values of an array.
 
     Values that differ by round-off alone are equal: otherwise the processor would decide which of
-    two places that are loaded alike is named.
+    two places that are loaded alike is named. Of equal ones those go first that are `preferred`,
+    (N,) along the last axis.
     """
     top = float(values.max())
-    least = top - ROUND_OFF * abs(top) if np.isfinite(top) else top
-    at = np.unravel_index(int((values >= least).argmax()), values.shape)
-    return tuple(int(i) for i in at)
+    equal = values >= (top - ROUND_OFF * abs(top) if np.isfinite(top) else top)
+    if preferred is not None and (equal & preferred).any():
+        equal = equal & preferred
+    return tuple(int(i) for i in np.unravel_index(int(equal.argmax()), values.shape))

@@ -100,7 +100,7 @@ def _worst(
     works = {section: resisted(section) for section in set(forces.sections)}
     allowable = np.array([works[section][-1].result.value for section in forces.sections])
     used = demand / allowable
-    t, k = first_largest(used)
+    t, k = first_largest(used, np.isin(forces.labels, s.loads.surfaces))
     time, section = None if forces.times is None else float(forces.times[t]), forces.sections[k]
     margin = text.margin(
         s, float(demand[t, k]), float(allowable[k]),

@@ -61,7 +61,7 @@ def eurocode_section(text: CheckText, s: Situation) -> list[Margin]:
         return [text.lacks(s, CLASS_NEEDED)]
     design = fy / s.partial.M0
     used = np.stack([_along(forces, k, design) for k in range(len(forces.z))], axis=1)
-    t, k = first_largest(used)
+    t, k = first_largest(used, np.isin(forces.labels, s.loads.surfaces))
     section = forces.sections[k]
     V, M, N, T = (float(x[t, k]) for x in _four(forces))
     time = None if forces.times is None else float(forces.times[t])
