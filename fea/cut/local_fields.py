@@ -47,6 +47,7 @@ class LocalFields:
     outer: rows on the outline of the uncut pin.
     changed: (O, 6, L) Pa, the change of their stress by the cuts.
     ended: (O,) which of these are at an end of the piece.
+    free_ends: whether its lower and its upper end are free end faces of the pin.
     moved: (2, 6, L) the motions of the piece's ends by the cuts, a shift (m) and a turn (rad) about
     the pin's origin.
     scatter: (P,) of the stress with the positions of nodes, relative.
@@ -66,6 +67,7 @@ class LocalFields:
     outer: Ints
     changed: Floats
     ended: Mask
+    free_ends: tuple[bool, bool]
     moved: Floats
     unknowns: int
     corners: tuple[InnerCorner, ...]

@@ -153,6 +153,7 @@ def local_fields(
         outer,
         read.difference[outer],
         _at_open_ends(piece, points[outer]),
+        model.faces.free_ends,
         moved,
         model.unknowns,
         tuple(

@@ -21,8 +21,9 @@ END_SURFACES = ("start", "end")
 
 @dataclass(frozen=True)
 class PieceFaces:
-    """The P points at which stress is read: the nodes of a piece's faces but clamped ones and its
-    ends, face by face. Where it has mirror planes, the mesh covers one side of them.
+    """The P points at which stress is read: the nodes of a piece's faces, face by face, without
+    clamped ones, and without its ends where the pin goes on. Where it has mirror planes, the mesh
+    covers one side of them.
 
     clamps: names of its clamped surfaces.
     """
@@ -39,15 +40,30 @@ class PieceFaces:
         return amid or boundary.startswith("mirror ")
 
     @cached_property
+    def free_ends(self) -> tuple[bool, bool]:
+        """Whether the lower and the upper end of the piece are free end faces of the pin."""
+        ends = [
+            name not in self.clamps and not goes_on
+            for name, goes_on in zip(END_SURFACES, self.piece.open_ends, strict=True)
+        ]
+        # The upper end is meshed for both where a mirror plane divides the piece.
+        low, high = [all(ends)] * 2 if "z" in self.piece.mirrors else ends
+        return low, high
+
+    def _is_read(self, boundary: str) -> bool:
+        if boundary in END_SURFACES and not self.free_ends[END_SURFACES.index(boundary)]:
+            return False
+        return not self.mirrored(boundary) and boundary not in self.clamps
+
+    @cached_property
     def readings(self) -> tuple[FaceReading, ...]:
         """The faces, with what is needed to read strains on them."""
         out = []
         for name in self.space.mesh.boundaries:
-            if name in END_SURFACES or self.mirrored(name) or name in self.clamps:
-                continue
-            rows = np.flatnonzero(self.surface.on(self.space, (name,)))
-            face = Face(name, rows, self.piece.cut_at(name) is not None)
-            out.append(read_face(self.space, self.surface, face, self.parities))
+            if self._is_read(name):
+                rows = np.flatnonzero(self.surface.on(self.space, (name,)))
+                face = Face(name, rows, self.piece.cut_at(name) is not None)
+                out.append(read_face(self.space, self.surface, face, self.parities))
         return tuple(out)
 
     @cached_property

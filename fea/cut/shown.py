@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -63,7 +64,7 @@ def shown(
     fields: of the pin without cuts.
     held: the first clamp, which stays in place; without one both ends of the axis stay on it.
     """
-    between = [(p.piece.z0, p.piece.z1) for p in pieces]
+    between = [_without_own_ends(piece) for piece in pieces]
     uncut = _revolved(fields, pieces[0].units, between)
     parts = [uncut, *map(_piece, pieces, own_ends(pieces))]
     starts = np.cumsum([0, *(len(part.points) for part in parts)])
@@ -86,6 +87,14 @@ def shown(
         np.concatenate([p.outline for p in parts]),
         uncut.between,
     )
+
+
+def _without_own_ends(piece: LocalFields) -> tuple[float, float]:
+    """The z, m, between which a piece is shown instead of the uncut pin, with the end faces of the
+    pin that it has: its cuts may open into them.
+    """
+    low, high = piece.free_ends
+    return -math.inf if low else piece.piece.z0, math.inf if high else piece.piece.z1
 
 
 def own_ends(pieces: Sequence[LocalFields]) -> list[tuple[float, float]]:
