@@ -89,8 +89,8 @@ def _volume(
     profile = (held.pin if held else task.pin).profile
     if profile is not None:
         # Here, for what is read from the cache loads no solver.
-        from fea.section.balance import balanced
         from fea.section.section_stress import SectionField
+        from pinstress.analysis.balance import balanced
 
         clamps = () if task.lugs else tuple(task.pin.surface(name) for name in task.clamps)
         loads = solution.loads.on_rings

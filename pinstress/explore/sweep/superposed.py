@@ -79,8 +79,8 @@ def superposed(posed: Iterable[PosedTask], memo: Memo) -> dict[str, Rows]:
 
 def _together(group: Sequence[PosedTask], memo: Memo) -> dict[str, Rows]:
     """Return the rows of tasks that differ by their loads, as far as they can be superposed."""
-    from fea.solve.solve_each import solve_each, superposable
     from fea.support.support import Solution
+    from pinstress.explore.sweep.solve_each import solve_each, superposable
 
     first = group[0]
     task = replace(first.task, material=elastic(first.task.material))

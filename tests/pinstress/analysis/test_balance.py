@@ -9,10 +9,10 @@ from scipy.spatial import Delaunay
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.solution import Picture
-from fea.section.balance import balanced
 from fea.section.section_stress import SectionField
 from geometry import Pin, Segment
 from pinbase.arrays import Floats
+from pinstress.analysis.balance import balanced
 
 R, LENGTH = 10e-3, 60e-3
 PIN = Pin("P", (Segment(LENGTH, 2.0 * R),))
