@@ -141,6 +141,7 @@ def test_a_script_without_a_guard_is_not_run_by_its_processes(tmp_path: Path) ->
     assert done.stdout.split("\n") == ["begins", "converged converged", ""]
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_processes_import_nothing_from_the_current_folder(tmp_path: Path) -> None:
     for name in ("pickle", "numpy", "pyvista", "sqlite3"):

@@ -134,7 +134,9 @@ tolerance = 0.1
 HOLE = "hole = [{ z = 26.0, diameter = 4.0, angle = '90 deg' }]"
 
 
-@pytest.mark.parametrize("cut", ["", pytest.param(HOLE, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "cut", ["", pytest.param(HOLE, marks=[pytest.mark.slow, pytest.mark.long])]
+)
 def test_sections_between_and_within_lugs_carry_their_pressure(cut: str, tmp_path: Path) -> None:
     """Between lugs, by statics; in the middle of a symmetric lug, nothing; nothing along x or z."""
     _, _, body = written(CLEVIS.replace("CUT", cut), tmp_path)

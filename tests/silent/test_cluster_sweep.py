@@ -127,6 +127,7 @@ def test_a_scheduler_is_slow_that_stopped_and_lost_that_died_before_it_was_asked
                 connection.look(now=True)
 
 
+@pytest.mark.long
 def test_tables_are_sent_and_not_read_on_workers(tmp_path: Path) -> None:
     """At the same path, /proc/self/cwd/loads.csv, each process has the file of its own folder: one
     worker a table of ten times the force, the other one none.

@@ -232,6 +232,7 @@ def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[DaskCluster]:
         yield both
 
 
+@pytest.mark.long
 def test_reliability_of_a_cluster_is_that_of_one_machine(
     tmp_path: Path, cluster: DaskCluster
 ) -> None:

@@ -50,7 +50,9 @@ THREE = PinLoads(
 )
 
 
-@pytest.mark.parametrize("model", ["harmonic", pytest.param("solid", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "model", ["harmonic", pytest.param("solid", marks=[pytest.mark.slow, pytest.mark.long])]
+)
 def test_the_interval_is_that_of_half_and_twice_the_distance(model: Model, steel: Material) -> None:
     """A clamped shaft: what the surface has in runs with these distances lies in the interval, and
     the interval is no wider than they and their errors on the meshes are. It begins at what the

@@ -251,7 +251,7 @@ def _waits(condition: object, process: subprocess.Popen[str]) -> None:
 
 @pytest.mark.slow
 @pytest.mark.linux
-@pytest.mark.parametrize("sign", sampled([signal.SIGKILL, signal.SIGTERM, signal.SIGINT], every=2))
+@pytest.mark.parametrize("sign", sampled([signal.SIGKILL, signal.SIGTERM, signal.SIGINT], every=3))
 def test_a_sweep_that_is_killed_goes_on_to_the_same_bytes(
     tmp_path: Path, sign: int, whole_sweep: bytes
 ) -> None:
