@@ -105,6 +105,7 @@ def test_calculix_agrees_on_grooves() -> None:
     same(given, found, 0.03)
 
 
+@pytest.mark.long
 @pytest.mark.peers
 def test_calculix_agrees_on_a_tube() -> None:
     """In the gap, where its bore becomes oval; ours 577.2 +- 0.8 % MPa. Theirs comes from above on

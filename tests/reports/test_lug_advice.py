@@ -199,6 +199,7 @@ def test_a_stiffer_pin_in_a_wider_eye_is_enough(tmp_path: Path) -> None:
     assert least(clevis(tmp_path, 2.6, middle=28.4), "EYE") < 2.6
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_thicker_lug_or_a_wider_eye_is_enough_of_a_stiff_pin(tmp_path: Path) -> None:
     stiff = {"pin": 40.0, "eye": 100.0}

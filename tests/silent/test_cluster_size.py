@@ -21,6 +21,7 @@ linux = pytest.mark.linux
 FORCES = "forces = { B = [0.0, -900.0], C = [0.0, -950.0] }"
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @linux
 def test_it_is_that_of_one_process_also_where_forces_come_from_a_table(tmp_path: Path) -> None:

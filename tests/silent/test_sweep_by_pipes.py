@@ -74,7 +74,7 @@ def _reachable() -> set[str]:
 @pytest.mark.slow
 @pytest.mark.linux
 def test_no_socket_can_be_reached_while_a_sweep_runs(tmp_path: Path) -> None:
-    _study(tmp_path, 24, ONE_PIN)
+    _study(tmp_path, 12, ONE_PIN)
     command = [sys.executable, "-m", "pinstress", "sweep", "study.toml", "--out", "out"]
     with started([*command, "--jobs", "2", "--quiet"], cwd=tmp_path) as sweep:
         most, seen = 0, set[str]()

@@ -15,6 +15,7 @@ from tests.support.each import sampled
 from tests.support.pins.plain_pins import TWICE
 
 
+@pytest.mark.long
 @pytest.mark.peers
 @pytest.mark.parametrize("z", sampled([0.04, 0.025], every=2))
 def test_a_hole_between_two_clamps(z: float) -> None:
