@@ -98,7 +98,8 @@ class LugCollapse:
     """The limit load of a lug, N, that its pin pulls along the shank, between lower and upper.
 
     needs: what is missing where there is none. ultimate: the load at which it breaks, of a material
-    with a failure strain; breaks_by: what ends it, or what is missing.
+    with a failure strain; breaks_by: what ends it, or what is missing. ultimate_ends: both at the
+    lower and upper end of the yield strength, where that has a range.
     """
 
     connection: str
@@ -107,3 +108,4 @@ class LugCollapse:
     needs: str = ""
     ultimate: Force | None = None
     breaks_by: str = ""
+    ultimate_ends: tuple[tuple[Force | None, str], ...] = ()

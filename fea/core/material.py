@@ -50,12 +50,14 @@ class Material:
 
     def at_end(self, end: int) -> Material:
         """The material at the lower (0) or upper (1) end of the range of its yield strength, if it
-        has one; without its hardening, which need not go on from there.
+        has one. The stresses of its hardening change in the same proportion.
         """
         if self.strength_range is None:
             return self
         strength = self.strength_range[end]
-        return replace(self, yield_strength=strength, strength_range=None, hardening=())
+        ratio = strength / (self.yield_strength or strength)
+        hardening = tuple((e, max(strength, ratio * s)) for e, s in self.hardening)
+        return replace(self, yield_strength=strength, strength_range=None, hardening=hardening)
 
     @property
     def elastic_part(self) -> Material:

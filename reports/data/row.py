@@ -185,11 +185,15 @@ class PinResult:
 
     @property
     def most_loads(self) -> dict[str, float]:
-        """The largest load over the ranges of a landing and of the stiffness of links, over that of
-        the case.
+        """The most that a demand grows over the ranges of a landing and of the stiffness of links:
+        as the largest load, or the stress, which forces that nearly cancel raise more.
         """
-        over = {"landing": self.landing, "links": self.sharing}
-        return {what: max(x.largest_load, 1.0) for what, x in over.items() if x is not None}
+        over, stress = {"landing": self.landing, "links": self.sharing}, self.max_von_mises
+        return {
+            what: max(x.largest_load, float(max(x.max_von_mises)) / stress if stress else 1.0, 1.0)
+            for what, x in over.items()
+            if x is not None
+        }
 
     def __repr__(self) -> str:
         """The row in brief: <E landing: fails, factor 1.15 ± 1.8 %, 195,000 psi at z = 6.26 in>."""

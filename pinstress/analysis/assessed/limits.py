@@ -194,15 +194,18 @@ def _lug_collapse(pin: Pin, lug: Lug, same: Memo) -> LugCollapse:
     except (ArgumentError, ArithmeticError) as error:  # the margin says why
         return LugCollapse(lug.connection, needs=f"a limit load: {error}")
     lower, upper = band.length * limit.lower, band.length * limit.upper
-    ultimate, breaks_by = _lug_ultimate(outline, lug.material, same)
-    if ultimate is not None:
-        ultimate *= band.length
-    return LugCollapse(lug.connection, lower, upper, "", ultimate, breaks_by)
+    metals = [lug.material]
+    if lug.material.strength_range is not None and lug.material.failure_strain is not None:
+        metals += [lug.material.at_end(end) for end in (0, 1)]
+    given, *ends = (_lug_ultimate(outline, band.length, metal, same) for metal in metals)
+    return LugCollapse(lug.connection, lower, upper, "", *given, ultimate_ends=tuple(ends))
 
 
-def _lug_ultimate(outline: LugOutline, metal: Material, same: Memo) -> tuple[float | None, str]:
-    """Return the load per thickness at which a lug breaks, N/m, and what ends it; None and what is
-    missing. Nothing is done for a material without a failure strain.
+def _lug_ultimate(
+    outline: LugOutline, thickness: float, metal: Material, same: Memo
+) -> tuple[float | None, str]:
+    """Return the load at which a lug of some thickness, m, breaks, N, and what ends it; None and
+    what is missing. Nothing is done for a material without a failure strain.
     """
     if metal.failure_strain is None:
         return None, ""
@@ -219,4 +222,4 @@ def _lug_ultimate(outline: LugOutline, metal: Material, same: Memo) -> tuple[flo
         broken = same.get((outline, metal), pulled)
     except (ArgumentError, ArithmeticError) as error:  # the margin says why
         return None, f"an ultimate load: {error}"
-    return broken.load, broken.ended_by
+    return thickness * broken.load, broken.ended_by

@@ -100,10 +100,17 @@ def _with_ranges(s: Situation, margins: Sequence[Margin]) -> list[Margin]:
     low, high = ends
     # A check whose number of margins changes with the strength has those of both ends.
     alike = [m.method for m in low] == [m.method for m in high]
-    worse = (
-        [max(x, key=lambda m: m.used) for x in zip(low, high, strict=True)] if alike else low + high
-    )
+    pairs = zip(low, high, strict=True) if alike else ((m,) for m in low + high)
+    worse = [m for pair in pairs for m in _worse(pair)]
     return [m for m in margins if m.method == YIELD_METHOD] + worse
+
+
+def _worse(ends: tuple[Margin, ...]) -> tuple[Margin, ...]:
+    """Return the worse of one margin at both ends, or both where one could not be made: it may have
+    been the worse one.
+    """
+    made = [not m.needs for m in ends]
+    return (max(ends, key=lambda m: m.used),) if all(made) or not any(made) else ends
 
 
 def _at_end(s: Situation, end: int) -> Situation:
@@ -116,21 +123,29 @@ def _at_end(s: Situation, end: int) -> Situation:
         s, material=s.material.at_end(end), lugs=lugs, sized=sized,
         row=s.row and replace(s.row, limit_load=_limit_at_end(s.row.limit_load, s.material, end)),
         lug_collapses=tuple(
-            _limit_at_end(x, of_lugs[x.connection], end) for x in s.lug_collapses
+            _ultimate_at_end(_limit_at_end(x, of_lugs[x.connection], end), end)
+            for x in s.lug_collapses
         ),
     )  # fmt: skip
 
 
 def _limit_at_end(limit: L, material: Material, end: int) -> L:
-    """Return a limit load at an end of the yield strength, to which it is in proportion.
-
-    One with hardening follows the material's curve, which has no range.
+    """Return a limit load at an end of the yield strength, to which it is in proportion, as is the
+    hardening of the material.
     """
-    if limit is None or material.strength_range is None or getattr(limit, "hardening", False):
+    if limit is None or material.strength_range is None:
         return limit
     ratio = material.strength_range[end] / (material.yield_strength or 1.0)
     lower, upper = (None if x is None else ratio * x for x in (limit.lower, limit.upper))
     return replace(limit, lower=lower, upper=upper)
+
+
+def _ultimate_at_end(limit: LugCollapse, end: int) -> LugCollapse:
+    """Return the limit load of a lug with its ultimate load at an end of the yield strength."""
+    if not limit.ultimate_ends:
+        return limit
+    ultimate, breaks_by = limit.ultimate_ends[end]
+    return replace(limit, ultimate=ultimate, breaks_by=breaks_by)
 
 
 def _joined(*texts: str) -> str:

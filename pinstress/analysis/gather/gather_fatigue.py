@@ -223,7 +223,7 @@ def _left_out(
 ) -> tuple[str, ...]:
     elastic = {p.pin for p in points if p.method != "fkm-p-ram"}
     singular = dict.fromkeys(
-        row.pin for outcome in outcomes for row in outcome.rows if row.verdict == "singular"
+        row.pin for outcome in outcomes for row in outcome.rows if row.singular_at
     )
     yields = [
         task.pin.name

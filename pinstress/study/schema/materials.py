@@ -44,7 +44,8 @@ class MaterialRangeTable(StrictTable):
 
     yield_strength: tuple[Stress, Stress] | None = None
     """The outcome of each pin in yield is decided over it; limit loads and checks by formula take
-    the worse end. Default: the `yield_strength` alone."""
+    the worse end. The stresses of `hardening` change in the same proportion. Default: the
+    `yield_strength` alone."""
 
 
 class MaterialTable(StrictTable):
