@@ -75,6 +75,7 @@ def sequence_tables(study: Study, parts: dict[str, Any]) -> dict[str, Any]:
     """
     reactions = {t.case: t for t in parts["reactions"]}
     motions = {m.case: m for m in parts["motion"]}
+    in_space = {skeleton.case for skeleton in parts["space"]}
     drives = {(d.case, d.name): d for d in parts["drive"]}
     times = {name: t.times for name, t in reactions.items()}
     out: dict[str, list[Any]] = {"reactions": [], "drive": [], "motion": []}
@@ -82,14 +83,16 @@ def sequence_tables(study: Study, parts: dict[str, Any]) -> dict[str, Any]:
         order = list(steps(study.table.sequence[name], times))
         cases = [step.case for step in order]
         table = _reactions(name, reactions, order)
-        if all(case in motions for case in cases):
+        in_plane = all(case in motions for case in cases)
+        if in_plane or all(case in in_space for case in cases):
             held = dict.fromkeys(d for case, d in drives if case in cases)
             of = [{case: drives.get((case, drive)) for case in cases} for drive in held]
             joined_drives = [_drive(name, by_case, times, order) for by_case in of]
-            note = f"{table.note} {_work(study, joined_drives)}{_jumps(motions, order)}"
-            table = replace(table, note=note)
-            out["motion"].append(_motion(name, motions, order))
+            jumps = _jumps(motions, order) if in_plane else ""
+            table = replace(table, note=f"{table.note} {_work(study, joined_drives)}{jumps}")
             out["drive"] += joined_drives
+        if in_plane:
+            out["motion"].append(_motion(name, motions, order))
         out["reactions"].append(table)
     return {key: (*parts[key], *tables) for key, tables in out.items()}
 
@@ -235,7 +238,8 @@ def _carried(load: AppliedForce, own: LinkageMotion, whole: LinkageMotion) -> Fl
     turned = np.radians(np.nan_to_num(whole.angle[:, b] - own.angle[0, b]))  # no angle: a particle
     x, y = load.position[0] - own.centre[0, b]
     cos, sin = np.cos(turned), np.sin(turned)
-    return whole.centre[:, b] + np.stack([cos * x - sin * y, sin * x + cos * y], axis=1)
+    at = whole.centre[:, b] + np.stack([cos * x - sin * y, sin * x + cos * y], axis=1)
+    return np.asarray(at)
 
 
 def _jumps(motions: Mapping[str, LinkageMotion], order: list[Occurrence]) -> str:

@@ -169,6 +169,31 @@ def test_every_load_of_a_sequence_acts_in_its_own_steps(tmp_path: Path) -> None:
         assert table.largest[0].frictionless == table.largest[0].force == pytest.approx(5098.0665)
 
 
+def test_drives_over_a_sequence_in_space_are_those_in_the_plane(tmp_path: Path) -> None:
+    in_plane, in_space = tmp_path / "plane.toml", tmp_path / "space.toml"
+    in_plane.write_text(ARM, encoding="utf-8")
+    solid = (
+        ARM.replace('body = "arm"\nstart', 'joint = "O"\nstart')
+        .replace("[mechanism.drive]", "[mechanism]\ndimension = 3\n[mechanism.drive]")
+        .replace("[mechanism.drive]", 'gravity = [0, "-9.80665 m/s^2", 0]\n[mechanism.drive]')
+        .replace("at = [1, 2]", "at = [1, 2, 0]\naxis = [0, 0, 1]")
+        .replace("[1.5, 2.0]\ninertia = 1", "[1.5, 2.0, 0]\ninertia = [1, 1, 1]")
+        .replace("[4, 6], force = [30, -40]", "[4, 6, 0], force = [30, -40, 0]")
+        .replace("[2, 2], force = [0, -5000]", "[2, 2, 0], force = [0, -5000, 0]")
+    )
+    in_space.write_text(solid, encoding="utf-8")
+    flat, deep = (loads_only(load_study(path)) for path in (in_plane, in_space))
+    for name in ("first", "last"):
+        a, b = (next(d for d in found.drive if d.case == name) for found in (flat, deep))
+        for key in ("time", "position", "force", "power", "work"):
+            assert getattr(a, key) == pytest.approx(getattr(b, key), abs=1e-9)
+        for key in ("largest", "mean", "rms", "stroke"):
+            assert getattr(a, key) == pytest.approx(getattr(b, key))
+        notes = [next(t.note for t in f.reactions if t.case == name) for f in (flat, deep)]
+        assert "Work per cycle: O " in notes[1]
+        assert notes[1].split("O ")[1].split(" N")[0] == notes[0].split("arm ")[1].split(" N")[0]
+
+
 SPEC = """
 title = "Bent to and fro"
 units = "mm-N-s"
