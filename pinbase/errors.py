@@ -2,19 +2,57 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
 Place = tuple[str | int, ...]
+# By dimension.
+SI_UNITS = {
+    "length": "m",
+    "area": "m^2",
+    "volume": "m^3",
+    "velocity": "m/s",
+    "mass": "kg",
+    "force": "N",
+    "moment": "N m",
+    "energy": "J",
+}
+
+
+@dataclass(frozen=True)
+class NumberInSI:
+    """A number in SI within a message, which a study says in its own units.
+
+    dimension: one of SI_UNITS.
+    """
+
+    value: float
+    dimension: str
+
+    def __str__(self) -> str:
+        return f"{self.value:.4g} {SI_UNITS[self.dimension]}"
 
 
 class CodedError(Exception):
     """An error with a short, stable `code` for programs and a message for people.
 
-    message: states what was wrong, where, and what would be right.
+    message: states what was wrong, where, and what would be right; in parts where some of them are
+    numbers with units.
     at: path of the part that is wrong, for instance ("segment", 2); empty for the whole.
     """
 
-    def __init__(self, message: str, code: str = "", at: Place = ()) -> None:
-        super().__init__(message)
+    def __init__(
+        self, message: str | Sequence[str | NumberInSI], code: str = "", at: Place = ()
+    ) -> None:
+        self.parts: tuple[str | NumberInSI, ...] = (
+            (message,) if isinstance(message, str) else tuple(message)
+        )
+        super().__init__("".join(map(str, self.parts)))
         self.code, self.at = code, at
+
+    def told(self, show: Callable[[NumberInSI], str]) -> str:
+        """Return the message with its numbers as they are shown."""
+        return "".join(x if isinstance(x, str) else show(x) for x in self.parts)
 
 
 class ArgumentError(CodedError, ValueError):

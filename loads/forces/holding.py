@@ -20,6 +20,7 @@ from loads.motion.least_squares import Factors, elimination
 from loads.motion.mobility import mobility
 from loads.motion.motion import Motion
 from pinbase.arrays import Floats
+from pinbase.errors import NumberInSI
 
 # Of the largest force: a stop that carries no more of the wrong sign carries nothing.
 OPENING_FORCE_TOLERANCE = 1e-9
@@ -110,11 +111,14 @@ def require_pressed(
         return
     opening = -force if carries == "positive" else force
     if opening.max() > least:
-        what, unit = ("forces", "N") if slides else ("couples", "N m")
+        what, dimension = ("forces", "force") if slides else ("couples", "moment")
         raise LinkageError(
-            f"stop {stop} carries only {carries} {what}, but to hold this load it would have to "
-            f"carry {force[int(opening.argmax())]:.4g} {unit}: it opens; name something else in "
-            "hold",
+            [
+                f"stop {stop} carries only {carries} {what}, but to hold this load it would have "
+                "to carry ",
+                NumberInSI(float(force[int(opening.argmax())]), dimension),
+                ": it opens; name something else in hold",
+            ],
             "stop-opens",
         )
 

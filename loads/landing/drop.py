@@ -22,7 +22,7 @@ from loads.landing.travel import TELESCOPIC, Levered, Telescopic
 from loads.landing.tyre import Tyre, damped
 from loads.landing.wheel import Wheel
 from pinbase.arrays import Floats
-from pinbase.errors import CodedError
+from pinbase.errors import CodedError, NumberInSI
 
 RELATIVE_TOLERANCE = 1e-11
 ABSOLUTE_TOLERANCE = 1e-13  # of the scale of each variable
@@ -364,16 +364,28 @@ def _destroyed(d: Drop, event: str, time: float, y: Floats, mode: Mode) -> Landi
     """The error of a strut or tyre that is exceeded, with the energy that remains."""
     f = forces(d, y, mode)
     left = 0.5 * d.mass * float(y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE] * d.sprung / d.mass) ** 2
-    sinking = f"{y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE]:.3g} m/s"
-    where = f"{time:.4g} s after touch-down, the aircraft still sinking at {sinking}"
+    sinking = NumberInSI(float(y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE]), "velocity")
+    where = f"{time:.4g} s after touch-down, the aircraft still sinking at "
     if event == "bottoms":
         return LandingError(
-            f"the strut bottoms at {float(f.stroke):.4g} m {where} (about {left:.4g} J are left): "
-            "a longer stroke, a higher gas pressure or a smaller orifice is needed",
+            [
+                "the strut bottoms at ",
+                NumberInSI(float(f.stroke), "length"),
+                f" {where}",
+                sinking,
+                " (about ",
+                NumberInSI(left, "energy"),
+                " are left): a longer stroke, a higher gas pressure or a smaller orifice is needed",
+            ],
             "strut-bottoms",
         )
     return LandingError(
-        f"the tyre is deflected beyond the last row of its table, {d.tyre.max_deflection:.4g} m, "
-        f"{where}; give more rows, or a stiffer tyre",
+        [
+            "the tyre is deflected beyond the last row of its table, ",
+            NumberInSI(d.tyre.max_deflection, "length"),
+            f", {where}",
+            sinking,
+            "; give more rows, or a stiffer tyre",
+        ],
         "tyre-exceeded",
     )

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pinbase.arrays import Floats
-from pinbase.errors import ArgumentError
+from pinbase.errors import ArgumentError, NumberInSI
 
 MAX_DISPLACED_GAS_SHARE = 0.98  # of the gas volume that a full stroke may displace
 
@@ -86,8 +86,12 @@ class Oil:
     def __post_init__(self) -> None:
         if max(self.orifice, self.rebound or 0.0) >= self.area:
             raise ArgumentError(
-                f"an orifice of {max(self.orifice, self.rebound or 0.0):g} m^2 is not smaller than "
-                f"the hydraulic area of {self.area:g} m^2",
+                [
+                    "an orifice of ",
+                    NumberInSI(max(self.orifice, self.rebound or 0.0), "area"),
+                    " is not smaller than the hydraulic area of ",
+                    NumberInSI(self.area, "area"),
+                ],
                 "orifice-too-large",
             )
 
@@ -124,10 +128,18 @@ class Strut:
             and gas.area * self.stroke > MAX_DISPLACED_GAS_SHARE * gas.volume
         ):
             raise ArgumentError(
-                f"a stroke of {self.stroke:g} m displaces {gas.area * self.stroke:.4g} m^3 of gas, "
-                f"but the extended strut has {gas.volume:.4g} m^3, of which at most "
-                f"{MAX_DISPLACED_GAS_SHARE:.0%} can be displaced: shorten the stroke to at most "
-                f"{MAX_DISPLACED_GAS_SHARE * gas.volume / gas.area:.4g} m, or enlarge the volume",
+                [
+                    "a stroke of ",
+                    NumberInSI(self.stroke, "length"),
+                    " displaces ",
+                    NumberInSI(gas.area * self.stroke, "volume"),
+                    " of gas, but the extended strut has ",
+                    NumberInSI(gas.volume, "volume"),
+                    f", of which at most {MAX_DISPLACED_GAS_SHARE:.0%} can be displaced: shorten "
+                    "the stroke to at most ",
+                    NumberInSI(MAX_DISPLACED_GAS_SHARE * gas.volume / gas.area, "length"),
+                    ", or enlarge the volume",
+                ],
                 "stroke-exceeds-gas",
             )
 

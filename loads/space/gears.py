@@ -18,6 +18,7 @@ import numpy as np
 from loads.linkage.linkage import LinkageError
 from loads.space.linkage import BodyAngle, JointTravel, Measured, Ratio, ToothContact, Vector
 from pinbase.arrays import Floats
+from pinbase.errors import NumberInSI
 
 PARALLEL = 1e-6  # sine of the angle between axes that are parallel
 MEETING = 1e-4  # distance of axes that meet, over that of the centres
@@ -243,9 +244,13 @@ def _meeting(name: str, wheels: tuple[GearWheel, GearWheel]) -> Floats:
     size = max(float(np.linalg.norm(x)) for x in (apart, on_first - first, on_second - second))
     if float(np.linalg.norm(on_second - on_first)) > MEETING * size:
         raise LinkageError(
-            f"gear {name}: its axes are neither parallel nor do they meet (they pass each other "
-            f"{float(np.linalg.norm(on_second - on_first)):.4g} m apart); skew gears and worms are "
-            "not described; correct the joints, or drive both bodies",
+            [
+                f"gear {name}: its axes are neither parallel nor do they meet (they pass each "
+                "other ",
+                NumberInSI(float(np.linalg.norm(on_second - on_first)), "length"),
+                " apart); skew gears and worms are not supported; correct the joints, or drive "
+                "both bodies",
+            ],
             "skew-gears",
             ("gear", name),
         )

@@ -4,10 +4,10 @@ again.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
 from itertools import pairwise
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.sequence import Occurrence, complete, steps
 from pinstress.study.reading.file import Study
 from reports.data.mechanics import DriveEffort, DriveTable, PeakReaction, ReactionTable
-from reports.data.motion import Extremes, LinkageMotion
+from reports.data.motion import AppliedForce, Extremes, LinkageMotion
 from reports.format.numbers import engineering
 
 T = TypeVar("T")
@@ -75,6 +75,7 @@ def sequence_tables(study: Study, parts: dict[str, Any]) -> dict[str, Any]:
     """
     reactions = {t.case: t for t in parts["reactions"]}
     motions = {m.case: m for m in parts["motion"]}
+    in_space = {skeleton.case for skeleton in parts["space"]}
     drives = {(d.case, d.name): d for d in parts["drive"]}
     times = {name: t.times for name, t in reactions.items()}
     out: dict[str, list[Any]] = {"reactions": [], "drive": [], "motion": []}
@@ -82,14 +83,16 @@ def sequence_tables(study: Study, parts: dict[str, Any]) -> dict[str, Any]:
         order = list(steps(study.table.sequence[name], times))
         cases = [step.case for step in order]
         table = _reactions(name, reactions, order)
-        if all(case in motions for case in cases):
+        in_plane = all(case in motions for case in cases)
+        if in_plane or all(case in in_space for case in cases):
             held = dict.fromkeys(d for case, d in drives if case in cases)
             of = [{case: drives.get((case, drive)) for case in cases} for drive in held]
             joined_drives = [_drive(name, by_case, times, order) for by_case in of]
-            note = f"{table.note} {_work(study, joined_drives)}{_jumps(motions, order)}"
-            table = replace(table, note=note)
-            out["motion"].append(_motion(name, motions, order))
+            jumps = _jumps(motions, order) if in_plane else ""
+            table = replace(table, note=f"{table.note} {_work(study, joined_drives)}{jumps}")
             out["drive"] += joined_drives
+        if in_plane:
+            out["motion"].append(_motion(name, motions, order))
         out["reactions"].append(table)
     return {key: (*parts[key], *tables) for key, tables in out.items()}
 
@@ -155,13 +158,24 @@ def _peak(c: int, tables: Mapping[str, ReactionTable], order: list[Occurrence]) 
     peaks = [(s, tables[s.case].peaks[c]) for s in order]
     step, peak = max(peaks, key=lambda pair: pair[1].force)
     case_time = 0.0 if peak.time is None else peak.time - _first(tables[step.case].times)
-    rubs = [p.frictionless for _, p in peaks if p.frictionless is not None]
     return replace(
         peak,
         time=step.begin + case_time,
         moment=max(p.moment for _, p in peaks),
-        frictionless=max(rubs, default=None),
+        frictionless=_frictionless((p.force, p.frictionless) for _, p in peaks),
     )
+
+
+def _frictionless(largest: Iterable[tuple[float, float | None]]) -> float | None:
+    """Return the largest value without friction, None where no step has friction.
+
+    largest: of every step, the largest value and that without friction; None where nothing rubs, as
+    at rest, so that both are the same.
+    """
+    every = list(largest)
+    if all(smooth is None for _, smooth in every):
+        return None
+    return max(value if smooth is None else smooth for value, smooth in every)
 
 
 def _steps_in_words(order: list[Occurrence]) -> str:
@@ -181,7 +195,17 @@ def _motion(
 ) -> LinkageMotion:
     used = {step.case: motions[step.case] for step in order}
     times = {case: m.time for case, m in used.items()}
-    whole = _course(used, times, order)
+    unloaded = {case: replace(m, applied=(), aside=()) for case, m in used.items()}
+    whole = _course(unloaded, times, order)
+
+    def loads(key: Literal["applied", "aside"]) -> tuple[AppliedForce, ...]:
+        found = []
+        for case, m in used.items():
+            for load in getattr(m, key):
+                of = {c: np.zeros((len(n.centre), load.force.shape[1])) for c, n in used.items()}
+                force = _course(of | {case: load.force}, times, order)
+                found.append(AppliedForce(load.body, _carried(load, m, whole), force))
+        return tuple(found)
 
     def later(step: Occurrence, extreme: tuple[float, float | None]) -> tuple[float, float]:
         value, time = extreme
@@ -196,9 +220,26 @@ def _motion(
         whole,
         case=name,
         time=_axis(times, order),
+        applied=loads("applied"),
+        aside=loads("aside"),
         ledger=replace(whole.ledger, violation=violation),
         extremes=Extremes(angles, worst),
     )
+
+
+def _carried(load: AppliedForce, own: LinkageMotion, whole: LinkageMotion) -> Floats:
+    """Return the positions (T, 2) of the point of a load, which its body carries through all steps.
+
+    own: motion of the case with the load. whole: of the sequence.
+    """
+    if load.body not in whole.bodies:  # on the ground
+        return np.repeat(load.position[:1], len(whole.centre), axis=0)
+    b = whole.bodies.index(load.body)
+    turned = np.radians(np.nan_to_num(whole.angle[:, b] - own.angle[0, b]))  # no angle: a particle
+    x, y = load.position[0] - own.centre[0, b]
+    cos, sin = np.cos(turned), np.sin(turned)
+    at = whole.centre[:, b] + np.stack([cos * x - sin * y, sin * x + cos * y], axis=1)
+    return np.asarray(at)
 
 
 def _jumps(motions: Mapping[str, LinkageMotion], order: list[Occurrence]) -> str:
@@ -267,7 +308,6 @@ def _over(efforts: list[tuple[Occurrence, DriveEffort]], stroke: float) -> Drive
     mean, rms = (np.array([getattr(e, key) for _, e in efforts]) for key in ("mean", "rms"))
     step, most = max(efforts, key=lambda pair: pair[1].largest)
     busy, strongest = max(efforts, key=lambda pair: pair[1].power)
-    rubs = [e.frictionless for _, e in efforts if e.frictionless is not None]
     return DriveEffort(
         most.largest,
         step.begin + most.time,
@@ -276,7 +316,7 @@ def _over(efforts: list[tuple[Occurrence, DriveEffort]], stroke: float) -> Drive
         strongest.power,
         busy.begin + strongest.power_time,
         max(stroke, *(e.stroke for _, e in efforts)),
-        max(rubs, default=None),
+        _frictionless((e.largest, e.frictionless) for _, e in efforts),
     )
 
 

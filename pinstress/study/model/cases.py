@@ -164,7 +164,8 @@ def case_loads(
         raise study.error(message, code=error.code) from None
     except LinkageError as error:
         where = "" if str(error).startswith("case.") else f"case.{key_part(name)}: "
-        raise study.error(f"{where}{error}{fit_offer(study, error)}", code=error.code) from None
+        message = f"{where}{error.told(study.system.told)}{fit_offer(study, error)}"
+        raise study.error(message, code=error.code) from None
 
 
 def _shown(study: Study) -> Callable[[float, bool], str]:

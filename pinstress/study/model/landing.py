@@ -24,7 +24,7 @@ from loads.landing import (
     required_velocity,
     travel,
 )
-from pinbase.errors import ArgumentError
+from pinbase.errors import ArgumentError, NumberInSI
 from pinbase.keys import key_part
 from pinstress.study.model.mechanism.drives import state
 from pinstress.study.model.mechanism.linkage import linkage
@@ -72,7 +72,7 @@ def drop(study: Study, name: str, case: DropCase, mechanism: Linkage) -> tuple[D
         unsprung = case.unsprung or _unsprung(case, mechanism, where)
         return _drop(case, mechanism, strut, rises, tyre, unsprung), where
     except ArgumentError as error:
-        raise study.error(f"{key}: {error}", code=error.code) from None
+        raise study.error(f"{key}: {error.told(study.system.told)}", code=error.code) from None
 
 
 def _unsprung(case: DropCase, mechanism: Linkage, where: Touchdown) -> float:
@@ -130,8 +130,13 @@ def _drop(
     mass = case.mass if case.mass is not None else (case.weight or 0.0) / STANDARD_GRAVITY
     if unsprung >= mass:
         raise ArgumentError(
-            f"unsprung, {unsprung:.6g} kg, is part of the mass on the leg, {mass:g} kg, and "
-            "must be smaller",
+            [
+                "unsprung, ",
+                NumberInSI(unsprung, "mass"),
+                ", is part of the mass on the leg, ",
+                NumberInSI(mass, "mass"),
+                ", and must be smaller",
+            ],
             "unsprung-too-large",
         )
     rule = None if case.rule is None else DROP_RULES[case.rule]
@@ -188,7 +193,8 @@ def fallen(study: Study, name: str, leg: Drop) -> Landing:
     try:
         return land(leg)
     except LandingError as error:
-        raise study.error(f"case.{key_part(name)}: {error}", code=error.code) from None
+        told = error.told(study.system.told)
+        raise study.error(f"case.{key_part(name)}: {told}", code=error.code) from None
 
 
 def drop_note(case: DropCase, leg: Drop) -> str:

@@ -9,7 +9,7 @@ from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
-from pinbase.errors import ArgumentError
+from pinbase.errors import ArgumentError, NumberInSI
 from pinstress.study.schema.shown import as_text, in_toml, nearest
 from pinstress.study.schema.thermal_units import THERMAL_UNITS, thermal_si
 
@@ -109,6 +109,9 @@ class UnitSystem:
             "time": self.time,
             "stress": self.stress,
             "energy": f"{self.force} {self.length}",
+            "moment": f"{self.force} {self.length}",
+            "area": f"{self.length}^2",
+            "volume": f"{self.length}^3",
             "velocity": f"{self.length}/{self.time}",
             "acceleration": f"{self.length}/{self.time}^2",
             "degrees": "deg",
@@ -116,6 +119,14 @@ class UnitSystem:
         if dimension in names:
             return names[dimension]
         return " ".join(names.get(part, part) for part in dimension.split())
+
+    def told(self, number: NumberInSI) -> str:
+        """Return a number of a message with its unit in this system, a mass as on scales."""
+        if number.dimension == "mass":
+            unit, factor = self.scales
+        else:
+            unit, factor = self.unit(number.dimension), self.factor(number.dimension)
+        return f"{number.value / factor:.4g} {unit}"
 
 
 _POUND_FORCE = 0.45359237 * 9.80665

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import pickle
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from pinstress.study.reading.file import Study
 from tests.conftest import ROOT
 from tests.support.described import describe
 from tests.support.each import each
+from tests.support.errors import raises
 
 SHIPPED = ROOT / "studies" / "drop.toml"
 PART_25 = ROOT / "studies" / "landing_gear_part25.toml"
@@ -165,20 +167,21 @@ def test_mistakes_have_codes(case: dict[str, Any], code: str) -> None:
 
 
 @each(
-    ("part", "values", "code"),
+    ("part", "values", "code", "named"),
     [
-        ("gas", {"volume": -1.0}, "not-positive"),
-        ("gas", {"volume": 1e-4}, "stroke-exceeds-gas"),
-        ("oil", {"orifice": 0.0}, "not-positive"),
-        ("oil", {"orifice": 1.0}, "orifice-too-large"),
+        ("gas", {"volume": -1.0}, "not-positive", ""),
+        ("gas", {"volume": 1e-4}, "stroke-exceeds-gas", "the extended strut has 0.0001 {}^3"),
+        ("oil", {"orifice": 0.0}, "not-positive", ""),
+        ("oil", {"orifice": 1.0}, "orifice-too-large", "an orifice of 1 {}^2"),
     ],
 )
-def test_mistakes_of_the_strut(part: str, values: dict[str, float], code: str) -> None:
-    given = vertical_leg()
-    given["case"]["fall"]["strut"][part] |= values
-    with pytest.raises(InputError) as caught:
-        describe(study_from(given))
-    assert code in caught.value.codes
+def test_mistakes_of_the_strut(part: str, values: dict[str, float], code: str, named: str) -> None:
+    """The message has the numbers as the study states them, in its own units."""
+    for units, length in (("m-N-s", "m"), ("mm-N-s", "mm"), ("in-lbf-s", "in")):
+        given = vertical_leg() | {"units": units}
+        given["case"]["fall"]["strut"][part] |= values
+        with raises(InputError, code, named.format(length)):
+            describe(study_from(given))
 
 
 def test_a_strut_that_bottoms_is_an_error_of_the_case() -> None:
@@ -186,6 +189,38 @@ def test_a_strut_that_bottoms_is_an_error_of_the_case() -> None:
     with pytest.raises(InputError) as caught:
         all_loads(study_from(given), ["fall"])
     assert caught.value.codes == ("strut-bottoms",)
+
+
+HELD_ARM = """
+title = "An arm against a stop"
+units = "in-lbf-s"
+[mechanism]
+gravity = [0, 0]
+[mechanism.joint.O]
+at = [0, 0]
+fixed_in = "ground"
+connections = { O = "arm" }
+[mechanism.body.arm]
+[mechanism.stop.rest]
+bodies = ["ground", "arm"]
+carries = "negative"
+[case.pushed]
+kind = "static"
+hold = ["rest"]
+apply = [{ body = "arm", at = [10, 0], force = [0, -25] }]
+"""
+
+
+def test_messages_of_loads_are_in_the_units_of_the_study() -> None:
+    """25 lbf at 10 in need a couple of 250 lbf in; the strut of a leg in mm bottoms at 130 mm."""
+    with raises(InputError, "stop-opens", "would have to carry 250 lbf in: it opens"):
+        all_loads(study_from(tomllib.loads(HELD_ARM)), ["pushed"])
+    fast = tomllib.loads(SHIPPED.read_text(encoding="utf-8"))
+    fall = fast["case"]["landing"]
+    del fall["rule"], fall["wing_loading"]
+    fall |= {"velocity": "9 m/s", "lift": 0.5}
+    with raises(InputError, "strut-bottoms", "bottoms at 130 mm ", " mm/s ", " N mm are left"):
+        all_loads(study_from(fast), ["landing"])
 
 
 def test_pins_fall_with_the_aircraft() -> None:

@@ -102,6 +102,98 @@ position = "90 deg"
     assert "jumps" not in notes["shift"]
 
 
+ARM = """
+title = "An arm whose steps have other loads"
+units = "m-N-s"
+[mechanism.drive]
+body = "arm"
+start = "0 deg"
+end = "90 deg"
+duration = 2
+[mechanism.joint.O]
+at = [1, 2]
+fixed_in = "ground"
+connections = { O = "arm" }
+friction = 0.1
+diameter = 0.2
+[mechanism.body.arm]
+mass = 10
+centre = [1.5, 2.0]
+inertia = 1
+[case.loaded]
+kind = "motion"
+samples = 5
+apply = [{ body = "arm", at = [4, 6], force = [30, -40] }]
+[case.empty]
+kind = "static"
+position = "180 deg"
+[case.held]
+kind = "static"
+apply = [{ body = "arm", at = [2, 2], force = [0, -5000] }, { body = "arm", force = [0, 0, 7] }]
+[sequence.first]
+steps = [{ case = "loaded" }, { case = "empty", duration = 1 }, { case = "held", duration = 1 }]
+[sequence.last]
+steps = [{ case = "empty", duration = 1 }, { case = "held", duration = 1 }, { case = "loaded" }]
+"""
+
+
+def test_every_load_of_a_sequence_acts_in_its_own_steps(tmp_path: Path) -> None:
+    """Whichever step comes first: its force is zero in the others, where its point, carried by the
+    arm, is its drawn arm from O turned by the angle. At rest nothing rubs: the largest force
+    without friction is that of the case at rest, which is larger than those of the motion.
+    """
+    path = tmp_path / "arm.toml"
+    path.write_text(ARM, encoding="utf-8")
+    found = loads_only(load_study(path))
+    turned = {"loaded": [*found.motion[0].angle[:, 0]], "empty": [180.0] * 2, "held": [0.0] * 2}
+    for name, order in (
+        ("first", ("loaded", "empty", "held")),
+        ("last", ("empty", "held", "loaded")),
+    ):
+        motion = next(m for m in found.motion if m.case == name)
+        angles = np.radians(np.concatenate([turned[case] for case in order]))
+        cases = np.concatenate([[case] * len(turned[case]) for case in order])
+        (aside,) = motion.aside
+        by_case = {"loaded": (3 + 4j, [30.0, -40.0]), "held": (1 + 0j, [0.0, -5000.0])}
+        assert len(motion.applied) == 2
+        for load in (*motion.applied, aside):
+            (case,) = set(cases[load.sizes > 0.0])
+            drawn, force = (0.5 + 0j, [0.0, 0.0, 7.0]) if load is aside else by_case[case]
+            at = 1 + 2j + drawn * np.exp(1j * angles)
+            assert load.position == pytest.approx(np.stack([at.real, at.imag], axis=1))
+            assert load.force == pytest.approx(np.outer(cases == case, force))
+        drive = next(d for d in found.drive if d.case == name)
+        assert drive.effort is not None
+        assert drive.effort.frictionless == drive.largest == pytest.approx(5000 + 98.0665 / 2)
+        (table,) = (t for t in found.reactions if t.case == name)
+        assert table.largest[0].frictionless == table.largest[0].force == pytest.approx(5098.0665)
+
+
+def test_drives_over_a_sequence_in_space_are_those_in_the_plane(tmp_path: Path) -> None:
+    in_plane, in_space = tmp_path / "plane.toml", tmp_path / "space.toml"
+    in_plane.write_text(ARM, encoding="utf-8")
+    solid = (
+        ARM.replace('body = "arm"\nstart', 'joint = "O"\nstart')
+        .replace("[mechanism.drive]", "[mechanism]\ndimension = 3\n[mechanism.drive]")
+        .replace("[mechanism.drive]", 'gravity = [0, "-9.80665 m/s^2", 0]\n[mechanism.drive]')
+        .replace("at = [1, 2]", "at = [1, 2, 0]\naxis = [0, 0, 1]")
+        .replace("[1.5, 2.0]\ninertia = 1", "[1.5, 2.0, 0]\ninertia = [1, 1, 1]")
+        .replace("[4, 6], force = [30, -40]", "[4, 6, 0], force = [30, -40, 0]")
+        .replace("[2, 2], force = [0, -5000]", "[2, 2, 0], force = [0, -5000, 0]")
+    )
+    in_space.write_text(solid, encoding="utf-8")
+    flat, deep = (loads_only(load_study(path)) for path in (in_plane, in_space))
+    for name in ("first", "last"):
+        a, b = (next(d for d in found.drive if d.case == name) for found in (flat, deep))
+        for key in ("time", "position", "force", "power", "work"):
+            assert getattr(a, key) == pytest.approx(getattr(b, key), abs=1e-9)
+        for key in ("largest", "mean", "rms", "stroke"):
+            assert getattr(a, key) == pytest.approx(getattr(b, key))
+        notes = [next(t.note for t in f.reactions if t.case == name) for f in (flat, deep)]
+        assert "Work per cycle: O " in notes[1]
+        assert notes[1].split("O ")[1].split(" N")[0] == notes[0].split("arm ")[1].split(" N")[0]
+
+
 SPEC = """
 title = "Bent to and fro"
 units = "mm-N-s"

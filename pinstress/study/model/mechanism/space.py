@@ -106,7 +106,7 @@ def space_contradictions(study: Study) -> tuple[SpaceLinkage | None, list[Wrong]
         if body.welded_to is not None and name in centres
     ]
     if wrong:
-        return None, _located(mechanism, wrong)
+        return None, _located(study, wrong)
     try:
         return SpaceLinkage(
             tuple(bodies),
@@ -120,7 +120,7 @@ def space_contradictions(study: Study) -> tuple[SpaceLinkage | None, list[Wrong]
             stiffness=_stiffness(mechanism, bodies, joints),
         ), []
     except LinkageError as error:
-        return None, _located(mechanism, error.each)
+        return None, _located(study, error.each)
 
 
 def _stiffness(
@@ -151,7 +151,7 @@ def determined_in_space(study: Study, linkage: SpaceLinkage, held: bool) -> Mobi
         if errors := list(idle_sharing(linkage.sharing, freedom)):
             raise LinkageError.all(errors)
     except LinkageError as error:
-        raise study.errors(_located(space_mechanism(study), error.each)) from None
+        raise study.errors(_located(study, error.each)) from None
     return freedom
 
 
@@ -320,8 +320,9 @@ def _span(
     return PointDistance(name, bodies, (known(ends[0]), known(ends[1])))
 
 
-def _located(mechanism: SpaceMechanismTable, errors: Sequence[LinkageError]) -> list[Wrong]:
+def _located(study: Study, errors: Sequence[LinkageError]) -> list[Wrong]:
     """Return errors at their keys: those of a connection at its joint."""
+    mechanism = space_mechanism(study)
     of = {c: name for name, joint in mechanism.joint.items() for c in joint.connections}
     of |= {pin_body(name): name for name in mechanism.joint}
     out = []
@@ -332,5 +333,5 @@ def _located(mechanism: SpaceMechanismTable, errors: Sequence[LinkageError]) -> 
         if kind == "drive" and len(mechanism.drive) < 2:
             names = []
         at = ".".join(key_part(part) for part in ("mechanism", kind, *names) if part)
-        out.append(Wrong(f"mechanism: {error}", at=at, code=error.code))
+        out.append(Wrong(f"mechanism: {error.told(study.system.told)}", at=at, code=error.code))
     return out
