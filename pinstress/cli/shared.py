@@ -41,7 +41,7 @@ def names(_: click.Context, __: click.Parameter, value: str | None) -> list[str]
     return entries
 
 
-class _InPlainDigits(click.ParamType):
+class _InPlainDigits(click.ParamType[Any]):
     """A number as studies have it: in the digits 0 to 9 without marks between them, and finite."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
