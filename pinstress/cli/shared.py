@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from pinstress.explore.sweep.connection import ClusterConnection
     from pinstress.study.reading.file import Study
 
+    _ParamType = click.ParamType[Any]
+else:
+    _ParamType = click.ParamType  # in older clicks it is not generic
+
 Command = TypeVar("Command", bound=Callable[..., object])
 
 
@@ -41,7 +45,7 @@ def names(_: click.Context, __: click.Parameter, value: str | None) -> list[str]
     return entries
 
 
-class _InPlainDigits(click.ParamType[Any]):
+class _InPlainDigits(_ParamType):
     """A number as studies have it: in the digits 0 to 9 without marks between them, and finite."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
