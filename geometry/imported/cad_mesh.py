@@ -9,6 +9,7 @@ import math
 import re
 from collections.abc import Iterable
 from dataclasses import replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,7 @@ from geometry.mesh.solid_mesh import MeshSize, SolidMesh, sound_mesh
 from geometry.shape.band import GeometryError
 
 MAX_PLANE_CURVATURE = 1e-9  # of a plane surface, times the body's size
+INNER_FRACTIONS = np.linspace(0.0, 1.0, 24)[1:-1]  # of a face's parameters; none is in the middle
 
 
 def cad_mesh(file: BodyFile, size: MeshSize, most: float = math.inf) -> SolidMesh:
@@ -152,15 +154,30 @@ def _same_surface(gmsh: Any, face: int, whole: list[int], slack: float) -> int:
     """Index of the face among `whole` of which a face is a part: it lies in its box and on it."""
     model = gmsh.model
     around = model.getBoundary([(2, face)], combined=False, oriented=False)
-    x = np.concatenate([_on(gmsh, curve) for _, curve in around])
-    distance = np.full(len(whole), np.inf)
-    for k, other in enumerate(whole):
+    # The rim alone would do for an end face and the side it closes, where both are splines.
+    x = np.concatenate([_inside(gmsh, face), *(_on(gmsh, curve) for _, curve in around)])
+
+    def holds(other: int) -> bool:
         box = np.array(model.getBoundingBox(2, other)).reshape(2, 3)
-        inside = (x > box[0] - slack).all() and (x < box[1] + slack).all()
-        if inside and model.getType(2, other) == model.getType(2, face):
-            nearest = np.reshape(model.getClosestPoint(2, other, x.ravel())[0], (-1, 3))
-            distance[k] = np.abs(nearest - x).max()
-    return int(np.argmin(distance))
+        within = (x > box[0] - slack).all() and (x < box[1] + slack).all()
+        return bool(within and model.getType(2, other) == model.getType(2, face))
+
+    likely = [k for k, other in enumerate(whole) if holds(other)] or list(range(len(whole)))
+    near = [np.reshape(model.getClosestPoint(2, whole[k], x.ravel())[0], (-1, 3)) for k in likely]
+    return likely[int(np.argmin([np.abs(points - x).max() for points in near]))]
+
+
+def _inside(gmsh: Any, face: int) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """Points of a face off its edges, (P, 3): the first of a grid of parameters that lies on it.
+
+    There is none where the face is thinner than the grid.
+    """
+    low, high = gmsh.model.getParametrizationBounds(2, face)
+    for share in product(INNER_FRACTIONS, INNER_FRACTIONS):
+        at = low + np.array(share) * (high - low)
+        if gmsh.model.isInside(2, face, at, parametric=True):
+            return np.reshape(gmsh.model.getValue(2, face, at), (1, 3))
+    return np.zeros((0, 3))
 
 
 def _set_sizes(gmsh: Any, size: MeshSize, cuts: list[float]) -> None:

@@ -116,8 +116,6 @@ def read_content(path: Path) -> bytes:
         ) from None
     except FileError as error:
         raise TableError(f"{path}: {error}", error.code) from None
-    except OSError as error:
-        raise TableError(f"{path}: cannot be read ({error.strerror})", "unreadable") from None
 
 
 def _lines(path: Path, file: TextIO) -> Iterator[str]:

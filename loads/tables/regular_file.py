@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import os
 import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from loads.tables.sent_files import content_sent
@@ -23,23 +25,38 @@ class FileError(CodedError, ValueError):
 
 
 def read_regular(path: Path, max_bytes: int) -> bytes:
-    """The content of a regular file of at most `max_bytes`. Raises: FileError, OSError."""
+    """The content of a regular file of at most `max_bytes`.
+
+    Raises: FileError, FileNotFoundError.
+    """
     sent = content_sent(path)
     if sent is not None:
         _require_size(len(sent), max_bytes)
         return sent
     require_regular(path, max_bytes)  # before it is opened: opening alone starts some devices
-    descriptor = os.open(path, READ_FLAGS)
-    with open(descriptor, "rb") as file:
-        _require_status(os.fstat(descriptor), max_bytes)  # it may be another file by now
+    with _plain_reasons(), open(os.open(path, READ_FLAGS), "rb") as file:
+        _require_status(os.fstat(file.fileno()), max_bytes)  # it may be another file by now
         content = file.read(max_bytes + 1)
     _require_size(len(content), max_bytes)  # it may be growing, or report no size
     return content
 
 
 def require_regular(path: Path, max_bytes: int) -> None:
-    """Raises: FileError for a file that is not regular or has more bytes; OSError."""
-    _require_status(os.stat(path), max_bytes)
+    """Raises: FileError for a file that is not regular or has more bytes; FileNotFoundError."""
+    with _plain_reasons():
+        _require_status(os.stat(path), max_bytes)
+
+
+@contextmanager
+def _plain_reasons() -> Iterator[None]:
+    """Turn errors of the system into FileErrors without its number of the error and the path."""
+    try:
+        yield
+    except (FileError, FileNotFoundError):
+        raise
+    except (OSError, ValueError) as error:  # ValueError: no file's name
+        why = error.strerror if isinstance(error, OSError) else error
+        raise FileError(f"cannot be read ({why})", "unreadable") from None
 
 
 def _require_status(status: os.stat_result, max_bytes: int) -> None:

@@ -38,6 +38,7 @@ from pinstress.cli.shared import (
     SHARE,
     STUDY,
     Commands,
+    WholeNumber,
     choices,
     example,
     open_page,
@@ -272,13 +273,13 @@ def loads(study: Path, out: Path | None, **options: Any) -> int:
 @click.option("--tolerance", type=SHARE, help="Override the study's tolerance.")
 @click.option(
     "--meshes",
-    type=click.IntRange(1, 9),
+    type=WholeNumber(1, 9),
     help="Number of meshes per solid element type [5, or 4 if they get large]; each takes about "
     "twice as long as the previous one.",
 )
 @click.option(
     "--runs",
-    type=click.IntRange(1),
+    type=WholeNumber(1),
     default=3,
     show_default=True,
     help="Number of runs per mesh; the median time is reported.",

@@ -19,6 +19,8 @@ from pinstress.cli.shared import (
     RESULTS,
     SHARE,
     STUDY,
+    RealNumber,
+    WholeNumber,
     chosen_connection,
     cluster_choices,
     example,
@@ -265,12 +267,12 @@ def completion(context: click.Context, shell: str) -> None:
 )
 @click.option(
     "--wall",
-    type=click.FloatRange(0.0, 0.5, min_open=True, max_open=True),
+    type=RealNumber(0.0, 0.5, min_open=True, max_open=True),
     help="With --least-weight: thinnest wall over the diameter [0.1, or as it is].",
 )
 @click.option(
     "--shoulder",
-    type=click.FloatRange(1.0, 10.0, min_open=True),
+    type=RealNumber(1.0, 10.0, min_open=True),
     help="With --least-weight: least ratio of the diameters of a step [1.2, or as it is].",
 )
 @click.option(
@@ -323,7 +325,7 @@ def size(
 @click.option("--to", "last", metavar="VALUE", help="Last value [twice that in the study].")
 @click.option(
     "--points",
-    type=click.IntRange(2, 200),
+    type=WholeNumber(2, 200),
     default=9,
     show_default=True,
     help="Number of values, evenly spaced; the one in the study is added.",

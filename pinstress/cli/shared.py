@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Container, Iterator
 from contextlib import contextmanager
@@ -15,11 +16,16 @@ from pinbase.counted import counted
 from pinbase.processes import interrupts
 from pinbase.processes.interrupts import Unfinished
 from pinstress.study.reading.errors import InputError
+from pinstress.study.schema.units import NUMBER_PATTERN
 
 if TYPE_CHECKING:
     from pinstress.explore.sweep.cluster import Cluster
     from pinstress.explore.sweep.connection import ClusterConnection
     from pinstress.study.reading.file import Study
+
+    _ParamType = click.ParamType[Any]
+else:
+    _ParamType = click.ParamType  # in older clicks it is not generic
 
 Command = TypeVar("Command", bound=Callable[..., object])
 
@@ -39,18 +45,36 @@ def names(_: click.Context, __: click.Parameter, value: str | None) -> list[str]
     return entries
 
 
+class _InPlainDigits(_ParamType):
+    """A number as studies have it: in the digits 0 to 9 without marks between them, and finite."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        text = str(value).strip()
+        if not NUMBER_PATTERN.fullmatch(text) or math.isinf(float(text)):
+            self.fail(f"{value!r} is not a valid {self.name}.", param, ctx)
+        return super().convert(value, param, ctx)
+
+
+class RealNumber(_InPlainDigits, click.FloatRange):
+    name = "number"
+
+
+class WholeNumber(_InPlainDigits, click.IntRange):
+    name = "whole number"
+
+
 QUOTED = re.compile(r"""(["']).*\1""", re.DOTALL)
 PATH = click.Path(path_type=Path)
 NEW_FILE = click.Path(path_type=Path, dir_okay=False)
-POSITIVE = click.FloatRange(0.0, min_open=True)
-SHARE = click.FloatRange(0.0, 1.0, min_open=True, max_open=True)
+POSITIVE = RealNumber(0.0, min_open=True)
+SHARE = RealNumber(0.0, 1.0, min_open=True, max_open=True)
 STUDY = click.argument("study", type=PATH)
 RESULTS = click.argument("results", type=PATH)
 PINS_OPTION = click.option("--pins", metavar="A,B", help="Only these pins.")
 CASES_OPTION = click.option("--cases", metavar="X,Y", help="Only these cases.")
 JOBS_OPTION = click.option(
     "--jobs",
-    type=click.IntRange(1),
+    type=WholeNumber(1),
     metavar="N",
     help="Number of parallel processes [number of cores]; does not affect the results.",
 )

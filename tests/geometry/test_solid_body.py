@@ -18,7 +18,7 @@ from geometry.imported.body_file import BodyFile, Place
 from geometry.imported.imported_pin import SolidBody
 from geometry.imported.meshing import solid_mesh as any_mesh
 from geometry.mesh.elements import with_element
-from geometry.mesh.gmsh_session import gmsh_model
+from geometry.mesh.gmsh_session import gmsh_model, silence
 from geometry.mesh.solid_mesh import MeshError, MeshSize, SolidMesh, solid_mesh
 from geometry.mesh.tet10 import refined
 from tests.support.each import each
@@ -86,6 +86,23 @@ def test_surfaces_of_a_step_file_have_its_names(step: Path, tmp_path: Path) -> N
     assert set(found.mesh(MeshSize(across=3.0)).mesh.boundaries) == {*faces, "B", "end"}
     with raises(GeometryError, "unknown-surface", "'nack'", "head"):
         body(named, Place("B", surface="nack"))
+
+
+def test_an_end_face_is_not_taken_for_the_side_of_splines_that_it_closes(tmp_path: Path) -> None:
+    """Mirroring makes splines of all faces; the rim of an end face is on the side, too."""
+    path = tmp_path / "mirrored.step"
+    with gmsh_model("mirrored") as gmsh, silence():
+        occ = gmsh.model.occ
+        shank = occ.addCylinder(0.0, 0.0, 0.0, 0.0, 0.0, 80.0, 10.0)
+        head = occ.addCylinder(0.0, 0.0, 80.0, 0.0, 0.0, 20.0, 14.0)
+        occ.mirror(occ.fuse([(3, shank)], [(3, head)])[0], 1.0, 0.0, 0.0, 0.0)
+        occ.synchronize()
+        gmsh.write(str(path))
+    places = [Place(f"face{k}", surface=f"face {k}", connection=False) for k in range(1, 6)]
+    found = body(path, BAND, *places)
+    areas = [2.0 * 14.0 * 20.0, 14.0**2, 14.0**2 - 10.0**2, 2.0 * 10.0 * 80.0, 10.0**2]
+    for place, area in zip(places, areas, strict=True):
+        assert found.band(place.name).area == pytest.approx(math.pi * area * 1e-6, rel=0.1)
 
 
 @pytest.fixture(scope="module")

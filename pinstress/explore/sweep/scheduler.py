@@ -182,12 +182,14 @@ def contents_of(files: tuple[Path, ...]) -> Contents:
 
     Raises: InputError where one cannot be read.
     """
-    try:
-        return tuple((str(path), read_regular(path, MAX_BODY_SIZE)) for path in files)
-    except (OSError, FileError) as error:
-        raise InputError(
-            f"--scheduler: a file of the study cannot be read ({error})", code="unreadable"
-        ) from None
+    contents = []
+    for path in files:
+        try:
+            contents.append((str(path), read_regular(path, MAX_BODY_SIZE)))
+        except (FileError, FileNotFoundError) as error:
+            why = error if isinstance(error, FileError) else "no such file"
+            raise InputError(f"--scheduler: {path}: {why}", code="unreadable") from None
+    return tuple(contents)
 
 
 def hash_of(contents: Contents) -> str:

@@ -77,10 +77,6 @@ def require_readable(file: BodyFile) -> None:
         raise GeometryError(f"pin {file.name}: {file.path.name} {error}", error.code) from None
     except FileNotFoundError:
         pass  # which SolidBody reports
-    except OSError as error:
-        raise GeometryError(
-            f"pin {file.name}: {file.path.name} cannot be read ({error.strerror})", "unreadable"
-        ) from None
 
 
 def _profiled(file: BodyFile, recognised: RecognisedProfile, clamps: set[str]) -> Pin | CutPin:

@@ -58,7 +58,7 @@ def imported_text(path: Path, name: str | None, unit: str, material: str) -> str
             )
         profile = turned_apart(file)
         if any(isinstance(cut, Recess) for cut in profile.cuts):
-            why = "some of its faces are of no hole, flat, slot or passage"
+            why = "some of its faces belong to no hole, flat, slot or passage"
             raise NotTurnedError(file.name, path.name, why)
         return _text(file, profile, unit, material)
     except NotTurnedError as error:
@@ -73,7 +73,7 @@ def imported_text(path: Path, name: str | None, unit: str, material: str) -> str
 def _text(file: BodyFile, profile: RecognisedProfile, unit: str, material: str) -> str:
     pin, table = profile.pin(file.name), f"pin.{key_part(file.name)}"
     lines = [
-        f"# From {json.dumps(file.path.name)}:",
+        f"# From {json.dumps(file.path.name, ensure_ascii=False)}:",
         f"# the axis is along {plain_vector(profile.along)} of the file, and",
         f"# z = 0 is {profile.start:g} {unit} along it; angles count from "
         f"{plain_vector(profile.x)}.",

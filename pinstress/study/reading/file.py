@@ -185,8 +185,6 @@ def load_study(path: str | os.PathLike[str]) -> Study:
         raise InputError(
             f"{path}: is not UTF-8 text ({error}); save it with this encoding", code="unreadable"
         ) from None
-    except (OSError, ValueError) as error:  # ValueError: no file's name
-        raise InputError(f"{path}: cannot be read ({error})", code="unreadable") from None
     return parse_study(path, text)
 
 

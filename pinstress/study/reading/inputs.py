@@ -58,5 +58,5 @@ def _file(study: Study, name: str) -> bytes | None:
         return None
     try:
         return read_regular(study.path.parent / name, MAX_TABLE_SIZE)
-    except (OSError, FileError, ValueError):
+    except (FileError, FileNotFoundError):
         return None

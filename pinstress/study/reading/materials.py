@@ -96,8 +96,8 @@ def read_materials(path: Path) -> dict[str, StoredMaterial]:
         raise InputError(f"{path}: no such file", code="no-such-file") from None
     except FileError as error:
         raise InputError(f"{path}: {error}", code=error.code) from None
-    except (OSError, ValueError) as error:
-        raise InputError(f"{path}: cannot be read ({error})", code="unreadable") from None
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: is not UTF-8 text ({error})", code="unreadable") from None
     return _materials(path, text.replace("\r\n", "\n"), path.name)
 
 

@@ -296,6 +296,12 @@ def _parse(text: str, dimension: str, system: UnitSystem) -> float:
             "not-a-number",
         )
     number, unit = quantity
+    if unit.startswith("_"):
+        raise ArgumentError(
+            f"{as_text(text)} has an underscore after its first digits; write digits without marks "
+            f"between them, for instance {example!r}",
+            "not-a-number",
+        )
     if not unit:
         return _plain(number, dimension, system)
     if dimension in THERMAL_UNITS:

@@ -48,6 +48,13 @@ def test_pipes_devices_sockets_and_folders_are_refused(tmp_path: Path) -> None:
             list(read_table(path, ("a",)))
     with raises(FileError, "folder"):
         read_regular(tmp_path, MB)
+    (tmp_path / "loop").symlink_to("loop")
+    for name in ("loop", "link/below", "x" * 300, "a\0b"):
+        for read in (read_regular, require_regular):
+            with raises(FileError, "unreadable", "cannot be read (") as caught:
+                read(tmp_path / name, MB)
+            assert "Errno" not in str(caught.value)
+            assert str(tmp_path) not in str(caught.value)
 
 
 def test_a_table_has_its_limit(tmp_path: Path) -> None:

@@ -103,6 +103,8 @@ def test_a_name_cannot_write_into_the_study(
     capsys.readouterr()
     text = imported(file, capsys, "--pin", "P")
     assert list(tomllib.loads(text)["pin"]) == ["P"]
+    file = file.rename(tmp_path / "Bölzen.step")
+    assert imported(file, capsys).startswith('# From "Bölzen.step":')
 
 
 @pytest.mark.usefixtures("read_here")

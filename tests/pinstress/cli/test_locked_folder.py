@@ -58,6 +58,7 @@ def run(folder: Path, *arguments: str, **environment: str) -> subprocess.Complet
 @each(
     ("arguments", "named"),
     [
+        ("check locked/s.toml", "locked/s.toml: cannot be read (Permission denied)"),
         ("check table.toml", "locked/t.csv: cannot be read (Permission denied)"),
         ("import locked/x.step", "x.step cannot be read (Permission denied)"),
         ("run study.toml --junit locked/j.xml", "--junit: locked/j.xml cannot be written"),

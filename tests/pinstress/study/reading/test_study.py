@@ -84,6 +84,7 @@ def test_the_examples_in_messages_are_right(dimension: str) -> None:
         ("two", "not-a-number", "'two'"),
         ("2 in**", "unreadable-unit", "'2 in**'"),
         ("2,5 in", "decimal-comma", "'2,5 in'"),
+        ("1_000 in", "not-a-number", "underscore"),  # asked "did you mean 'g_0'?" or the like
         ("\N{ARABIC-INDIC DIGIT THREE} in", "not-a-number", "0 to 9"),  # was read as 3
         ("2 in^\N{SUPERSCRIPT THREE}", "unreadable-unit", "'2 in"),
         ("2 in^\N{ARABIC-INDIC DIGIT ONE}", "not-a-number", "0 to 9"),
