@@ -27,6 +27,7 @@ from pinbase.keys import key_part
 from pinstress.study.model.imported_pin import plain_vector, require_readable, turned_apart
 from pinstress.study.model.pins import METRES_PER_UNIT
 from pinstress.study.reading.errors import InputError
+from pinstress.study.schema.shown import printable
 from pinstress.study.schema.types import usable_name
 
 
@@ -73,7 +74,7 @@ def imported_text(path: Path, name: str | None, unit: str, material: str) -> str
 def _text(file: BodyFile, profile: RecognisedProfile, unit: str, material: str) -> str:
     pin, table = profile.pin(file.name), f"pin.{key_part(file.name)}"
     lines = [
-        f"# From {json.dumps(file.path.name, ensure_ascii=False)}:",
+        f"# From {printable(json.dumps(file.path.name, ensure_ascii=False))}:",
         f"# the axis is along {plain_vector(profile.along)} of the file, and",
         f"# z = 0 is {profile.start:g} {unit} along it; angles count from "
         f"{plain_vector(profile.x)}.",
