@@ -21,6 +21,7 @@ from reports.data.skeleton import Skeleton
 
 NEGLIGIBLE_RANGE = 1e-3  # of the largest force of the case: a smaller range is not reported
 ROUND_OFF = 1e-12  # of the largest of all drives
+NO_ANGLE = 1e-12  # rad: a smaller one is zero but for round-off
 MAX_BODY_LINES = 200_000  # of the table of bodies, 50 MB; a longer one is not written
 NO_TABLES = "In space: no table of sliding on pins is written."
 
@@ -32,7 +33,9 @@ def shown_positions(study: Study, positions: Floats, moved: Sequence[tuple[str, 
     """
     less = offsets(study)
     shown = [
-        position - less.get(name, 0.0) if slides else np.degrees(position)
+        position - less.get(name, 0.0)
+        if slides
+        else np.degrees(np.where(np.abs(position) < NO_ANGLE, 0.0, position))
         for position, (name, slides) in zip(positions.T, moved, strict=True)
     ]
     return np.stack(shown, axis=1) if shown else positions

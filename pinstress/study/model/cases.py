@@ -259,7 +259,7 @@ def _drop(study: Study, name: str, case: DropCase, mechanism: Linkage, extremes:
     beside = SideLoad(ground, axle_height(study, where.body, where.joint))
     side = sideways(study, case, mechanism, [beside])
     moved = _Moved(name, course, (*springs(study, mechanism), ground, *masses), side)
-    return replace(_over_time(moved, case.samples, drop_note(case, leg)), landing=landing)
+    return replace(_over_time(moved, case.samples, drop_note(study, case, leg)), landing=landing)
 
 
 def _on_ground(

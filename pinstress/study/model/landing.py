@@ -99,6 +99,10 @@ def unsprung_warnings(study: Study) -> list[str]:
     """Return a warning for every drop whose unsprung mass differs from that of its mechanism."""
     drops = {n: c for n, c in study.table.case.items() if isinstance(c, DropCase)}
     warnings = []
+
+    def told(mass: float) -> str:
+        return study.system.told(NumberInSI(mass, "mass"))
+
     for name, case in drops.items():
         if case.unsprung is None or case.strut is None:
             continue
@@ -109,8 +113,8 @@ def unsprung_warnings(study: Study) -> list[str]:
             continue  # whoever needs the case says what is wrong with it
         if abs(case.unsprung - mass) > UNSPRUNG_MASS_TOLERANCE * mass:
             text = (
-                f"case.{key_part(name)}.unsprung: {case.unsprung:.4g} kg is stated, but the "
-                f"mechanism's bodies move with the axle like {mass:.4g} kg; the stated mass is "
+                f"case.{key_part(name)}.unsprung: {told(case.unsprung)} is stated, but the "
+                f"mechanism's bodies move with the axle like {told(mass)}; the stated mass is "
                 "used for the fall, the bodies' for the forces in the leg. Remove it to use that "
                 "of the mechanism, or correct the masses"
             )
@@ -197,12 +201,13 @@ def fallen(study: Study, name: str, leg: Drop) -> Landing:
         raise study.error(f"case.{key_part(name)}: {told}", code=error.code) from None
 
 
-def drop_note(case: DropCase, leg: Drop) -> str:
+def drop_note(study: Study, case: DropCase, leg: Drop) -> str:
     """Return the clause of a drop, and its unsprung mass where the mechanism gives it."""
     clause = "" if case.rule is None else f"{DROP_RULES[case.rule].clause}."
     if case.unsprung is not None:
         return clause
-    return f"{clause} Unsprung mass {leg.unsprung:.4g} kg, of the mechanism's bodies.".strip()
+    unsprung = study.system.told(NumberInSI(leg.unsprung, "mass"))
+    return f"{clause} Unsprung mass {unsprung}, of the mechanism's bodies.".strip()
 
 
 def still(where: Touchdown) -> list[Law]:
