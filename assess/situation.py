@@ -244,6 +244,13 @@ class Situation:
             raise ArgumentError("the check must take section forces", "no-section-forces")
         return self.section_forces
 
+    def most_used(self, used: Floats) -> tuple[int, ...]:
+        """The instant and the section of the largest use (T, S).
+
+        Of sections used alike, as on both sides of a face of a link, that in the link goes first.
+        """
+        return first_largest(used, np.isin(self.forces.labels, self.loads.surfaces))
+
     @property
     def by_formula(self) -> PinLoads:
         """The loads of which formulas make section forces."""

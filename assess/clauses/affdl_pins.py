@@ -26,7 +26,7 @@ from assess.situation import Situation
 from assess.work import Work, wider, work
 from fea.beam.round_section import Circle
 from geometry import ArgumentError
-from pinbase.arrays import Floats, first_largest
+from pinbase.arrays import Floats
 
 
 @check("pin shear, rupture", "AFFDL-TR-69-42, 9.4, eq. 9-12", kind="clause",
@@ -100,7 +100,7 @@ def _worst(
     works = {section: resisted(section) for section in set(forces.sections)}
     allowable = np.array([works[section][-1].result.value for section in forces.sections])
     used = demand / allowable
-    t, k = first_largest(used, np.isin(forces.labels, s.loads.surfaces))
+    t, k = s.most_used(used)
     time, section = None if forces.times is None else float(forces.times[t]), forces.sections[k]
     margin = text.margin(
         s, float(demand[t, k]), float(allowable[k]),

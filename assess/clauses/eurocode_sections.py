@@ -34,7 +34,7 @@ from assess.situation import SectionForces, Situation
 from assess.work import Work, diameter_of_wall, work
 from fea.beam.plastic_interaction import bending_and_axial_use
 from fea.beam.round_section import Circle
-from pinbase.arrays import Floats, first_largest
+from pinbase.arrays import Floats
 
 MAX_SLENDERNESS, SLENDERNESS_STRENGTH = 70.0, 235e6  # d/t of class 2, times epsilon^2; Pa
 MAX_LEFT = 0.01  # of the largest force along the pin, or torque: more is not in balance
@@ -61,7 +61,7 @@ def eurocode_section(text: CheckText, s: Situation) -> list[Margin]:
         return [text.lacks(s, CLASS_NEEDED)]
     design = fy / s.partial.M0
     used = np.stack([_along(forces, k, design) for k in range(len(forces.z))], axis=1)
-    t, k = first_largest(used, np.isin(forces.labels, s.loads.surfaces))
+    t, k = s.most_used(used)
     section = forces.sections[k]
     V, M, N, T = (float(x[t, k]) for x in _four(forces))
     time = None if forces.times is None else float(forces.times[t])

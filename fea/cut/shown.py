@@ -64,7 +64,7 @@ def shown(
     fields: of the pin without cuts.
     held: the first clamp, which stays in place; without one both ends of the axis stay on it.
     """
-    between = [_without_own_ends(piece) for piece in pieces]
+    between = [_instead_of_uncut(piece) for piece in pieces]
     uncut = _revolved(fields, pieces[0].units, between)
     parts = [uncut, *map(_piece, pieces, own_ends(pieces))]
     starts = np.cumsum([0, *(len(part.points) for part in parts)])
@@ -89,7 +89,7 @@ def shown(
     )
 
 
-def _without_own_ends(piece: LocalFields) -> tuple[float, float]:
+def _instead_of_uncut(piece: LocalFields) -> tuple[float, float]:
     """The z, m, between which a piece is shown instead of the uncut pin, with the end faces of the
     pin that it has: its cuts may open into them.
     """
