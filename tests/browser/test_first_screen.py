@@ -168,6 +168,13 @@ def test_numbers_on_a_phone_say_what_they_are(page: Any) -> None:
     assert float(labels["whatever"][1].rstrip(" †")) > 2.0
 
 
+def test_no_column_is_pushed_out(page: Any) -> None:
+    """Beside a scroll bar, on 1280 px, the last column of diameters was cut off."""
+    for width in (1265, 1215, 1009, 760, 320):
+        with screen(page, width):
+            assert not page.execute_script(WIDER), width
+
+
 def test_linkage_and_requirements_share_a_narrow_screen(page: Any) -> None:
     with screen(page, 1024):
         linkage, matrix = (
