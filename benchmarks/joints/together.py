@@ -68,7 +68,8 @@ def shortfalls(trial: PinTrial) -> tuple[Floats, int, int] | None:
     contact = model.solve(given.cases[0])
     (compared,) = compare(model, [contact], Requirement(), vary=nowhere)
     joint = PressedJoint(model.waves(contact.contact), list(contact.contact))
-    changes = JointChanges(model, [contact], Requirement(), [(compared.stress, joint)], True)
+    like = (compared.stress, compared.cells, joint)
+    changes = JointChanges(model, [contact], Requirement(), [like], True)
     tried = list(joint_variations(model.whole, model.lugs))
     alone = [change for change in tried if change.what != TOGETHER]
     every = {_name(x): x for x in (*tried, *_combinations(model, alone))}

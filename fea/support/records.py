@@ -68,7 +68,8 @@ class Variation:
     beneath: the largest stress beneath the contact then (fea.core.places), None where only the
     maximum is known.
     across: the largest shear force or moment across the pin then, over that of the joint as given,
-    whichever grows more. lugs: the same of the force on each lug whose force grows.
+    whichever grows more. surface: the same of the largest stress on the free surface. lugs: the
+    same of the force on each lug whose force grows.
     """
 
     what: str
@@ -78,6 +79,7 @@ class Variation:
     interval: tuple[Stress, Stress] | None = None
     beneath: Stress | None = None
     across: float = 1.0
+    surface: float = 1.0
     lugs: tuple[tuple[str, float], ...] = ()
 
 
@@ -128,7 +130,26 @@ class JointRange:
     @property
     def across(self) -> float:
         """The largest shear force or moment across the pin, over that of the joint as given."""
-        return max((x.across for x in self.variations), default=1.0)
+        return self._largest("across")
+
+    @property
+    def surface(self) -> float:
+        """The largest stress on the free surface, over that of the joint as given.
+
+        Where a section governs it may grow more than the maximum does.
+        """
+        return self._largest("surface")
+
+    def _largest(self, ratio: str) -> float:
+        """The largest of the ratios of variations; friction multiplies, as it does the stress."""
+        rubbed, others = (
+            max(
+                (getattr(x, ratio) for x in self.variations if (x.what == FRICTION) is so),
+                default=1.0,
+            )
+            for so in (True, False)
+        )
+        return max(rubbed, 1.0) * max(others, 1.0)
 
     @property
     def lugs(self) -> dict[str, float]:

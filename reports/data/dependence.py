@@ -201,7 +201,7 @@ def _over_joint(
         yield Dependence(
             v.what, v.value, "joint", judged.strength / _counted(judged, v),
             given=given if v.length is not None else None, at=v.length,
-            flips_at=_crossing(judged, v, given), dimension="length",
+            flips_at=_crossing(judged, v, given, over.model), dimension="length",
         )  # fmt: skip
     if not turning and judged.safe and _largest_over_joint(judged, over) > judged.permitted:
         lugs = "assumed lugs" if over.assumed else "its lugs"
@@ -265,14 +265,17 @@ def _counted(judged: JudgedStress, v: Variation) -> float:
     return v.interval[1] if judged.safe and v.interval else v.max_von_mises
 
 
-def _crossing(judged: JudgedStress, v: Variation, given: float | None) -> float | None:
+def _crossing(judged: JudgedStress, v: Variation, given: float | None, model: str) -> float | None:
     """Return the length at which the permitted stress is reached, interpolated linearly.
 
-    It lies between the given length and the varied one; it is the varied one where the variation
-    has an interval of its own, since the maximum as given is then of another model.
+    It lies between the given length and the varied one; it is the varied one on foundations, since
+    the maximum as given is then of another model.
     """
+    if model == "foundation":
+        return v.length
     end = judged.high if judged.safe else judged.low
-    return _on_the_way(judged, v, given, (end, v.max_von_mises * end / judged.maximum))
+    low = v.interval[0] if v.interval else v.max_von_mises * end / judged.maximum
+    return _on_the_way(judged, v, given, (end, _top(judged, v) if judged.safe else low))
 
 
 def _on_the_way(
@@ -283,7 +286,7 @@ def _on_the_way(
     ends: the stress at the given length and at the varied one.
     """
     (first, last) = ends
-    if v.length is None or given is None or v.interval is not None or first == last:
+    if v.length is None or given is None or first == last:
         return v.length
     part = (judged.permitted - first) / (last - first)
     return given + min(max(part, 0.0), 1.0) * (v.length - given)

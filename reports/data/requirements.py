@@ -281,7 +281,7 @@ def _judged(plain: RequirementRow, margins: list[Margin], row: PinResult | None)
         return _beside_cuts(by_formula, margins, row)
     hardened = row.places is not None and row.places.hardened
     if hardened and plain.check == "rupture":  # its largest stress need not be the row's
-        return _of_margins(plain, margins, {**row.most_loads, "joint": row.joint_growth})
+        return _of_margins(plain, margins, {**row.most_loads, "joint": row.surface_growth})
     if row.max_von_mises is None:
         return replace(plain, outcome="not decided", needs=f"a maximum ({row.verdict})")
     strengths = [m.allowable for m in margins if m.allowable is not None]

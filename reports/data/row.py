@@ -184,6 +184,12 @@ class PinResult:
         return 1.0 if over is None else over.growth(self.max_von_mises)
 
     @property
+    def surface_growth(self) -> float:
+        """As joint_growth, also of the surface's stress where a section governs."""
+        over = self.joint.range if self.joint else None
+        return 1.0 if over is None else max(self.joint_growth, over.surface)
+
+    @property
     def most_loads(self) -> dict[str, float]:
         """The most that a demand grows over the ranges of a landing and of the stiffness of links:
         as the largest load, or the stress, which forces that nearly cancel raise more.

@@ -44,6 +44,14 @@ class AtPlaces:
         """The larger of surface and section."""
         return max(self.surface, self.section)
 
+    def over(self, other: AtPlaces) -> tuple[float, float, float]:
+        """The ratios of the row, the surface and what lies beneath to others; as they are where
+        those are 0.
+        """
+        pairs = ((getattr(self, x), getattr(other, x)) for x in ("row", "surface", "beneath"))
+        row, surface, deep = (a / (b or 1.0) for a, b in pairs)
+        return row, surface, deep
+
 
 NOWHERE = AtPlaces(0.0, 0.0, 0.0)
 

@@ -153,11 +153,12 @@ def rubbed(
 
 
 def friction_variations(
-    lugs: Sequence[Lug], ratios: dict[str, list[tuple[float, float]]], across: float
+    lugs: Sequence[Lug], ratios: dict[str, list[tuple[float, float, float]]], across: float
 ) -> Iterator[Variation]:
-    """Yield the bounds by friction of the row and of what lies beneath, relative to those without.
+    """Yield the bounds by friction of the stress, relative to that without.
 
-    ratios: of stress, by the kind of sliding. across: of the moment where friction adds to it.
+    ratios: of the row, the surface and what lies beneath, by the kind of sliding. across: of the
+    moment where friction adds to it.
     """
     words = coefficient_words(lugs)
     for name, which, kind, growth in (
@@ -165,8 +166,9 @@ def friction_variations(
         ("load falling after a larger one", max, SLIDING, across),
         (TURNING, max, TURNING, 1.0),
     ):
-        row, deep = (which(each) for each in zip(*ratios[kind], strict=True))
-        yield Variation(FRICTION, f"{words}, {name}", row, beneath=deep, across=growth)
+        row, surface, deep = (which(each) for each in zip(*ratios[kind], strict=True))
+        name = f"{words}, {name}"
+        yield Variation(FRICTION, name, row, beneath=deep, across=growth, surface=surface)
 
 
 def _areas(bands: Bands) -> Floats:

@@ -26,6 +26,7 @@ from fea.singular.singularities import singularities_of
 from fea.support.contact.bending import LoadedJoint, growth_across, growth_of_lugs
 from fea.support.contact.cell_error import (
     MIN_HARMONICS_PER_ARC,
+    NOWHERE,
     AtPlaces,
     by_cells,
 )
@@ -97,18 +98,23 @@ class ChangedContact:
 JointsUnderChanges = tuple[list[tuple[JointChange, PressedJoint]], list[str]]
 
 
+# The joint as given on the cells of varied ones: its stress, the relative error, and the contact.
+LikeGiven = tuple[AtPlaces, AtPlaces, PressedJoint]
+
+
 @dataclass(frozen=True)
 class JointChanges:
     """Contacts, each at one instant, whose joint is changed.
 
-    likes: the joints as given on the same cells, with their stress.
+    likes: the joints as given on the same cells, with their stress and its relative error from the
+    cells.
     own_cells: whether to use the model's own cells, instead of cells twice as large.
     """
 
     model: ContactModel
     at: Sequence[JointContact]
     requirement: Requirement
-    likes: Sequence[tuple[AtPlaces, PressedJoint]]
+    likes: Sequence[LikeGiven]
     own_cells: bool
 
     def by(
@@ -140,7 +146,7 @@ class JointChanges:
     def _variation(
         self,
         contact: JointContact,
-        like: tuple[AtPlaces, PressedJoint],
+        like: LikeGiven,
         change: JointChange,
         joint: PressedJoint,
         stress: Iterator[AtPlaces],
@@ -149,12 +155,12 @@ class JointChanges:
 
         stress: of this joint and those with rougher cells comes next.
         """
-        (given_stress, given), model = like, self.model
+        (*stress_given, given), model = like, self.model
         here = [next(stress) for _ in joint.with_rougher]
         own, other = (loaded(model, x, contact) for x in (given, joint))
         name = Variation(change.what, change.value, 1.0, change.length)
         return replace(
-            _ratio(name, here, given_stress, model.cells.rings, joint.per_arc),
+            _ratio(name, here, stress_given, model.cells.rings, joint.per_arc),
             across=growth_across(other, own),
             lugs=growth_of_lugs(other, own),
         )
@@ -195,31 +201,34 @@ def loaded(model: ContactModel, joint: PressedJoint, contact: JointContact) -> L
 def _ratio(
     change: Variation,
     stress: Sequence[AtPlaces],
-    like: AtPlaces,
+    given: Sequence[AtPlaces],
     rings: int,
     per_arc: float,
 ) -> Variation:
     """The variation with its stresses relative to those of the joint as given, and with the error
-    of the cells on narrow arcs.
+    of the cells where that of the row as given does not hold: on narrow arcs, and where the surface
+    governs instead of a section, which the cells hardly change.
 
     stress: with the variation; on narrow arcs also with half the harmonics.
-    like: of the joint as given, on the same cells.
+    given: of the joint as given, on the same cells, and its relative error.
     rings, per_arc: as of `_by_cells`.
     """
-    varied, *half = stress
-    row, deep, interval = varied.row, varied.beneath, None
-    if half:
-        error = by_cells(varied, half[0], rings, per_arc)
-        above, below = 1.0 + error.surface, 1.0 + error.section
+    (varied, *half), (like, like_error) = stress, given
+    row, interval = like.row or 1.0, None
+    error = by_cells(varied, half[0], rings, per_arc) if half else NOWHERE
+    if varied.surface > varied.section and like.section >= like.surface:
+        error = replace(error, surface=error.surface + like_error.surface)
+    above, below = 1.0 + error.surface, 1.0 + error.section
+    if error != NOWHERE:
         low = max(varied.surface / above, varied.section / below)
         high = max(varied.surface * above, varied.section * below)
-        interval = low / (like.row or 1.0), high / (like.row or 1.0)
-        deep *= 1.0 + error.beneath
+        interval = low / row, high / row
     return replace(
         change,
-        max_von_mises=row / (like.row or 1.0),
+        max_von_mises=varied.row / row,
         interval=interval,
-        beneath=deep / (like.beneath or 1.0),
+        beneath=varied.beneath * (1.0 + error.beneath) / (like.beneath or 1.0),
+        surface=varied.surface * above / (like.surface or 1.0),
     )
 
 

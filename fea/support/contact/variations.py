@@ -25,6 +25,7 @@ from fea.support.contact.coarser_cells import on_coarser_cells
 from fea.support.contact.friction import friction_variations, rubbed, rubbed_across, rubs
 from fea.support.contact.joint_changes import (
     JointChanges,
+    LikeGiven,
     PressedJoint,
     VariedPressures,
     at_places,
@@ -126,7 +127,8 @@ def compare(
         cells = by_cells(first, roughest, model.cells.rings, arc * model.cells.highest)
         out.append(ResolutionComparison(first, cells, contact.loads.links, (), half_angle=arc))
         # The joint as given on the cells of varied joints.
-        likes.append((first, both[0]) if _large_cells(model) else (twice, both[1]))
+        stress_like, like = (first, both[0]) if _large_cells(model) else (twice, both[1])
+        likes.append((stress_like, cells, like))
     which = (True,) * len(at) if vary is None else vary(out)
     if any(which):
         ratios = _over_joint(model, at, requirement, patterns, likes, which)
@@ -148,13 +150,13 @@ def _over_joint(
     at: Sequence[JointContact],
     requirement: Requirement,
     known: PressureModes,
-    likes: Sequence[tuple[AtPlaces, PressedJoint]],
+    likes: Sequence[LikeGiven],
     vary: Sequence[bool],
 ) -> list[tuple[tuple[Variation, ...], str, tuple[VariedPressures, ...]]]:
     """The variations of each contact, what is not included in them, and the pressures
     (ResolutionComparison).
 
-    likes: the joints as given on the same cells, with their stress.
+    likes: the joints as given on the same cells.
     vary: the contacts whose joint is varied.
     """
     changes = tuple(joint_variations(model.whole, model.lugs)) if any(vary) else ()
@@ -162,7 +164,7 @@ def _over_joint(
     changed, known = joints.by([changes if so else () for so in vary], known)
     by_friction = _by_friction(model, requirement, known, at, vary)
     out = []
-    for (_, given), contact, more in zip(likes, changed, by_friction, strict=True):
+    for (*_, given), contact, more in zip(likes, changed, by_friction, strict=True):
         left_out = f"not included: {'; '.join(contact.missing)}" if contact.missing else ""
         pressures = (VariedPressures(model.lugs, given.waves), *contact.pressures)
         out.append(((*contact.over, *more), left_out, pressures))
@@ -191,8 +193,8 @@ def _by_friction(
             continue
         without, changed = rubbed(model, contact, known)
         plain, *stress = at_places(model, requirement, [[without], *changed.values()], edges)
-        pairs = [(x.row / (plain.row or 1.0), x.beneath / (plain.beneath or 1.0)) for x in stress]
-        ratios = {name: [pairs.pop(0) for _ in loads] for name, loads in changed.items()}
+        every = [x.over(plain) for x in stress]
+        ratios = {name: [every.pop(0) for _ in loads] for name, loads in changed.items()}
         own = PressedJoint(model.waves(contact.contact), list(contact.contact))
         across = rubbed_across(model, contact, loaded(model, own, contact))
         out.append(tuple(friction_variations(model.lugs, ratios, across)))

@@ -97,8 +97,13 @@ class FoundationRange:
             change.length,
             of_joint.bounds,
             across=growth_across(varied, own),
+            surface=_on_surface(stress, varied) / (_on_surface(self.own, own) or 1.0),
             lugs=growth_of_lugs(varied, own),
         )
+
+
+def _on_surface(stress: FoundationStress, joint: JointFoundation) -> float:
+    return float(stress.on_surface.von_mises(joint).von_mises.max())
 
 
 def prescribed_ranges(

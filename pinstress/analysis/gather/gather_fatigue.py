@@ -144,7 +144,7 @@ def _growth_of(row: PinResult) -> dict[str, float]:
     if not row.max_von_mises or not at.max_von_mises:
         return {}
     error = 1.0 + (at.error_estimate or 0.0) / at.max_von_mises
-    return {"joint": row.joint_growth, **row.most_loads, ERROR_OF_STRESS: error}
+    return {"joint": row.surface_growth, **row.most_loads, ERROR_OF_STRESS: error}
 
 
 def _points(

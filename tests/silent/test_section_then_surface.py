@@ -1,0 +1,100 @@
+"""Pins of which a section governs as described, and the surface in a loose joint."""
+
+from __future__ import annotations
+
+import pytest
+
+from assess.judgement import DEPENDS
+from fea.support.records import FRICTION, JointRange, Variation
+from pinstress.analysis.results import RunResults
+from tests.silent.test_checks_over_the_joint import TEXT, solved
+
+SHORT = """profile = [
+  { length = 5, diameter = 20 },
+  { length = 20, diameter = 20, connection = "LEFT" },
+  { length = 0.6, diameter = 20 },
+  { length = 20, diameter = 20, connection = "EYE" },
+  { length = 5, diameter = 20 },
+]
+"""
+SWAPS = (
+    (TEXT[TEXT.index("profile = [") : TEXT.index("[lug_defaults]")], SHORT),
+    (", RIGHT = [-HALF, 0]", ""),
+    ("WHOLE", "HALF"),
+    ("edge_radius = 0.5", 'edge_radius = 0.5\ntilt = "guided"'),
+    (
+        "[analysis]",
+        """[material.steel.fatigue]
+knee_stress = "1 MPa"
+knee_cycles = 1e6
+slope = 5
+mean_stress_sensitivity = 0.2
+[fatigue.occurrences]
+pull = 1
+[analysis]""",
+    ),
+)
+ALONE = """clearance = 0.0
+[lug_defaults.range]
+clearance = [0.0, END]
+stiffness = [1, 1]
+tilt = ["guided", "guided"]
+"""
+
+
+def of(clearance: str, required: float = 1.0) -> RunResults:
+    asked = "required_safety_factor = 1.0", f"required_safety_factor = {required}"
+    return solved(clearance, 25000.0, *SWAPS, asked)
+
+
+@pytest.mark.slow
+def test_the_surface_has_its_own_error_and_growth_in_a_loose_joint() -> None:
+    """Beside a joint that is loose. The error was that of the section, which has hardly any, so
+    that a factor between the two was safe; and fatigue, which reads the surface, grew as the row.
+    """
+    for end in (0.1, 0.3):
+        (loose,) = of(f"clearance = {end}").pins
+        (ranged,) = of(ALONE.replace("END", f"{end}")).pins
+        assert loose.places
+        assert loose.places.governs == "surface"
+        at_least = loose.maximum.lower_end
+        assert ranged.places
+        assert ranged.places.governs == "section"
+        assert ranged.maximum.upper_end < 1.003 * ranged.maximum.lower_end
+        assert ranged.joint
+        over, surface = ranged.joint.range, ranged.places.surface
+        assert over
+        assert over.across < 1.01
+        reached = over.max_von_mises[1]
+        assert reached > at_least
+        # What the cells leave open of the surface as described is open of it in the loose joint.
+        assert reached > 1.04 * over.variations[0].max_von_mises
+        with_error = surface.max_von_mises + (surface.error_estimate or 0.0)
+        assert ranged.surface_growth * with_error > at_least
+        (between,) = of(ALONE.replace("END", f"{end}"), 700.0 / (0.99 * reached)).pins
+        assert between.outcome == DEPENDS
+
+
+def test_damage_grows_as_the_surface() -> None:
+    """Beyond the knee it grows as the fifth power of stress."""
+    results = of(ALONE.replace("END", "0.1"))
+    (row,), fatigue = results.pins, results.fatigue
+    assert fatigue is not None
+    assert row.surface_growth > 1.05 * row.joint_growth
+    for point in fatigue.points:
+        grown = point.damage_over["joint"] / point.damage
+        assert grown == pytest.approx(row.surface_growth**5, rel=1e-6)
+
+
+def test_friction_multiplies_what_a_loose_joint_adds() -> None:
+    """The stress did so; moments and forces counted the larger of both."""
+    over = (
+        Variation("clearance", "twice the given", 1.0, across=1.2, surface=1.5),
+        Variation("tilt", "free", 1.0, across=1.1, surface=0.9),
+        Variation(FRICTION, "0.2, load falling after a larger one", 1.0, across=1.3, surface=1.4),
+        Variation(FRICTION, "0.2, load growing", 1.0, across=1.0, surface=0.7),
+    )
+    joint = JointRange((1.0, 1.0), over)
+    assert joint.across == pytest.approx(1.2 * 1.3)
+    assert joint.surface == pytest.approx(1.5 * 1.4)
+    assert joint.growth(1.0) == joint.across
