@@ -163,7 +163,7 @@ def test_numbers_on_a_phone_say_what_they_are(page: Any) -> None:
             5,
         )
     assert labels["diameter"][0].replace('" "', "") == '"diameter [in] "'
-    assert labels["range"] == ['"open range "', "4.4 to 52"]
+    assert labels["range"] == ['"open range "', "4.1 to 52"]
     assert labels["whatever"][0] == '"diameter over open range "'
     assert float(labels["whatever"][1].rstrip(" †")) > 2.0
 

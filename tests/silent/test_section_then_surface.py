@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from assess.judgement import DEPENDS
 from fea.support.records import FRICTION, JointRange, Variation
 from pinstress.analysis.results import RunResults
+from pinstress.study.reading.in_python import study_from
 from tests.silent.test_checks_over_the_joint import TEXT, solved
+from tests.support.pins.remembered import remembered
 
 SHORT = """profile = [
   { length = 5, diameter = 20 },
@@ -17,6 +21,12 @@ SHORT = """profile = [
   { length = 5, diameter = 20 },
 ]
 """
+CLEVIS = SHORT.replace(
+    """length = 20, diameter = 20, connection = "EYE" },""",
+    """length = 40, diameter = 20, connection = "EYE" },
+  { length = 0.6, diameter = 20 },
+  { length = 20, diameter = 20, connection = "RIGHT" },""",
+)
 SWAPS = (
     (TEXT[TEXT.index("profile = [") : TEXT.index("[lug_defaults]")], SHORT),
     (", RIGHT = [-HALF, 0]", ""),
@@ -98,3 +108,27 @@ def test_friction_multiplies_what_a_loose_joint_adds() -> None:
     assert joint.across == pytest.approx(1.2 * 1.3)
     assert joint.surface == pytest.approx(1.5 * 1.4)
     assert joint.growth(1.0) == joint.across
+
+
+def test_the_joint_is_varied_where_the_surface_peaks_too(tmp_path: Path) -> None:
+    """Two instants as a case, beside each as a case of its own. At the first a section governs, at
+    the second the surface is nearly as large, and grows more in soft lugs: it was not tried there.
+    """
+    instants = {"shear": (25000, 25000, 0), "bent": (21000, 42000, 21000)}
+    rows = ["time,connection,fx,fy"]
+    for t, (a, b, c) in enumerate(instants.values()):
+        rows += [f"{t},LEFT,{-a},0", f"{t},EYE,{b},0", f"{t},RIGHT,{-c},0"]
+    (tmp_path / "both.csv").write_text("\n".join(rows), encoding="utf-8")
+    soft = ALONE.replace("END", "0.0").replace("[1, 1]", "[0.5, 1]")
+    text = TEXT.replace(SWAPS[0][0], CLEVIS).replace(*SWAPS[3]).replace("CLEARANCE", soft)
+    text = text[: text.index("[case.pull]")] + '[case.both]\nkind = "given"\ntable = "both.csv"\n'
+    for name, (a, b, c) in instants.items():
+        force = f"LEFT = [{-a}, 0], EYE = [{b}, 0], RIGHT = [{-c}, 0]"
+        text += f'[case.{name}]\nkind = "given"\nforces = {{ {force} }}\n'
+    pins = {x.case: x for x in remembered(study_from(text, tmp_path)).pins}
+    places = {case: x.places.governs for case, x in pins.items() if x.places}
+    assert places == {"both": "section", "shear": "section", "bent": "surface"}
+    over = {case: x.joint.range for case, x in pins.items() if x.joint}
+    high = {case: x.max_von_mises[1] for case, x in over.items() if x}
+    assert high["bent"] > 1.1 * high["shear"]
+    assert high["both"] == pytest.approx(high["bent"], rel=0.01)

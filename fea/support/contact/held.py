@@ -201,9 +201,9 @@ class HeldContact:
         if search is not None:
             place = in_core(place, search, material.strength_parts(model.pin.length))
             place = replace(place, crushing=self._crushing(solution.loads, contact))
-        over = known.row.range(row, place.beneath)
+        over = known.over_joint(row, place.beneath)
         torques = self._friction_torques(solution.loads.links)
-        joint = contact_result(contact, over, solution.loads, known.row.left_out, torques)
+        joint = contact_result(contact, over, solution.loads, known.left_out, torques)
         peak = with_contact(peak, place)
         return replace(solution, peak=peak, joint=joint, pressure=_pressure(contact))
 

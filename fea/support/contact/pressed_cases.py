@@ -21,7 +21,7 @@ from fea.harmonic.field import HarmonicField
 from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.section.section_stress import SectionField
 from fea.singular.singularities import singularities_of
-from fea.support.contact.cell_error import CELL_ERROR_SHARE
+from fea.support.contact.cell_error import CELL_ERROR_SHARE, AtPlaces
 from fea.support.contact.contact_state import ContactState
 from fea.support.contact.joint_contact import JointContact
 from fea.support.contact.pressure_loads import (
@@ -35,8 +35,11 @@ from fea.support.contact.solve_joint import ContactModel
 from fea.support.contact.variations import (
     ResolutionComparison,
     compare,
+    largest_of,
+    over_joint,
     uncompared,
 )
+from fea.support.records import JointRange
 
 # Of the largest stress on the first mesh: an instant above it may govern on finer meshes. Chosen by
 # judgement, with room for the error of the first mesh.
@@ -62,12 +65,10 @@ class Candidates:
 
     instant: of the largest stress of the surface.
     may: (T,), true where the stress is so near to the largest that the instant may govern.
-    largest: the largest stress, Pa, 0 where it is not known.
     """
 
     instant: int
     may: NDArray[np.bool_]
-    largest: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -81,8 +82,31 @@ class Compared:
 
     @property
     def row(self) -> ResolutionComparison:
-        """The comparison at the place with the larger stress, for which the joint was varied."""
-        return max(self.surface, self.section, key=lambda x: (bool(x.over), x.stress.row))
+        """The comparison at the place with the larger stress."""
+        return max(self.surface, self.section, key=lambda x: x.stress.row)
+
+    @property
+    def _instants(self) -> tuple[ResolutionComparison, ...]:
+        """Both, or one where surface and sections have their largest stress at one instant."""
+        return (self.surface, self.section)[: 1 + (self.surface is not self.section)]
+
+    def over_joint(self, largest: float, below: float) -> JointRange:
+        """The range over the joint of the maximum and of the stress beneath contact, Pa, at both
+        instants: what is smaller as given may grow more.
+        """
+        every = self._instants
+        case = AtPlaces(
+            self.surface.stress.surface,
+            self.section.stress.section,
+            max(x.stress.beneath for x in every),
+        )
+        ratios = [y for x in every for y in x.ratios(case)]
+        return over_joint(largest_of(ratios), largest, below)
+
+    @property
+    def left_out(self) -> str:
+        """The variations of the joint that could not be solved, and why."""
+        return "; ".join(dict.fromkeys(x.left_out for x in self._instants if x.left_out))
 
     @property
     def half_angle(self) -> float:
@@ -241,7 +265,7 @@ class PressedCases:
             may = around.maxima(among, least) > least
             if self.cut:  # the uncut pin does not show which instant governs at a cut
                 may[:] = True
-            out[x.case] = Candidates(top.instant, may, top.value)
+            out[x.case] = Candidates(top.instant, may)
         return out
 
     def follow(self, near: Mapping[str, Candidates]) -> None:
@@ -288,15 +312,14 @@ class PressedCases:
 
         finest: whether there are no finer cells. The joint is varied where these are not needed.
         """
-        at, over_joint, which = list[JointContact](), list[str | None](), dict[str, list[int]]()
+        at, of_case, which = list[JointContact](), list[str](), dict[str, list[int]]()
         for case, links in self.instants.items():
-            instants, governs = self._peaks(near[case], case, links)
-            # Surface and section may peak at one instant, which is then compared once. The joint is
-            # varied where the row is: at the instant of the larger stress.
+            instants = self._peaks(near[case], case, links)
+            # Surface and section may peak at one instant, which is then compared once.
             distinct = dict.fromkeys(instants)
             which[case] = [len(at) + list(distinct).index(t) for t in instants]
             at += [self.joined(links, t) for t in distinct]
-            over_joint += [case if t == governs else None for t in distinct]
+            of_case += [case] * len(distinct)
 
         def pairs(comparisons: Sequence[ResolutionComparison]) -> dict[str, Compared]:
             return {case: Compared(*(comparisons[k] for k in both)) for case, both in which.items()}
@@ -309,7 +332,7 @@ class PressedCases:
                 for case, x in of_cases.items()
                 if finest or x.fine(self.model.material, wanted.of_case(case))
             }
-            return [requirement.varied and case in last for case in over_joint]
+            return [requirement.varied and case in last for case in of_case]
 
         return pairs(compare(self.model, at, requirement, self.patterns, vary))
 
@@ -317,19 +340,14 @@ class PressedCases:
         """The instants that would be compared, without any comparison."""
         return {
             case: Compared(
-                *(
-                    uncompared(self.joined(links, t))
-                    for t in self._peaks(near[case], case, links)[0]
-                )
+                *(uncompared(self.joined(links, t)) for t in self._peaks(near[case], case, links))
             )
             for case, links in self.instants.items()
         }
 
-    def _peaks(self, near: Candidates, case: str, links: PinLoads) -> tuple[tuple[int, int], int]:
-        """The instants of the largest stress of surface and sections, and that of the larger."""
-        stress, instant = self.sections[case].largest(self.on_rings(links))
-        both = near.instant, instant
-        return both, both[stress > near.largest]
+    def _peaks(self, near: Candidates, case: str, links: PinLoads) -> tuple[int, int]:
+        """The instants of the largest stress of surface and sections."""
+        return near.instant, self.sections[case].largest(self.on_rings(links))[1]
 
 
 def _instants(case: PinLoads, between: Between | None) -> PinLoads:

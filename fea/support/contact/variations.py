@@ -8,7 +8,7 @@ act on one mesh, the first: its error is in all maxima alike, so that their rati
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -65,18 +65,17 @@ class ResolutionComparison:
     half_angle: float = 0.5 * math.pi
     pressures: tuple[VariedPressures, ...] = ()
 
-    def range(self, largest: float, below: float = 0.0) -> JointRange:
-        """The range over the joint of a maximum and of the stress beneath contact, Pa."""
-        over = tuple(
-            replace(
-                x,
-                max_von_mises=largest * x.max_von_mises,
-                interval=x.interval and (largest * x.interval[0], largest * x.interval[1]),
-                beneath=below * (x.beneath or 0.0),
-            )
-            for x in self.over
+    def ratios(self, case: AtPlaces) -> tuple[Variation, ...]:
+        """The variations relative to the largest stress of a case instead of that of the instant.
+
+        case: on the first mesh, as given.
+        """
+        own = self.stress
+        row, deep = own.row / (case.row or 1.0), own.beneath / (case.beneath or 1.0)
+        on_surface = own.surface / (case.surface or 1.0)
+        return tuple(
+            replace(scaled(x, row, deep), surface=on_surface * x.surface) for x in self.over
         )
-        return JointRange(range_ends(largest, over), over)
 
     def is_at(self, links: PinLoads, case: PinLoads) -> bool:
         """Return whether an instant is this one, or no farther from it than two of the case's are
@@ -86,6 +85,52 @@ class ResolutionComparison:
             return np.array_equal(links.forces, self.links.forces)
         apart = float(np.abs(links.times - self.links.times)[0])
         return apart <= float(np.diff(case.times).max(initial=0.0))
+
+
+def scaled(x: Variation, row: float, below: float) -> Variation:
+    """A variation with its stress times a factor, and with that beneath contact times another."""
+    interval = x.interval and (row * x.interval[0], row * x.interval[1])
+    deep = below * (x.beneath or 0.0)
+    return replace(x, max_von_mises=row * x.max_von_mises, interval=interval, beneath=deep)
+
+
+def largest_of(every: Iterable[Variation]) -> tuple[Variation, ...]:
+    """The variations of a case whose joint is varied at several instants: of each change the
+    largest stress and forces at any of them.
+
+    every: relative to the same stress.
+    """
+    of = dict[tuple[str, str], list[Variation]]()
+    for x in every:
+        of.setdefault((x.what, x.value), []).append(x)
+    return tuple(_largest(at) for at in of.values())
+
+
+def _largest(at: Sequence[Variation]) -> Variation:
+    ends = [x.interval or (x.max_von_mises, x.max_von_mises) for x in at]
+    lugs = dict[str, float]()
+    for name, ratio in (pair for x in at for pair in x.lugs):
+        lugs[name] = max(ratio, lugs.get(name, ratio))
+    return replace(
+        at[0],
+        max_von_mises=max(x.max_von_mises for x in at),
+        interval=(max(low for low, _ in ends), max(high for _, high in ends))
+        if any(x.interval for x in at)
+        else None,
+        beneath=max(x.beneath or 0.0 for x in at),
+        across=max(x.across for x in at),
+        surface=max(x.surface for x in at),
+        lugs=tuple(lugs.items()),
+    )
+
+
+def over_joint(over: Sequence[Variation], largest: float, below: float = 0.0) -> JointRange:
+    """The range over the joint of a maximum and of the stress beneath contact, Pa.
+
+    over: relative to both.
+    """
+    over = tuple(scaled(x, largest, below) for x in over)
+    return JointRange(range_ends(largest, over), over)
 
 
 # Tells, from the comparisons of cells at some instants, at which the joint is varied.
