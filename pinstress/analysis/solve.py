@@ -337,7 +337,8 @@ def _joined(*remarks: str) -> str:
 
 def _around(plan: Plan, task: Task, solved: tuple[Solution, ...]) -> tuple[JointResult | None, ...]:
     """Return the range over lugs around a pin with prescribed clamps and loads, by case."""
-    around, loads = task.surroundings, [solution.peak.governing for solution in solved]
+    around = task.surroundings
+    loads = [None if s.peak.governing is None else s.loads for s in solved]
     if around is None:
         return (None,) * len(solved)
     if around.pin is None:

@@ -10,7 +10,7 @@ from assess.judgement import DEPENDS
 from fea.support.records import FRICTION, JointRange, Variation
 from pinstress.analysis.results import RunResults
 from pinstress.study.reading.in_python import study_from
-from tests.silent.test_checks_over_the_joint import TEXT, solved
+from tests.silent.test_checks_over_the_joint import TEXT, TIGHT, solved
 from tests.support.pins.remembered import remembered
 
 SHORT = """profile = [
@@ -110,25 +110,56 @@ def test_friction_multiplies_what_a_loose_joint_adds() -> None:
     assert joint.growth(1.0) == joint.across
 
 
-def test_the_joint_is_varied_where_the_surface_peaks_too(tmp_path: Path) -> None:
-    """Two instants as a case, beside each as a case of its own. At the first a section governs, at
-    the second the surface is nearly as large, and grows more in soft lugs: it was not tried there.
+def ranges(
+    tmp_path: Path,
+    joint: str,
+    instants: dict[str, tuple[float, float, float]],
+    *swaps: tuple[str, str],
+) -> tuple[dict[str, str], dict[str, float]]:
+    """What governs, and the upper end of the range over the joint, of a case with two instants,
+    "both", and of each as a case of its own.
     """
-    instants = {"shear": (25000, 25000, 0), "bent": (21000, 42000, 21000)}
     rows = ["time,connection,fx,fy"]
     for t, (a, b, c) in enumerate(instants.values()):
         rows += [f"{t},LEFT,{-a},0", f"{t},EYE,{b},0", f"{t},RIGHT,{-c},0"]
     (tmp_path / "both.csv").write_text("\n".join(rows), encoding="utf-8")
-    soft = ALONE.replace("END", "0.0").replace("[1, 1]", "[0.5, 1]")
-    text = TEXT.replace(SWAPS[0][0], CLEVIS).replace(*SWAPS[3]).replace("CLEARANCE", soft)
+    text = TEXT.replace("CLEARANCE", joint)
+    for old, new in swaps:
+        text = text.replace(old, new)
     text = text[: text.index("[case.pull]")] + '[case.both]\nkind = "given"\ntable = "both.csv"\n'
     for name, (a, b, c) in instants.items():
         force = f"LEFT = [{-a}, 0], EYE = [{b}, 0], RIGHT = [{-c}, 0]"
         text += f'[case.{name}]\nkind = "given"\nforces = {{ {force} }}\n'
-    pins = {x.case: x for x in remembered(study_from(text, tmp_path)).pins}
-    places = {case: x.places.governs for case, x in pins.items() if x.places}
-    assert places == {"both": "section", "shear": "section", "bent": "surface"}
-    over = {case: x.joint.range for case, x in pins.items() if x.joint}
-    high = {case: x.max_von_mises[1] for case, x in over.items() if x}
+    pins = remembered(study_from(text, tmp_path)).pins
+    over = {x.case: x.joint.range for x in pins if x.joint}
+    governs = {x.case: str(x.places.governs) for x in pins if x.places}
+    return governs, {case: x.max_von_mises[1] for case, x in over.items() if x}
+
+
+def test_the_joint_is_varied_where_the_surface_peaks_too(tmp_path: Path) -> None:
+    """Two instants as a case, beside each as a case of its own. At the first a section governs, at
+    the second the surface is nearly as large, and grows more in soft lugs: it was not tried there.
+    """
+    soft = ALONE.replace("END", "0.0").replace("[1, 1]", "[0.5, 1]")
+    instants = {"shear": (25000.0, 25000.0, 0.0), "bent": (21000.0, 42000.0, 21000.0)}
+    clevis = SWAPS[0][0], CLEVIS
+    governs, high = ranges(tmp_path, soft, instants, clevis, SWAPS[3])
+    assert governs == {"both": "section", "shear": "section", "bent": "surface"}
     assert high["bent"] > 1.1 * high["shear"]
     assert high["both"] == pytest.approx(high["bent"], rel=0.01)
+
+
+def test_foundations_are_varied_where_another_instant_may_govern(tmp_path: Path) -> None:
+    """Where the smaller load bends a pin three times as much once its lugs are free to tilt, which
+    they are not under the larger one.
+    """
+    long = (
+        CLEVIS.replace("length = 20,", "length = 30,")
+        .replace("= 40,", "= 60,")
+        .replace("= 0.6,", "= 5,")
+    )
+    instants = {"shear": (25000.0, 25000.0, 0.0), "bent": (15000.0, 30000.0, 15000.0)}
+    beam = "[analysis]", '[analysis]\njoints = "foundation"'
+    _, high = ranges(tmp_path, TIGHT, instants, (SWAPS[0][0], long), beam)
+    assert high["bent"] > 1.5 * high["shear"]
+    assert high["both"] == pytest.approx(high["bent"], rel=1e-6)

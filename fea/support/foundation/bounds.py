@@ -45,11 +45,13 @@ MAX_EDGE_ROUNDING = 0.05  # of the diameter
 class StressBounds:
     """The largest von Mises stress, Pa, at (r, z) in m and theta, at the instant of that index.
 
+    surface: the largest off the axis.
     bounds: of the stress with contact; None where they are not known, and `why`.
     moment_part: relative error of the largest moment, inf where it is not known.
     """
 
     maximum: float
+    surface: float
     bounds: tuple[float, float] | None
     place: tuple[float, float]
     theta: float
@@ -71,7 +73,8 @@ def stress_bounds(stress: FoundationStress, joint: JointFoundation) -> StressBou
     point, t = top.place
     s = top.von_mises
     place = float(stress.r[point]), float(stress.z[point])
-    out = StressBounds(float(s[point, t]), None, place, float(top.theta[point, t]), t)
+    surface = float(s[stress.r > 0.0].max())
+    out = StressBounds(float(s[point, t]), surface, None, place, float(top.theta[point, t]), t)
     loose = _relative_clearance(model, joint, t)
     part = _moment_part(model, loose)
     lacking = stress.lacking(joint, s)

@@ -10,11 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.support.contact.bending import growth_across, growth_of_lugs
-from fea.support.foundation.bounds import stress_bounds
+from fea.support.foundation.bounds import StressBounds, band_forces, stress_bounds
 from fea.support.foundation.foundation_model import FoundationModel, JointFoundation
 from fea.support.foundation.stress import FoundationStress
 from fea.support.lugs.changes import (
@@ -27,6 +29,7 @@ from fea.support.lugs.fit import beyond_foundations
 from fea.support.lugs.lug import Lug
 from fea.support.records import JointRange, JointResult, Variation
 from geometry import ArgumentError, Pin
+from pinbase.arrays import Ints
 
 
 class FoundationRange:
@@ -47,27 +50,35 @@ class FoundationRange:
         self._in_lugs: dict[str, FoundationStress | None] = {}  # of joints that were changed
 
     def at(self, loads: PinLoads) -> tuple[JointRange | None, str]:
-        """The range at a single instant, and the variations it leaves out, or the reason why there
+        """The range over all instants, and the variations it leaves out, or the reason why there
         is none.
 
         Raises: SolveError as FoundationModel.solve.
         """
         own = self.own.model.solve(loads)
+        if len(loads) > 1:
+            loads = loads.at(_that_may_govern(self.own, own))
+            own = self.own.model.solve(loads)
         given = stress_bounds(self.own, own)
         if given.bounds is None:
             return None, given.why
         over, left_out, unheld = [], [], []
         for change in joint_variations(self.own.model.whole, self.own.model.lugs):
             name = f"{change.what} {change.value}"
-            try:
-                varied = self._variation(name, change, loads, own)
-            except SolveError as error:  # lugs free to tilt may leave a couple on the pin
-                unheld.append(f"{name} ({error})")
+            if name not in self._in_lugs:
+                self._in_lugs[name] = _changed(self.own, change)
+            if (stress := self._in_lugs[name]) is None:
+                left_out.append(name)
                 continue
-            if varied is None:
+            held, errors = _held(stress.model, loads)
+            unheld += [f"{name} ({error})" for error in errors[:1]]
+            if held is None:
+                continue
+            of_joint = stress_bounds(stress, held)
+            if of_joint.bounds is None:
                 left_out.append(name)
             else:
-                over.append(varied)
+                over.append(_variation(change, (held, own), (of_joint, given)))
         bounds = [given.bounds, *(v.interval for v in over if v.interval)]
         ends = min(low for low, _ in bounds), max(high for _, high in bounds)
         beyond = f"beyond the range of the measurements, and not included: {', '.join(left_out)}"
@@ -75,35 +86,54 @@ class FoundationRange:
         remarks = [text for text, of in ((beyond, left_out), (none, unheld)) if of]
         return JointRange(ends, tuple(over), "foundation", self.assumed), "; ".join(remarks)
 
-    def _variation(
-        self, name: str, change: JointChange, loads: PinLoads, own: JointFoundation
-    ) -> Variation | None:
-        """The maximum with the joint changed; None beyond what a beam knows.
 
-        own: of the joint as given. Raises: SolveError.
-        """
-        if name not in self._in_lugs:
-            self._in_lugs[name] = _changed(self.own, change)
-        if (stress := self._in_lugs[name]) is None:
-            return None
-        varied = stress.model.solve(loads)
-        of_joint = stress_bounds(stress, varied)
-        if of_joint.bounds is None:
-            return None
-        return Variation(
-            change.what,
-            change.value,
-            of_joint.maximum,
-            change.length,
-            of_joint.bounds,
-            across=growth_across(varied, own),
-            surface=_on_surface(stress, varied) / (_on_surface(self.own, own) or 1.0),
-            lugs=growth_of_lugs(varied, own),
-        )
+def _variation(
+    change: JointChange,
+    joints: tuple[JointFoundation, JointFoundation],
+    stress: tuple[StressBounds, StressBounds],
+) -> Variation:
+    """The maximum with the joint changed.
+
+    joints, stress: of the changed joint and of that as given.
+    """
+    (held, own), (of_joint, given) = joints, stress
+    return Variation(
+        change.what,
+        change.value,
+        of_joint.maximum,
+        change.length,
+        of_joint.bounds,
+        across=growth_across(held, own),
+        surface=of_joint.surface / (given.surface or 1.0),
+        lugs=growth_of_lugs(held, own),
+    )
 
 
-def _on_surface(stress: FoundationStress, joint: JointFoundation) -> float:
-    return float(stress.on_surface.von_mises(joint).von_mises.max())
+def _held(
+    model: FoundationModel, loads: PinLoads
+) -> tuple[JointFoundation | None, list[SolveError]]:
+    """The joint at all instants at which its lugs hold the pin, and why they do not at others: lugs
+    free to tilt may leave a couple on it.
+    """
+    try:
+        return model.solve(loads), []
+    except SolveError as error:
+        if len(loads) == 1:
+            return None, [error]
+    each = [_held(model, loads.at(np.array([t]))) for t in range(len(loads))]
+    held = np.flatnonzero([joint is not None for joint, _ in each])
+    errors = [error for _, of in each for error in of]
+    return (model.solve(loads.at(held)) if len(held) else None), errors
+
+
+def _that_may_govern(stress: FoundationStress, joint: JointFoundation) -> Ints:
+    """The instants of the largest stress of the surface and on the axis, of the largest bending
+    moment and of the largest force of each lug: what is smaller as given may grow more.
+    """
+    von_mises, on_axis = stress.von_mises(joint).von_mises, stress.r == 0.0
+    moment = np.linalg.norm(joint.bending_moment(np.unique(stress.z)), axis=2).max(axis=1)
+    both = [von_mises[at].max(axis=0) for at in (on_axis, ~on_axis) if at.any()]
+    return np.unique([x.argmax() for x in (*both, moment, *band_forces(joint).T)])
 
 
 def prescribed_ranges(
