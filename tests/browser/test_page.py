@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from tests.browser.conftest import STUDIES, run
+from tests.support.each import sampled
 from tests.support.results.browser_page import errors, opened, screen, unfold, wait
 
 pytestmark = pytest.mark.browser
@@ -180,7 +181,7 @@ def test_no_two_regions_have_one_name(browser: Any, tmp_path: Path) -> None:
         assert len({*names}) == len(names), names
 
 
-@pytest.mark.parametrize("shade", ["light", "dark"])
+@pytest.mark.parametrize("shade", sampled(["light", "dark"], every=2))
 def test_axe_finds_nothing_serious(page: Any, shade: str) -> None:
     unfold(page)
     features = [{"name": "prefers-color-scheme", "value": shade}]

@@ -104,7 +104,7 @@ def test_elements_bent_inside_out_are_refused() -> None:
     assert "3 elements are inverted" in out.told
 
 
-@pytest.mark.parametrize("name", [FOLDED, INSIDE_OUT])
+@pytest.mark.parametrize("name", sampled([FOLDED, INSIDE_OUT], every=2))
 def test_the_command_ends_with_status_3(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command_line(["run", str(STUDIES / f"{name}.toml")]) == 3
     assert f"{name}.msh: " in capsys.readouterr().err

@@ -26,7 +26,7 @@ from geometry.shape.rings import (
     rings,
     whole_names,
 )
-from tests.support.each import each
+from tests.support.each import each, sampled
 
 BAND = Band("A", 0.0, 0.02, 0.01)
 
@@ -116,7 +116,10 @@ def punch(
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("interference", "cells"),
-    [(2e-3, Resolution(16, 6, 0, beside=0.01)), (2e-4, Resolution(8, 6, 0, beside=0.004))],
+    sampled(
+        [(2e-3, Resolution(16, 6, 0, beside=0.01)), (2e-4, Resolution(8, 6, 0, beside=0.004))],
+        every=2,
+    ),
 )
 def test_a_rounded_edge_is_a_flat_rounded_punchs(interference: float, cells: Resolution) -> None:
     """A rigid eye pressed on a band that is short beside the pin's radius, round its whole axis, so

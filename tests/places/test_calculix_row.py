@@ -41,6 +41,7 @@ def theirs() -> JointOpinion:
     return joint_opinion(CLEVIS, STEEL, LUGS, PULL, Fineness(rings=4, sectors=16, eye=2))
 
 
+@pytest.mark.long
 @pytest.mark.peers
 def test_what_calculix_presses_is_what_its_lugs_do() -> None:
     """On the sides that the lugs pull, and on no other; its free surface is most of the rest. The
@@ -63,6 +64,7 @@ def test_what_calculix_presses_is_what_its_lugs_do() -> None:
     assert at.value == pytest.approx(32.0 * at.bending_moment / np.pi / D**3, rel=0.02)
 
 
+@pytest.mark.long
 @pytest.mark.peers
 def test_rows_of_both_programs_agree() -> None:
     """A clevis. (326 MPa on CalculiX's surface at mid-span, 307 in its section; 315 and 301.)"""

@@ -143,7 +143,7 @@ def test_where_they_are(name: str, kind: type, near: float) -> None:
         ("seated section", ("material.steel.density",)),
     ],
 )
-@pytest.mark.parametrize("step", sampled([9, 1], every=2))
+@pytest.mark.parametrize("step", sampled([27, 1], every=2))
 def test_as_by_differences(name: str, keys: tuple[str, ...], step: int) -> None:
     """By these parameters and one in so many of all."""
     check(name, keys, step)
@@ -259,8 +259,9 @@ def _moving(times: Floats) -> PinLoads:
     return PinLoads("c", ("L", "M", "R"), forces, times=times)
 
 
+@pytest.mark.long
 @pytest.mark.slow
-@pytest.mark.parametrize("place", sampled(["surface", "section"], every=2))
+@pytest.mark.parametrize("place", ["surface", "section"])
 def test_of_whole_solutions(place: Place) -> None:
     """The places of a pin, the surface along a motion, and what they become with another diameter,
     solved anew on other meshes and cells.

@@ -111,6 +111,7 @@ def _swing(known: StressPoints, points: Floats) -> Floats:
     return von_mises(stress[:, 0] - stress[:, 1])
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_of_a_pin_with_cuts_too() -> None:
     """A hole amid the thick part changes little in the fillets: in the local solid about it they

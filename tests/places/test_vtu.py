@@ -87,6 +87,7 @@ def require_rows(rows: Rows, stress: str) -> None:
         assert len(angles) >= 1.8 * 360.0 / (cell[3] - cell[2])
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_the_free_surface_of_a_clevis_pin_has_no_steps_of_its_lugs(tmp_path: Path) -> None:
     (tmp_path / "clevis.toml").write_text(CLEVIS, encoding="utf-8")
@@ -125,6 +126,7 @@ def test_the_envelope_has_what_is_read_at_some_instant(tmp_path: Path) -> None:
     assert np.isfinite(envelope[pressed == 1]).any()  # pressed now, but not always
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_pin_with_a_hole_is_shown_like_others(tmp_path: Path) -> None:
     """By the local solid about its hole and beside it, under a lug and beside its edges."""

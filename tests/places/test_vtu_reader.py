@@ -16,7 +16,6 @@ import pyvista
 from benchmarks.joints.random_pins import PinTrial, pin_trials
 from benchmarks.joints.trial_study import tapered, write_study
 from benchmarks.joints.vtu_reader import SurfaceRead, read_folder, shut, von_mises
-from tests.support.each import sampled
 from tests.support.programs.command_line import run_here
 
 TRIALS = pin_trials(20, 7)
@@ -40,15 +39,17 @@ def require(found: list[SurfaceRead], files: int) -> None:
         assert x.read > 0.6 * x.row  # it reads something
 
 
+@pytest.mark.long
 @pytest.mark.slow
-@pytest.mark.parametrize("k", sampled(SOME, every=5))
+@pytest.mark.parametrize("k", SOME)
 def test_nothing_on_the_surface_exceeds_the_row(k: int, tmp_path: Path) -> None:
     """On the surface's own file and on the outside of the solid's."""
     require(run(TRIALS[k], tmp_path, "--vtk", "solid"), 2)
 
 
+@pytest.mark.long
 @pytest.mark.slow
-@pytest.mark.parametrize("name", sampled(NAMED, every=2))
+@pytest.mark.parametrize("name", NAMED)
 def test_nothing_on_cones_exceeds_the_row(name: str, tmp_path: Path) -> None:
     require(run(NAMED[name], tmp_path, "--vtk", "solid"), 2)
 

@@ -93,6 +93,7 @@ STEPPED = STUDY.replace('model = "harmonic"\n', "").replace(
 )
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_sections_at_a_fillet_beside_a_hole_carry_the_loads(tmp_path: Path) -> None:
     """Where shear is a small difference of large stresses: it was 4 % off."""

@@ -89,6 +89,7 @@ def _refused(sweep: subprocess.Popen[str], *messages: str) -> None:
     assert "Traceback" not in said
 
 
+@pytest.mark.long
 def test_a_worker_and_the_scheduler_are_killed_and_the_bytes_are_the_same(
     tmp_path: Path, whole_sweep: bytes
 ) -> None:

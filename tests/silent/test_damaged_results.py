@@ -154,6 +154,7 @@ def test_many_damaged_files_are_said(name: str, folder: Path) -> None:
     assert try_all(folder, name, range(1000, 1000 + MANY)) == {0, 2}
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "seed"),

@@ -220,7 +220,7 @@ WHOLE: dict[str, tuple[Pin, list[Cut], tuple[str, ...], PinLoads]] = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", sampled(WHOLE, every=4))
+@pytest.mark.parametrize("name", sampled(WHOLE, every=8))
 def test_all_of_the_surface_moves_as_that_of_the_whole_solid(name: str) -> None:
     """To 2 % of its largest displacement; of a pin that nothing clamps but for a rigid motion, and
     both ends of its axis stay where they are (to the change of its section's shape).

@@ -22,6 +22,7 @@ from assess.plastic.limit_load import limit_on_mesh
 from assess.plastic.solve import limit_load
 from fea.core.pin_loads import PinLoads
 from geometry import Pin, Segment
+from geometry.mesh.hexahedra import HexSize
 from pinstress import load_study, prepare
 from pinstress.analysis.assessed import limits
 from pinstress.analysis.assessed.limits import UNASKED_LIMIT_LOAD_SECONDS, limit_seconds, rung_of
@@ -161,6 +162,7 @@ def test_the_command_says_what_computes_it_and_the_cache_does_not_make_it_stick(
     monkeypatch.setenv("PINSTRESS_CACHE", str(tmp_path / "cache"))
     monkeypatch.setenv("COLUMNS", "200")
     monkeypatch.setattr(limits, "UNASKED_LIMIT_LOAD_SECONDS", 1e-9)
+    monkeypatch.setattr("assess.plastic.solve.MESH_SIZES", (HexSize(2, 0.5), HexSize(4, 0.5)))
     Path("study.toml").write_text(STUDY)
 
     def run(*options: str) -> tuple[str, bool, float | None]:

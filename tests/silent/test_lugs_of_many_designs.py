@@ -125,7 +125,6 @@ def test_the_run_judges_the_lugs(tmp_path: Path) -> None:
 
 @each("more,check,said", [
     ('bearing_strength = "100 MPa"', "bearing", "shear, bearing, bending"),
-    ('shear_strength = "60 MPa"', "single shear, mean", "shear, bearing, bending"),
     (f"{CURVE}{LIFE}", "fatigue life", "shear, bearing, bending, fatigue"),
 ])  # fmt: skip
 def test_what_a_run_judges_besides_yield_is_named(

@@ -49,7 +49,7 @@ def entries(folder: Path) -> set[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kilobytes", sampled(LIMITS, every=2))
+@pytest.mark.parametrize("kilobytes", sampled(LIMITS, every=3))
 def test_a_memory_limit_costs_pictures_alone(kilobytes: int, tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(QUICK, encoding="utf-8")
     solved = limited(kilobytes, cwd=tmp_path)
@@ -145,6 +145,7 @@ def test_whatever_ends_an_engine_is_told_of_that_work_alone() -> None:
     require_alone()
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_the_same_where_processes_are_started_anew(monkeypatch: pytest.MonkeyPatch) -> None:
     """As they are where other threads run."""

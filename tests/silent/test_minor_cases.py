@@ -56,6 +56,7 @@ def test_a_minor_case_is_decided_without_a_warning(
     assert "1 of 2 rows is decided with an error above 5 %, 1 far below another" in told.out
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_case_that_is_run_alone_is_solved_on_finer_cells() -> None:
     study = study_from(STUDY + LIGHT)

@@ -88,6 +88,7 @@ def test_no_socket_can_be_reached_while_a_sweep_runs(tmp_path: Path) -> None:
     assert seen == set()
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @pytest.mark.linux
 def test_a_process_that_is_killed_costs_nothing(tmp_path: Path, whole_sweep: bytes) -> None:

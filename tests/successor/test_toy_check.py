@@ -96,6 +96,7 @@ def test_a_new_check_is_in_the_tables(folder: Path) -> None:
         assert (row["at"], row[source], row["governs"]) == ("root", "Toy manual, 1-1", "yes")
 
 
+@pytest.mark.seconds
 def test_a_new_check_is_in_the_results(folder: Path) -> None:
     written = json.loads((folder / "results.json").read_text(encoding="utf-8"))
     (margin,) = [m for m in written["margins"] if m["method"] == "shadow pressure"]
@@ -104,6 +105,7 @@ def test_a_new_check_is_in_the_results(folder: Path) -> None:
     assert "shadow pressure" in [check["name"] for check in pin["hand_checks"]]
 
 
+@pytest.mark.seconds
 def test_a_new_check_that_governs_is_on_page_and_terminal(folder: Path) -> None:
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert page.count("shadow pressure") >= 3  # where it governs, among all margins, by hand

@@ -265,6 +265,7 @@ def test_a_piece_of_a_cone_is_a_cone() -> None:
         assert ours == pytest.approx(CONE.radii(float(z)), rel=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_hole_in_a_cone_beside_the_whole_solid() -> None:
     """To 2 %: the solid's second mesh changes its stress by 1 %."""

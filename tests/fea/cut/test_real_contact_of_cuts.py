@@ -159,13 +159,14 @@ def uncut_joint() -> tuple[ContactProblem, Half]:
     return problem, half_of(NOTHING, problem)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("cut", "moment"),
     [
         (Flat(0.0165, 0.0295, D / 2.0 * math.cos(math.pi / 6.0), math.pi, 0.001), 0.93),
-        pytest.param(Hole(0.023, 0.4 * D), 0.86, marks=pytest.mark.long),
-        pytest.param(Hole(0.023, 0.4 * D, math.pi / 2.0), 0.964, marks=pytest.mark.long),
+        (Hole(0.023, 0.4 * D), 0.86),
+        (Hole(0.023, 0.4 * D, math.pi / 2.0), 0.964),
     ],
 )
 def test_real_contact_is_within_the_error(

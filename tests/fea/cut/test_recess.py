@@ -19,7 +19,9 @@ BLIND = replace(HOLE, angle=0.0, depth=0.006, bottom=Bottom(3.0, 0.001))
 KEYWAY = Slot(MIDDLE - 0.006, MIDDLE + 0.006, 0.005, 0.003, 0.0, 0.0008)
 
 
-@pytest.mark.parametrize("one", [BLIND, pytest.param(KEYWAY, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "one", [BLIND, pytest.param(KEYWAY, marks=[pytest.mark.slow, pytest.mark.long])]
+)
 def test_a_recess_has_the_stress_of_the_cut_that_it_is(one: Hole | Slot) -> None:
     pin = cut(one)
     known, other = (pieces(made, ()) for made in (pin, as_recesses(pin)))

@@ -64,6 +64,7 @@ def test_a_file_of_a_pin_has_its_peak(kind: str, steel: Material, tmp_path: Path
     assert peak(body, steel, size) == pytest.approx(peak_of_profile(steel), rel=1e-2)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_small_cross_hole_in_tension_trebles_the_stress(steel: Material) -> None:
     """A hole of a tenth of the diameter. Kirsch: 3 at a hole in a wide plate; a hole across a round

@@ -143,6 +143,7 @@ def test_a_sharp_corner_and_a_clamp_edge_are_singular(steel: Material) -> None:
         assert found.places.section.max_von_mises == pytest.approx(nominal, rel=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_fillet_converges(cantilever_pin: Pin, steel: Material) -> None:
     """Bending of a shoulder fillet, D/d = 1.5, r/d = 0.25 (so h/r = 1): Peterson's Kt is 1.41 for

@@ -40,7 +40,7 @@ def three_points(length: float) -> tuple[Pin, PinLoads, float]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("diameters", sampled([10, 50, 200, 1000], every=3))
+@pytest.mark.parametrize("diameters", sampled([10, 50, 200, 1000], every=2))
 def test_sections_agree_with_beam_theory(diameters: int, steel: Material) -> None:
     """The sections have it exactly and govern, as a clamp's edge is excluded to 0.1 D and Poisson's
     contraction felt there to about D: the surface has less.
@@ -62,16 +62,20 @@ def test_sections_agree_with_beam_theory(diameters: int, steel: Material) -> Non
         assert peak.verdict == ("singular" if clamps else "converged")
 
 
-@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("diameters", "limit"),
+    [(50, 0.0), pytest.param(2500, 1e-3, marks=[pytest.mark.slow, pytest.mark.long])],
+)
 def test_where_round_off_is_too_much_the_beam_answers(
-    steel: Material, monkeypatch: pytest.MonkeyPatch
+    diameters: int, limit: float, steel: Material, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """At 2500 diameters it changes a section's solution by more than a thousandth: by about a
     sixteenth of the 0.18 at 5000, whose mesh takes six times as long.
 
     The harmonic model fails once, and for `auto` by the same error without its minutes.
     """
-    pin, loads, expected = cantilever(2500 * D)
+    monkeypatch.setattr("fea.core.linear_solver.MAX_REFINEMENT_CHANGE", limit)
+    pin, loads, expected = cantilever(diameters * D)
     with raises(SolveError, "ill-conditioned") as caught:
         solve_pin(pin, steel, ("start",), (loads,), Requirement(model="harmonic"))
 

@@ -144,6 +144,7 @@ def test_fixed_steps_with_richardson_give_the_same() -> None:
     assert seen.sink_velocity[0] == pytest.approx(exact[2], rel=1e-8)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_an_implicit_integrator_gives_the_same_peaks() -> None:
     explicit, implicit = land(EVERYTHING), Landing(EVERYTHING, fall(EVERYTHING, "Radau"))

@@ -140,6 +140,7 @@ def python(code: str) -> subprocess.CompletedProcess[str]:
     )
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_analyses_in_several_threads_do_not_disturb_each_other() -> None:
     done = python(TWO_KINDS)

@@ -47,6 +47,7 @@ def clevis(tmp_path_factory: pytest.TempPathFactory) -> tuple[pinstress.RunResul
     return results, out / "run"
 
 
+@pytest.mark.seconds
 def test_the_lugs_of_a_clevis(clevis: tuple[pinstress.RunResults, Path]) -> None:
     found = lugs(clevis[0])
     assert set(found) == {(c, p) for c in ("LEFT", "EYE", "RIGHT") for p in ("free", "beneath")}
@@ -82,6 +83,7 @@ def test_files_have_the_rows(clevis: tuple[pinstress.RunResults, Path]) -> None:
     assert "Stress of the lugs at LEFT, EYE, RIGHT: shank along the largest force" in page
 
 
+@pytest.mark.seconds
 def test_a_lug_is_judged_with_the_factor_of_its_pin(
     clevis: tuple[pinstress.RunResults, Path],
 ) -> None:

@@ -228,6 +228,7 @@ def test_exit_status_and_files(
     assert 'id="margins"' in page
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_past_yield_from_the_study_to_the_files(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch

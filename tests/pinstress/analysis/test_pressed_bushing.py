@@ -56,6 +56,7 @@ def rows(folder: Path, case: str) -> dict[tuple[str, str], dict[str, str]]:
         return {(x["wall"], x["place"]): x for x in csv.DictReader(file) if x["case"] == case}
 
 
+@pytest.mark.seconds
 def test_the_hole_is_stressed_as_much_as_without_friction(
     clevis: tuple[pinstress.RunResults, Path],
 ) -> None:
@@ -79,6 +80,7 @@ def test_a_bushing_is_judged_against_its_own_yield(
     assert margins["lug, von Mises stress at the bore, hole"].allowable == pytest.approx(700.0)
 
 
+@pytest.mark.seconds
 def test_heat_presses_the_bushing_and_closes_its_bore(
     clevis: tuple[pinstress.RunResults, Path],
 ) -> None:
@@ -164,7 +166,7 @@ def test_the_stress_of_a_lug_is_the_largest_over_the_range(
     """Of each wall, as of runs at the ends alone, which know of no range."""
     most = walls(clevis[0])
     least, over = (
-        walls(pinstress.run(study_from(text(bushing))))
+        walls(remembered(study_from(text(bushing))))
         for bushing in (
             ", interference = 0.002 }",
             " }, range = { interference = [0.002, 0.03] }",

@@ -21,6 +21,7 @@ def run_once(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str, str]:
     return folder, done.stdout, done.stderr
 
 
+@pytest.mark.seconds
 def test_run_writes_what_the_contract_names(run_once: tuple[Path, str, str]) -> None:
     folder, stdout, stderr = run_once
     out = folder / "out" / "study"
@@ -128,6 +129,7 @@ def test_what_is_asked_decides_how_far_it_goes(tmp_path: Path) -> None:
     assert done.stdout.startswith("Pin B is safe: factor 120 ≥ 10 required (landing).")
 
 
+@pytest.mark.seconds
 def test_millimetres_and_inches_give_the_same_pin(
     run_once: tuple[Path, str, str], tmp_path: Path
 ) -> None:

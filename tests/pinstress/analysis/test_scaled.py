@@ -83,6 +83,7 @@ def quick(engine: Engine, changes: dict[str, Any]) -> PinResult:
     return engine.row(changes, "P", "pull", accuracy="quick")
 
 
+@pytest.mark.seconds
 def test_without_a_change_it_is_the_full_row(engine: Engine) -> None:
     full, scaled = engine.row({}, "P", "pull"), quick(engine, {})
     assert scaled.max_von_mises == pytest.approx(full.max_von_mises, rel=1e-12)
@@ -125,7 +126,7 @@ def test_loads_in_proportion_are_exact(engine: Engine) -> None:
             # Ratios of places spread by 39 %, and the row is 5.5 % lower than that of a run.
             {"case.pull.forces": {"left": [0, 7800], "middle": [0, -10000], "right": [0, 2200]}},
         ],
-        every=3,
+        every=7,
     ),
 )
 def test_it_is_within_its_error_of_a_run(engine: Engine, changes: dict[str, Any]) -> None:
@@ -160,6 +161,7 @@ def test_what_is_open_of_the_joint_is_that_of_the_changed_study(engine: Engine) 
     assert rubbed == pytest.approx(expected, rel=0.1)
 
 
+@pytest.mark.seconds
 def test_the_range_of_a_clearance_is_that_of_the_changed_one(engine: Engine) -> None:
     """That of the study as it is was scaled: a row was safe that depends, since twice the changed
     clearance, on narrow arcs, gives 1.86 times its stress instead of 1.11 times.
@@ -171,6 +173,7 @@ def test_the_range_of_a_clearance_is_that_of_the_changed_one(engine: Engine) -> 
     assert max(lengths) == pytest.approx(0.06)
 
 
+@pytest.mark.seconds
 @pytest.mark.parametrize(("required", "scaled"), [(2, True), (12, False), (50, True)])
 def test_a_row_that_is_just_safe_under_less_load_is_not_scaled(
     engine: Engine, required: float, scaled: bool
@@ -183,6 +186,7 @@ def test_a_row_that_is_just_safe_under_less_load_is_not_scaled(
     assert (SCALED_CODE in quick(engine, changes).maximum.reasons) == scaled
 
 
+@pytest.mark.seconds
 def test_ratios_that_spread_too_far_are_not_taken(
     engine: Engine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -233,7 +237,7 @@ def leaning(largest: float) -> str:
     return text.replace(old, "left = [0, 20000], middle = [0, -20000]")
 
 
-@pytest.mark.parametrize("largest", [0.03, 0.2])
+@pytest.mark.parametrize("largest", sampled([0.03, 0.2], every=2))
 def test_rows_of_leaning_pins_are_within_their_errors(largest: float) -> None:
     """Rough cells do not follow edges: with another range, for which nothing is scaled, 153 ± 19
     MPa were said where 341 ± 22 are.
@@ -279,6 +283,7 @@ def _untimed(row: PinResult) -> PinResult:
     return replace(row, maximum=replace(row.maximum, history=history))
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_the_same_whatever_was_asked_before(engine: Engine) -> None:
     quick(engine, {MIDDLE: 21.0})

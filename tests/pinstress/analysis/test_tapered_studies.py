@@ -127,6 +127,7 @@ forces = { A = [0, -5000], B = [0, 10000], C = [0, -5000] }
 """
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_chamfers_outside_of_lugs_change_nothing(tmp_path: Path) -> None:
     """In contact; the stress is largest between the lugs."""

@@ -196,6 +196,7 @@ def test_a_pin_that_comes_loose_is_strong_enough_but_depends(
     assert lost.factor == hot.safety_factor
 
 
+@pytest.mark.seconds
 def test_that_a_pin_comes_loose_is_said_once_as_what_it_is(
     loosened: pinstress.RunResults,
 ) -> None:
@@ -239,6 +240,7 @@ def test_a_pin_that_comes_loose_is_warned_of_and_what_is_said_to_hold_it_does() 
     assert loosening(0.0227)
 
 
+@pytest.mark.seconds
 def test_the_assumption_of_the_reference_is_said(loosened: pinstress.RunResults) -> None:
     (said,) = (x for x in loosened.assumptions if "Dimensions, clearances" in x)
     assert "at 20 degC (assumed)" in said
@@ -281,6 +283,7 @@ def hotter() -> PinResult:
     return pinstress.run(hotter_study, cases=["hot"])["P", "hot"]
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @each("accuracy", ["full", "quick"])
 def test_an_engine_answers_a_temperature_as_a_run_does(accuracy: str) -> None:

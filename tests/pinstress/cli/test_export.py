@@ -302,6 +302,7 @@ def test_a_node_under_a_lug_says_how_its_stress_is_compared(tmp_path: Path) -> N
     assert "lies under lug" not in (tmp_path / "deck.inp").read_text("ascii")
 
 
+@pytest.mark.long
 @pytest.mark.peers
 def test_calculix_finds_the_stress_under_a_lug(tmp_path: Path) -> None:
     """By the rule that the head of the deck states, from nothing of ours but the deck."""
@@ -352,14 +353,20 @@ def test_calculix_finds_the_stress_of_a_fillet_beside_a_lug(tmp_path: Path) -> N
     assert stress == pytest.approx(peak.max_von_mises, rel=0.08, abs=peak.own_error)
 
 
+@pytest.mark.slow
+def test_a_deck_names_lugs_of_a_structure(tmp_path: Path) -> None:
+    assert exported(tmp_path, ON_STRUCTURE, "--deck", "calculix", pin="P", case="pull") == 0
+    lines = (tmp_path / "deck.inp").read_text("ascii")
+    assert "lugs of a structure" in " ".join(lines.replace("**", "").split())
+
+
+@pytest.mark.long
 @pytest.mark.peers
 def test_calculix_shares_a_force_between_lugs_of_a_structure(tmp_path: Path) -> None:
     """Of different thickness and clearance, at different distances from the eye: statics alone
     does not decide their shares.
     """
-    assert exported(tmp_path, ON_STRUCTURE, "--deck", "calculix", pin="P", case="pull") == 0
-    lines = (tmp_path / "deck.inp").read_text("ascii")
-    assert "lugs of a structure" in " ".join(lines.replace("**", "").split())
+    (tmp_path / "study.toml").write_text(ON_STRUCTURE, encoding="utf-8")
     plan = prepare(pinstress.load_study(tmp_path / "study.toml"))
     row = next(r for o in solve_tasks(plan) for r in o.rows)
     assert row.joint is not None

@@ -142,6 +142,7 @@ def test_what_cannot_be_imported_is_one_message(
     assert said.err.count("Error") == 1
 
 
+@pytest.mark.usefixtures("read_here")
 def test_a_run_takes_a_turned_body_as_a_profile(tmp_path: Path) -> None:
     """It says so; without a fillet its band is what the file's z says."""
     step(PROFILES["stepped"], tmp_path / "pin.step")
@@ -160,6 +161,7 @@ def _lying(gmsh: Any, solid: int) -> None:
     gmsh.model.occ.translate([(3, solid)], 7, -20, 5)
 
 
+@pytest.mark.usefixtures("read_here")
 def test_a_run_takes_a_lying_body_in_its_own_axes(tmp_path: Path) -> None:
     """Bands are where the file has them along its axis, and angles count from the x that is told.
     A band beside its cylinder is refused, as a solid would be about another axis.
@@ -181,6 +183,7 @@ def test_a_run_takes_a_lying_body_in_its_own_axes(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("read_here")
 @pytest.mark.parametrize(
     ("used", "change", "why"),
     [

@@ -45,6 +45,7 @@ def test_a_run_prints_what_the_folder_prints_later_to_the_last_byte(folder: Path
     assert "report.pdf" in (manifest.listed(folder) or set())
 
 
+@pytest.mark.seconds
 def test_it_is_tagged_dated_and_has_its_fonts(folder: Path) -> None:
     pdf = (folder / "report.pdf").read_bytes()
     assert pdf.startswith(b"%PDF-")
@@ -61,6 +62,7 @@ def test_the_page_has_the_same_title_block(folder: Path) -> None:
     assert {"B7", "A. N. Other", "2026-03-31"} <= set(rows)
 
 
+@pytest.mark.seconds
 def test_a_file_of_another_is_left_alone(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     known = manifest.listed(folder)
     assert known is not None
@@ -71,6 +73,7 @@ def test_a_file_of_another_is_left_alone(folder: Path, capsys: pytest.CaptureFix
     assert (folder / "report.pdf").read_bytes() == b"mine"
 
 
+@pytest.mark.seconds
 def test_a_folder_without_a_page_is_refused(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -271,7 +271,7 @@ def test_a_joint_of_practice_is_valid_or_refused_with_its_reason(name: str, tmp_
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", sampled(ANSWERED, every=5))
+@pytest.mark.parametrize("name", sampled(ANSWERED, every=10))
 def test_a_joint_of_practice_is_answered(name: str, tmp_path: Path) -> None:
     (row,) = pinstress.run(study(name, tmp_path)).pins
     assert row.model == JOINTS[name].model

@@ -59,6 +59,7 @@ def test_the_error_of_cells_covers_that_on_narrow_arcs(
     assert max(off) > 0.5  # what the test is about
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_the_error_of_cells_covers_that_on_narrow_arcs_of_one_lug_with_round_edges() -> None:
     """The joint of benchmarks/joints/narrow_arcs.py that cells of contact err most on."""
@@ -91,6 +92,7 @@ def test_the_half_angle_is_known_whatever_the_cells(
         assert on(ROUGH, load)[0].half_angle == pytest.approx(truth.half_angle, rel=0.15)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_cells_follow_narrow_arcs_to_the_tolerance(
     fine: dict[float, tuple[ResolutionComparison, float]],
@@ -152,6 +154,7 @@ def test_arcs_decide_on_sectors_within_the_limit_of_cells() -> None:
         assert cells.sectors % 4 == 0  # cells twice as large have half of them, evenly
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_an_arc_that_no_cells_follow_has_an_error_that_says_so() -> None:
     (found,) = solve(loose(1e-3), Requirement(tolerance=0.02))

@@ -122,6 +122,7 @@ def test_of_a_beam_they_are_relative_to_its_maximum() -> None:
     assert one == pytest.approx(other, rel=0.1, abs=0.02 * float(np.abs(other).max()))
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_in_contact_by_all_of_the_joint() -> None:
     """Where asked; else how to get them. Eyes without an outer diameter grow with the pin, and the

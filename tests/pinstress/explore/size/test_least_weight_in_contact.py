@@ -65,6 +65,7 @@ def test_in_contact_rough_cells_are_corrected_by_usual_ones() -> None:
     assert found.study.table.pin["P"].lug["M"].outer_diameter == pytest.approx(1.5 * band, rel=1e-3)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_in_contact_stress_has_the_derivatives_of_differences() -> None:
     """Where the eye grows with the pin, too. What lies beneath is only supposed to scale with the

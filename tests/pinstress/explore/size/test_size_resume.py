@@ -55,6 +55,7 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return solved
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_an_interrupted_size_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """By a process of its own, which is interrupted once its first pin is written: finished pins

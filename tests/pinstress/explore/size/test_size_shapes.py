@@ -46,6 +46,7 @@ def test_hollow_with_small_fillets_and_larger_than_before(change: tuple[str, str
     confirmed(study, "B", SizingGoal(12.0), 0.01)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_pin_with_a_hole() -> None:
     """The hole stays while the pin is scaled, so that the section loses another part."""
@@ -65,6 +66,7 @@ def test_the_offset_of_a_hole_grows_with_its_pin() -> None:
     assert hole.offset == pytest.approx(0.5 * before.offset, rel=1e-3)
 
 
+@pytest.mark.long
 def test_a_pin_in_lugs_that_clear_it_by_a_series() -> None:
     """The pin of the clevis with its clearance of 0.05 mm: the next diameter of R20 and no more."""
     study = parse_study(CLEVIS, CLEVIS.read_text())

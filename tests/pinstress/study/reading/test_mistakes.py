@@ -64,7 +64,8 @@ def mistakes(raw: Any) -> list[Wrong]:
     "study",
     [
         *("one_pin", "kuleuven2014"),
-        *(pytest.param(name, marks=pytest.mark.slow) for name in ("bowman2019", "slider_crank")),
+        pytest.param("slider_crank", marks=pytest.mark.slow),
+        pytest.param("bowman2019", marks=[pytest.mark.slow, pytest.mark.long]),
     ],
 )
 def test_no_wording_of_pydantic_reaches_the_user(study: str) -> None:
