@@ -3,7 +3,7 @@ BIN := .venv/bin
 LOCKBIN := .venv-lock/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-rest test-ci test-all test-browser test-peers test-portable calculix \
+.PHONY: help setup demo test test-rest test-all test-browser test-peers test-portable calculix \
 	coverage mutants check types bench evidence docs wheel lock clean
 
 help: ## list the targets
@@ -40,10 +40,6 @@ test: setup ## run the quick tests; ARGS="..." goes to pytest
 # In one run files are imported once, what they share is solved once, and workers wait once at the end.
 test-rest: calculix ## run all others but browser and long ones: those of seconds, slow ones, with CalculiX
 	$(PYTEST) -m "seconds or slow or peers" $(sort $(call marked,slow) $(call marked,peers) $(listed)) $(ARGS)
-
-# In one run, so that files are imported and fixtures made once for both.
-test-ci: calculix ## run all tests but browser and long ones: those of test and test-rest, as CI does
-	$(PYTEST) -m "peers or not peers" $(ARGS)
 
 test-all: setup ## run all tests, also the long ones that CI leaves out
 	$(PYTEST) -m "long or not long" $(ARGS)
