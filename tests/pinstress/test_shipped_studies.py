@@ -33,7 +33,7 @@ NO_COUPLER = ("crane", "hood", "scissor_lift", "planetary")  # no moving link wi
         ("slider_crank", "A", "converged"),
         ("clevis", "P", "converged"),
         ("pin_in_lugs", "P", "converged"),
-        pytest.param("bucket_pin", "Z", "converged", marks=pytest.mark.long),
+        ("bucket_pin", "Z", "converged"),
         ("fatigue", "P", "converged"),
         ("lifting_arm", "O", "converged"),
         ("kuleuven2014", "trunnion", "singular"),

@@ -114,7 +114,6 @@ def _stays_within(error: float, rows: list[dict[str, str]]) -> list[dict[str, st
     return rows[max(beyond, default=-1) + 1 :]
 
 
-@pytest.mark.long
 @pytest.mark.slow
 def test_the_command(tmp_path: Path) -> None:
     """On a short ladder. The mesh on which auto ends is that of a run, to the last digit; every
