@@ -205,7 +205,6 @@ def bending(force: float, angle: float) -> PinLoads:
     return PinLoads("bending", SHAFT.connections, forces)
 
 
-@pytest.mark.slow
 def test_four_point_bending_with_the_hole_at_the_extreme_fibre() -> None:
     """3.10 +- 0.01 by CalculiX; the truth lies in the error; other loads are superposed; a hole at
     another angle answers the same to loads that are turned as well.

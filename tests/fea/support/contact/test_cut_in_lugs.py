@@ -51,7 +51,6 @@ def test_a_ringed_pin_weighs_what_contact_balances() -> None:
     assert rings.volume == rings.profile.volume
 
 
-@pytest.mark.slow
 def test_rounded_mouths_under_weight() -> None:
     """The weight that contact balances is that of the pin without its cuts: OpenCASCADE cannot
     round a mouth that the ends of rings cross, and was asked to for the volume. Nothing is left
@@ -100,7 +99,6 @@ def test_the_crest_at_a_hole_is_found_between_samples() -> None:
     assert single.peak.max_von_mises == pytest.approx(peak.max_von_mises, rel=2e-3)
 
 
-@pytest.mark.slow
 def test_a_grease_hole_at_the_extreme_fibre() -> None:
     """3.1 times the bending stress of its joint (four-point bending: 3.10), whose moment is a
     little less than that without the hole, as the mouth does not press.

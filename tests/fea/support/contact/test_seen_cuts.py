@@ -112,7 +112,6 @@ def test_a_joint_that_is_turned_with_its_cut_is_the_same() -> None:
     assert moments[0] < 0.98 * max(moments)  # the flat faces the load
 
 
-@pytest.mark.slow
 def test_cuts_add_compliance_each_on_its_own() -> None:
     """In pieces of their own they add up. What they add is reciprocal, and with it cells are still
     stable: any forces on them do positive work.
