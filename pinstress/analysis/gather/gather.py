@@ -15,6 +15,7 @@ from fea.core.peak import Maximum
 from fea.support.records import JointResult
 from geometry import Cut, Flat, Hole, Passage, PinLike, Recess, Slot
 from geometry.shape.cut_edges import drawn
+from loads import Reactions
 from pinbase.records import in_units
 from pinstress.analysis.assessed.situations import factor_assumption
 from pinstress.analysis.cache import REQUIRED_PACKAGES
@@ -233,6 +234,9 @@ def _completed(
     time = row.maximum.time
     here = case if time is None else at_time(case, time)
     assert here is not None
+    reactions = here.reactions
+    if time is not None and case.moving is not None:  # as of stress and checks, also at a jump
+        reactions = case.moving.at(np.array([time]))[0]
     positions = drive_position(study, here) if row.location else None
     published_stress, published_factor = published.peaks.get((row.pin, row.case), (None, None))
     return replace(
@@ -241,7 +245,7 @@ def _completed(
         left_out=task.left_out[row.case],
         position=None if positions is None else float(positions[0]),
         position_unit=position_unit(study, here),
-        loads=_governing_loads(task, here),
+        loads=_governing_loads(task, reactions),
         shank_angles=tuple(_shank_angles(task, row.case, time)),
         exponent=section_exponent(task.pin, row.places.section if row.places else None),
         depends_on=depends_on(row),
@@ -267,8 +271,7 @@ def _held(task: Task, joint: JointResult | None) -> str:
     return ", ".join(task.clamps) or "nothing (loads in balance)"
 
 
-def _governing_loads(task: Task, here: CaseLoads) -> tuple[GoverningLoad, ...]:
-    r = here.reactions
+def _governing_loads(task: Task, r: Reactions) -> tuple[GoverningLoad, ...]:
     return tuple(
         GoverningLoad(name, r.bodies[c], r.forces[0, c], r.moments[0, c])
         for c, name in enumerate(r.connections)
