@@ -15,7 +15,6 @@ from fea.core.peak import Maximum
 from fea.support.records import JointResult
 from geometry import Cut, Flat, Hole, Passage, PinLike, Recess, Slot
 from geometry.shape.cut_edges import drawn
-from loads import Reactions
 from pinbase.records import in_units
 from pinstress.analysis.assessed.situations import factor_assumption
 from pinstress.analysis.cache import REQUIRED_PACKAGES
@@ -234,9 +233,6 @@ def _completed(
     time = row.maximum.time
     here = case if time is None else at_time(case, time)
     assert here is not None
-    reactions = here.reactions
-    if time is not None and case.moving is not None:  # as of stress and checks, also at a jump
-        reactions = case.moving.at(np.array([time]))[0]
     positions = drive_position(study, here) if row.location else None
     published_stress, published_factor = published.peaks.get((row.pin, row.case), (None, None))
     return replace(
@@ -245,7 +241,7 @@ def _completed(
         left_out=task.left_out[row.case],
         position=None if positions is None else float(positions[0]),
         position_unit=position_unit(study, here),
-        loads=_governing_loads(task, reactions),
+        loads=_governing_loads(task, case, here, time),
         shank_angles=tuple(_shank_angles(task, row.case, time)),
         exponent=section_exponent(task.pin, row.places.section if row.places else None),
         depends_on=depends_on(row),
@@ -271,7 +267,17 @@ def _held(task: Task, joint: JointResult | None) -> str:
     return ", ".join(task.clamps) or "nothing (loads in balance)"
 
 
-def _governing_loads(task: Task, r: Reactions) -> tuple[GoverningLoad, ...]:
+def _governing_loads(
+    task: Task, case: CaseLoads, here: CaseLoads, time: float | None
+) -> tuple[GoverningLoad, ...]:
+    """Return the loads of which stress and checks are, also where forces jump; none of a motion
+    without a solution, of which no instant governs.
+    """
+    r = here.reactions
+    if time is not None and case.moving is not None:
+        r = case.moving.at(np.array([time]))[0]
+    elif r.times is not None and time is None:
+        return ()
     return tuple(
         GoverningLoad(name, r.bodies[c], r.forces[0, c], r.moments[0, c])
         for c, name in enumerate(r.connections)

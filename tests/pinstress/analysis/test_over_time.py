@@ -147,3 +147,10 @@ def test_the_force_beside_a_maximum_is_that_before_its_mechanism_rests() -> None
     assert peak.force == pytest.approx(rod, rel=1e-6)
     bearing = next(m for m in row.margins if m.method == "bearing" and m.demand)
     assert bearing.demand == pytest.approx(rod / (1.0 * 1.5), rel=1e-6)
+
+
+def test_no_force_of_the_start_stands_beside_a_motion_without_a_solution() -> None:
+    """It was shown as that of the instant which governs."""
+    loose = PRESS.replace('clamp = ["start"]\n', "")
+    (row,) = run(parse_study(STUDY, loose)).pins
+    assert (row.verdict, row.time, row.loads) == ("rigid", None, ())
