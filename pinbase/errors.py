@@ -15,6 +15,7 @@ SI_UNITS = {
     "mass": "kg",
     "force": "N",
     "moment": "N m",
+    "inertia": "kg m^2",
     "energy": "J",
 }
 

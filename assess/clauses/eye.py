@@ -49,8 +49,9 @@ class PlateEye:
     def __post_init__(self) -> None:
         if not (0.0 < self.pin <= self.hole < min(self.width, 2.0 * self.e)):
             raise ArgumentError(
-                f"the eye of a lug must be wider than its bore of {self.hole:g} m, not "
-                f"{self.width:g} m, and reach further than its radius, not {self.e:g} m",
+                "the eye of a lug must be wider than its bore, not "
+                f"{self.width / self.hole:.4g} of it, and reach further than its radius, not "
+                f"{2.0 * self.e / self.hole:.4g} of it",
                 "out-of-range",
             )
 

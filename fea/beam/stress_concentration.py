@@ -111,14 +111,14 @@ def notches(pin: Pin) -> tuple[Notch, ...]:
     for i, (left, right) in enumerate(zip(pin.segments, pin.segments[1:], strict=False)):
         on = i if left.walls[1] < right.walls[0] else i + 1
         if left.bores[1] != right.bore:
-            why = f"a step of the bore at z = {pin.stations[i + 1]:.4g} m"
+            why = f"a step of the bore between segments {i + 1} and {i + 2}"
             out.append(Notch(pin.stations[i + 1], on, None, None, None, why))
         if left.diameters[1] != right.diameter:
             out.append(_shoulder(pin, i))
     for i, s in enumerate(pin.segments):
         if s.walls[0] != s.walls[1]:
             middle = pin.stations[i] + s.length / 2.0
-            out.append(Notch(middle, i, None, None, None, f"a cone at z = {middle:.4g} m"))
+            out.append(Notch(middle, i, None, None, None, f"a cone in segment {i + 1}"))
     return tuple(out)
 
 
@@ -127,7 +127,7 @@ def _shoulder(pin: Pin, i: int) -> Notch:
     left, right = pin.segments[i], pin.segments[i + 1]
     on = i if left.diameters[1] < right.diameter else i + 1
     thin, thick = sorted((left.diameters[1], right.diameter))
-    rho, where = pin.fillet_at(i), f"at z = {pin.stations[i + 1]:.4g} m"
+    rho, where = pin.fillet_at(i), f"between segments {i + 1} and {i + 2}"
     away = (1.0 - PEAK_OFFSET) * rho
     z = pin.stations[i + 1] + (away if on == i + 1 else -away)
     if rho == 0.0:

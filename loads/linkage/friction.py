@@ -52,7 +52,7 @@ class JammingError(LinkageError):
         )
         where = f"friction jams {sliders or 'a slider'}{' at ' + when if when else ''}"
         super().__init__(
-            f"{where}: {what} (friction adds {grip:.3g} N to each newton of contact force; it "
+            f"{where}: {what} (friction raises contact forces by {grip:.3g} of themselves; it "
             "slides below 1); reduce the friction, lengthen the bearing, drive from the other end, "
             "or avoid this part of the motion",
             "friction-jams",

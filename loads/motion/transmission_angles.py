@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from loads.linkage.linkage import Linkage
-from loads.linkage.parts import GROUND, Body, Joint, Slider
+from loads.linkage.parts import GROUND, Body, Joint, Slider, Turn
 from loads.motion.equations import drive_side
 from loads.motion.motion import Motion
 from loads.motion.planar_equations import is_particle
@@ -25,9 +25,11 @@ MIN_BODY_SPEED = 1e-9  # of the fastest body: a slower one is at rest
 def transmission_angles(motion: Motion) -> dict[tuple[str, str], Floats]:
     """Transmission angles, (T,) rad, by link and joint.
 
-    They are of links with two joints, neither of them at a body at rest. Drives are taken one at a
-    time with the others locked; where several move a link, the angle is the smallest. It depends on
-    the direction of velocities only, so it is also defined while the linkage is at rest.
+    They are of links with two joints, neither of them at a body at rest, where the drive moves what
+    is at a joint through the link alone: at an angle of 0 that can move without the drive. Drives
+    are taken one at a time with the others locked; where several move a link, the angle is the
+    smallest. It depends on the direction of velocities only, so it is also defined while the
+    linkage is at rest.
     """
     linkage, loops = motion.linkage, motion.loops
     out: dict[tuple[str, str], Floats] = {}
@@ -41,9 +43,7 @@ def transmission_angles(motion: Motion) -> dict[tuple[str, str], Floats]:
         for body, ends in _links(motion, rates, still).items():
             angles = _angles(motion, rates, body, ends)
             for joint, angle in zip(ends, angles, strict=True):
-                other = next(j for j in ends if j != joint)
-                either = _bodies(joint), _bodies(other)
-                if moves_end(beside, *either, still | {body}, drivers):
+                if not reached(beside, _bodies(joint), still | {body}, drivers):
                     key = (body, joint.name)
                     out[key] = np.minimum(out[key], angle) if key in out else angle
     return out
@@ -79,15 +79,20 @@ def _links(motion: Motion, rates: Floats, still: set[str]) -> dict[str, tuple[Jo
     """Links with a transmission angle, and their two joints.
 
     They are the moving bodies that have exactly two joints, slide on nothing and are welded to
-    nothing, whose joints touch no body at rest, and which turn relative to another body at both
+    nothing, on which neither teeth nor drives act, so that only a force along them holds what they
+    move, whose joints touch no body at rest, and which turn relative to another body at both
     joints.
     """
     linkage, out = motion.linkage, {}
+    held = {body for teeth in linkage.teeth for body in teeth.bodies}
+    held |= {
+        b for drive in linkage.drives if isinstance(drive, Turn) for b in (drive.base, drive.body)
+    }
     for body in linkage.bodies:
         joints = linkage.joints_on(body.name)
         slides = any(body.name in (s.base, s.moving) for s in linkage.sliders)
         fixed = slides or len(linkage.rigid[body.name]) > 1
-        if body.name in still or len(joints) != 2 or fixed:
+        if body.name in still | held or len(joints) != 2 or fixed:
             continue
         if all(not set(_bodies(j)) & still and _turns_at(motion, rates, body, j) for j in joints):
             out[body.name] = (joints[0], joints[1])
@@ -113,30 +118,16 @@ def _spin(motion: Motion, rates: Floats, body: str) -> Floats:
     return rates[:, f - 1] if f else np.zeros(len(rates))
 
 
-def moves_end(
-    beside: Mapping[str, set[str]],
-    end: Sequence[str],
-    other: Sequence[str],
-    blocked: set[str],
-    drivers: tuple[str, str],
-) -> bool:
-    """Whether a link moves the bodies at an end.
-
-    It does if the drive does not reach them in another way, or reaches both ends of the link.
-    beside: the bodies that are connected with each body.
-    end, other: the bodies at the two ends. blocked: the link, and the bodies at rest.
-    """
-    reached = (_reached(beside, bodies, blocked, drivers) for bodies in (end, other))
-    return not next(reached) or next(reached)
-
-
-def _reached(
+def reached(
     beside: Mapping[str, set[str]],
     bodies: Sequence[str],
     blocked: set[str],
     drivers: tuple[str, str],
 ) -> bool:
-    """Whether the drive reaches any of the bodies without passing through blocked ones."""
+    """Whether the drive reaches any of the bodies without passing through blocked ones.
+
+    beside: the bodies that are connected with each body. blocked: a link, and the bodies at rest.
+    """
     seen, queue = set(blocked), [*bodies]
     while queue:
         body = queue.pop()

@@ -327,9 +327,9 @@ def _body_contradictions(body: RigidBody) -> Iterator[Contradiction]:
         yield f"body {body.name}: its inertia is not symmetric", "bad-inertia", at
     elif moments[0] < -slack or moments[0] + moments[1] < moments[2] - slack:
         yield (
-            f"body {body.name}: no distribution of mass has this inertia (principal moments "
-            f"{', '.join(f'{m:.4g}' for m in moments)} kg m^2: each is at most the sum of the "
-            "other two, and none is negative)",
+            f"body {body.name}: no distribution of mass has this inertia (principal moments in "
+            f"the ratio {' : '.join(f'{m / largest:.4g}' for m in moments)}; each is at most the "
+            "sum of the other two, and none is negative)",
             "bad-inertia",
             at,
         )

@@ -19,7 +19,7 @@ import numpy as np
 
 from loads.linkage.parts import GROUND
 from loads.motion.equations import drive_side
-from loads.motion.transmission_angles import MIN_BODY_SPEED, moves_end, neighbours
+from loads.motion.transmission_angles import MIN_BODY_SPEED, neighbours, reached
 from loads.space.conditions import Rates, axes_of
 from loads.space.kinds import Kind
 from loads.space.linkage import (
@@ -81,9 +81,7 @@ def transmission_angles_in_space(motion: SpaceMotion) -> dict[tuple[str, str], F
                 continue
             for end, other in (ends, ends[::-1]):
                 angle = _angle(motion, rates, link, end, other)
-                if angle is None or not moves_end(
-                    beside, end.bodies, other.bodies, still | {link}, (first, second)
-                ):
+                if angle is None or reached(beside, end.bodies, still | {link}, (first, second)):
                     continue
                 key = (link, end.joint.name)
                 out[key] = np.minimum(out[key], angle) if key in out else angle
@@ -110,9 +108,15 @@ def _links(
         for piece in {pieces[joint.base], pieces[joint.moving]}:
             if joint.kind != "fixed":
                 on.setdefault(piece, []).append(joint)
-    toothed = {pieces[body] for _, _, teeth in linkage.teeth for body in teeth.bodies}
+    held = {pieces[body] for _, _, teeth in linkage.teeth for body in teeth.bodies}
+    held |= {
+        pieces[body]
+        for drive in linkage.drives
+        if isinstance(drive, BodyAngle | JointAngle)
+        for body in _moved(linkage, drive)
+    }
     for link, joints in on.items():
-        if link == GROUND or link in toothed:
+        if link == GROUND or link in held:
             continue
         ends = list[list[SpaceJoint]]()
         for joint in joints:

@@ -24,7 +24,7 @@ from fea.support.lugs.lug import LugRange
 from fea.support.records import JointRange, JointResult
 from geometry import Pin
 from pinbase.arrays import Floats
-from pinstress.analysis.gather.gather_landing import largest_load, range_of
+from pinstress.analysis.gather.gather_landing import range_of
 from pinstress.study.model.impulses import ImpulseLoads
 from pinstress.study.model.tasks import Task
 from reports.data.row import LandingRange, PinResult
@@ -157,10 +157,9 @@ def scaled_row(
     assert peak.max_von_mises is not None
     by = peak.max_von_mises / (row.max_von_mises or 1.0)
     joint = now.joint and _with_range(now.joint, row.joint, by, ratios["beneath"])
-    landing, strength = None, task.material.yield_strength
+    landing = None
     if row.landing is not None and over is not None:
-        most = largest_load(task, row.case, task.ranges[row.case])
-        landing = replace(_landing(row.landing, over, peak, strength), largest_load=most)
+        landing = _landing(row.landing, over, peak, task)
     return PinResult(peak, joint=joint, landing=landing)
 
 
@@ -308,9 +307,7 @@ def _with_range(
     return replace(joint, range=scaled, remark=RANGE_REMARK)
 
 
-def _landing(
-    full: LandingRange, over: ImpulseLoads, peak: Maximum, strength: float | None
-) -> LandingRange:
+def _landing(full: LandingRange, over: ImpulseLoads, peak: Maximum, task: Task) -> LandingRange:
     """Return the results over a landing's ranges: the stress over the force of the study as it is,
     by the force, times a factor that gives the maximum at the nominal force.
 
@@ -324,4 +321,4 @@ def _landing(
 
     assert peak.max_von_mises is not None
     maxima = at(over.forces) * (peak.max_von_mises / float(at(np.array(over.nominal_force))))
-    return range_of(peak, over, maxima, strength)
+    return range_of(task, peak, over, maxima, task.material.yield_strength)

@@ -92,7 +92,7 @@ class LandingRange:
     safety_factor: (P,), None without a yield strength.
     nominal, nominal_pulse: of the case itself. verdict: of the case, valid for all points.
     spread: for a `singular` verdict the ends of the interval of the factor, over the factor.
-    largest_load: the largest ratio of the force on a band at any point to that in the case.
+    largest_load: the most by which a demand grows, as a force on a band or the stress, at least 1.
     """
 
     pin: str
@@ -116,7 +116,7 @@ class SharingRange:
     """The range of a maximum over the stiffness of links that share what statics leaves open.
 
     max_von_mises: its ends. lowest, highest: what is different there; empty where it is the row's.
-    largest_load: the largest ratio of a demand to that in the case, as of a landing's range.
+    largest_load: as of a landing's range.
     """
 
     max_von_mises: tuple[Stress, Stress]
@@ -191,15 +191,11 @@ class PinResult:
 
     @property
     def most_loads(self) -> dict[str, float]:
-        """The most that a demand grows over the ranges of a landing and of the stiffness of links:
-        as the largest load, or the stress, which forces that nearly cancel raise more.
+        """The most that a demand grows over the ranges of a landing and of the stiffness of
+        links.
         """
-        over, stress = {"landing": self.landing, "links": self.sharing}, self.max_von_mises
-        return {
-            what: max(x.largest_load, float(max(x.max_von_mises)) / stress if stress else 1.0, 1.0)
-            for what, x in over.items()
-            if x is not None
-        }
+        over = {"landing": self.landing, "links": self.sharing}
+        return {what: x.largest_load for what, x in over.items() if x is not None}
 
     def __repr__(self) -> str:
         """The row in brief: <E landing: fails, factor 1.15 ± 1.8 %, 195,000 psi at z = 6.26 in>."""

@@ -75,9 +75,9 @@ def remarks(results: Results) -> list[str]:
         length = results.units.length
         where = "deg" if d.kind == "rotary" else length
         power = f"{results.units.force} {length}/{results.units.time}"
-        if d.time is None:
+        if d.time is None:  # of a drive, or of a stop or lock that holds
             lines.append(
-                f"{d.case}: drive {d.name}, {what} {engineering(d.force[0])} {unit}, power "
+                f"{d.case}: {what} of {d.name} {engineering(d.force[0])} {unit}, power "
                 f"{engineering(d.power[0])} {power}, position {engineering(d.position[0])} {where}"
             )
             continue

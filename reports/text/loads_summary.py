@@ -10,7 +10,7 @@ from reports.data.motion import MIN_TRANSMISSION_ANGLE, LinkageMotion, SpacePost
 from reports.data.results import Results
 from reports.format.files import markdown
 from reports.format.numbers import engineering, short
-from reports.tables.column import Column, Grid, Table, read_only, texts
+from reports.tables.column import Column, Grid, Table, read_only
 from reports.tables.loads.drop import drop_words, impulse_grid, peak_grid
 from reports.text.loads import least_angle, unresolved
 
@@ -87,12 +87,12 @@ def _drives(drives: list[DriveTable], results: Results) -> Grid:
     def place(d: DriveTable, value: float) -> str:
         return f"{engineering(value)} {'°' if d.kind == 'rotary' else length}"
 
-    power = f"power [{force}·{length}/{time}]"
+    power, timed = f"power [{force}·{length}/{time}]", drives[0].time is not None
     columns: list[Column[DriveTable]] = [
-        *texts("drive=name"),
+        read_only("drive" if timed else "drive or stop", lambda d: d.name, numeric=False),
         read_only("quantity", quantity, numeric=False),
     ]
-    if drives[0].time is not None:
+    if timed:
         columns += [
             read_only("mean", lambda d: d.mean),
             read_only("RMS", lambda d: d.rms),

@@ -73,6 +73,16 @@ def test_summary_warns_of_poor_transmission(turning: Results, tmp_path: Path) ->
     assert "20.0°, rod at B at 3 s, below 40°" in text
 
 
+def test_what_holds_at_rest_is_not_called_a_drive(turning: Results, tmp_path: Path) -> None:
+    """A stop was: "drive downlock"."""
+    lock = replace(turning.drive[0], name="downlock", time=None)
+    table = replace(turning.reactions[0], case=lock.case, times=None, position=None)
+    held = replace(turning, drive=(lock,), motion=(), reactions=(table,))
+    assert any("torque of downlock " in line for line in remarks(held))
+    assert not any("drive downlock" in line for line in remarks(held))
+    assert "| drive or stop |" in summary(held, tmp_path)
+
+
 def test_an_angle_that_is_too_small_is_not_rounded_to_the_limit(turning: Results) -> None:
     """It said "is 40 deg; below 40 deg forces increase rapidly"."""
     motion = replace(turning.motion[0], transmission={"rod at B": np.array([80.0, 39.97])})

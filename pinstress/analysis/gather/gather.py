@@ -241,7 +241,7 @@ def _completed(
         left_out=task.left_out[row.case],
         position=None if positions is None else float(positions[0]),
         position_unit=position_unit(study, here),
-        loads=_governing_loads(task, here),
+        loads=_governing_loads(task, case, here, time),
         shank_angles=tuple(_shank_angles(task, row.case, time)),
         exponent=section_exponent(task.pin, row.places.section if row.places else None),
         depends_on=depends_on(row),
@@ -267,8 +267,17 @@ def _held(task: Task, joint: JointResult | None) -> str:
     return ", ".join(task.clamps) or "nothing (loads in balance)"
 
 
-def _governing_loads(task: Task, here: CaseLoads) -> tuple[GoverningLoad, ...]:
+def _governing_loads(
+    task: Task, case: CaseLoads, here: CaseLoads, time: float | None
+) -> tuple[GoverningLoad, ...]:
+    """Return the loads of which stress and checks are, also where forces jump; none of a motion
+    without a solution, of which no instant governs.
+    """
     r = here.reactions
+    if time is not None and case.moving is not None:
+        r = case.moving.at(np.array([time]))[0]
+    elif r.times is not None and time is None:
+        return ()
     return tuple(
         GoverningLoad(name, r.bodies[c], r.forces[0, c], r.moments[0, c])
         for c, name in enumerate(r.connections)

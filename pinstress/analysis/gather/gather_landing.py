@@ -33,24 +33,25 @@ def landing_range(
         return None
     maxima = _maxima(task, solution, task.ranges[case])
     strength = solution.peak.yield_strength(task.material.yield_strength)
-    nominal = range_of(solution.peak, over, maxima, strength)
-    most = largest_load(task, case, task.ranges[case])
-    return replace(nominal, spread=_spread(solution.peak), largest_load=most)
+    nominal = range_of(task, solution.peak, over, maxima, strength)
+    return replace(nominal, spread=_spread(solution.peak))
 
 
-def largest_load(task: Task, case: str, ranged: PinLoads) -> float:
-    """Return the largest ratio of the force on a band over ranges to that of the case.
+def _largest_load(task: Task, peak: Maximum, ranged: PinLoads, maxima: Floats) -> float:
+    """Return the most by which a demand grows over ranges: as the force on a band, or as the
+    stress, which forces that nearly cancel raise more, and moments, of which bands have many.
 
     Bands with next to no load are left out: a check of theirs governs nothing.
     """
-    nominal = next(x for x in task.loads if x.case == case)
+    grown = max(float(maxima.max()) / peak.max_von_mises if peak.max_von_mises else 1.0, 1.0)
+    nominal = next(x for x in task.loads if x.case == peak.case)
     over, own = (
         np.linalg.norm(x.forces, axis=-1).max(axis=0, initial=0.0) for x in (ranged, nominal)
     )
     if not (loaded := over > NEGLIGIBLE_LOAD * over.max(initial=0.0)).any():
-        return 1.0
+        return grown
     least = NEGLIGIBLE_LOAD * over.max()  # a band may be loaded by the range alone
-    return float((over[loaded] / np.maximum(own[loaded], least)).max())
+    return max(grown, float((over[loaded] / np.maximum(own[loaded], least)).max()))
 
 
 def sharing_range(task: Task, solution: Solution) -> SharingRange | None:
@@ -61,19 +62,19 @@ def sharing_range(task: Task, solution: Solution) -> SharingRange | None:
     if over is None or solution.answer is None or peak is None:
         return None
     stress: dict[str, float] = {}
-    for what, value in zip(over.what, _maxima(task, solution, over.loads).tolist(), strict=True):
+    maxima = _maxima(task, solution, over.loads)
+    for what, value in zip(over.what, maxima.tolist(), strict=True):
         stress[what] = max(stress.get(what, 0.0), value)
     low, high = min(stress, key=stress.__getitem__), max(stress, key=stress.__getitem__)
     ends = min(peak, stress[low]), max(peak, stress[high])
-    # Links share moments, too, of which bands have many: the stress stands for them.
-    most = max(largest_load(task, solution.peak.case, over.loads), ends[1] / peak if peak else 1.0)
+    most = _largest_load(task, solution.peak, over.loads, maxima)
     return SharingRange(
         ends, low if stress[low] < peak else "", high if stress[high] > peak else "", most
     )
 
 
 def range_of(
-    peak: Maximum, over: ImpulseLoads, maxima: Floats, strength: float | None
+    task: Task, peak: Maximum, over: ImpulseLoads, maxima: Floats, strength: float | None
 ) -> LandingRange:
     """Return the results over a landing's ranges, without a spread of the joint.
 
@@ -92,6 +93,7 @@ def range_of(
         nominal_pulse=over.nominal_pulse,
         verdict=peak.verdict,
         error=(peak.error_estimate or 0.0) / (peak.max_von_mises or 1.0),
+        largest_load=_largest_load(task, peak, task.ranges[peak.case], maxima),
     )
 
 

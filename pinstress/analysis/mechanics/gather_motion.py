@@ -45,6 +45,7 @@ def linkage_motion(study: Study, name: str, case: CaseLoads) -> LinkageMotion:
     assert dynamics is not None
     motion, linkage = dynamics.motion, dynamics.motion.linkage
     timed = dynamics.reactions.times is not None
+    held = getattr(study.table.case[name], "hold", None)  # its drives carry nothing, as in space
     bodies = [b.name for b in linkage.bodies]
     centre, velocity, acceleration = (pairs(z[:, : len(bodies)]) for z in motion.centres)
     joints = list(motion.joints())
@@ -75,7 +76,7 @@ def linkage_motion(study: Study, name: str, case: CaseLoads) -> LinkageMotion:
         ),
         transmission={
             f"{link} at {joint}": np.degrees(angle)
-            for (link, joint), angle in transmission_angles(motion).items()
+            for (link, joint), angle in ({} if held else transmission_angles(motion)).items()
         },
         condition=motion.condition,
         shaking_force=force,

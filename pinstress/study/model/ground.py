@@ -19,6 +19,7 @@ from loads.landing.requirements import MAX_TYRE_FRICTION, GroundRule
 from loads.space.acting import SpaceForce
 from loads.space.linkage import SpaceLinkage, Vector
 from loads.space.out_of_plane import SideLoad
+from pinbase.errors import NumberInSI
 from pinbase.keys import key_part
 from pinstress.study.model.landing import drop, fallen, place, still
 from pinstress.study.model.mechanism.sideways import axle_height
@@ -201,11 +202,12 @@ def _with_spin(
     drag = spin_up_drag(wheel.inertia, wheel.radius, wheel.speed, reference, wheel.time)
     if drag >= MAX_TYRE_FRICTION * reference:
         return rule, f"The spin-up drag sqrt(2 I v n F / t) / r is more: it is {most}."
-    system = study.system
-    shown = (
-        f"I = {wheel.inertia:.4g} kg m^2, v = {wheel.speed:.4g} m/s, n = {MAX_TYRE_FRICTION:g}, "
-        f"t = {wheel.time:.4g} s, r = {wheel.radius / system.factor('length'):.4g} {system.length}"
+    inertia, speed, radius = (
+        study.system.told(NumberInSI(getattr(wheel, key), dimension))
+        for key, dimension in (("inertia", "inertia"), ("speed", "velocity"), ("radius", "length"))
     )
+    shown = f"I = {inertia}, v = {speed}, n = {MAX_TYRE_FRICTION:g}"
+    shown += f", t = {wheel.time:.4g} s, r = {radius}"
     sign = 1.0 if rule.drag > 0.0 else -1.0
     part = sign * drag / reference
     return replace(rule, drag=part), f"Spin-up drag sqrt(2 I v n F / t) / r with {shown}."

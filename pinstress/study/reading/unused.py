@@ -8,10 +8,12 @@ from collections.abc import Iterator
 from math import inf
 
 from loads.landing.requirements import DROP_RULES, required_velocity
+from pinbase.errors import NumberInSI
 from pinbase.keys import key_part, lug_key
 from pinstress.study.schema.landing import DropCase
 from pinstress.study.schema.lugs import LugTable
 from pinstress.study.schema.tables import StudyTable
+from pinstress.study.schema.units import UNIT_SYSTEMS, UnitSystem
 
 VELOCITY_ROUND_OFF = 1e-6  # of a converted velocity, or lift
 
@@ -126,7 +128,7 @@ def _of_drops(table: StudyTable) -> Iterator[str]:
     for name, case in drops.items():
         key = f"case.{key_part(name)}"
         if case.rule is not None:
-            yield from _short_of_rule(key, case, case.rule)
+            yield from _short_of_rule(key, case, case.rule, UNIT_SYSTEMS[table.units])
         if case.wing_loading is not None and case.rule != "23.473":
             yield (
                 f'{key}.wing_loading: has no effect, because only the rule "23.473" has it; choose '
@@ -146,14 +148,15 @@ def _of_drops(table: StudyTable) -> Iterator[str]:
                 )
 
 
-def _short_of_rule(key: str, case: DropCase, rule: str) -> Iterator[str]:
+def _short_of_rule(key: str, case: DropCase, rule: str, system: UnitSystem) -> Iterator[str]:
     """Yield a sentence on a velocity and a lift that a drop's rule does not allow."""
     if rule != "23.473" or case.wing_loading is not None:
         least = required_velocity(rule, case.wing_loading) * (1.0 - VELOCITY_ROUND_OFF)
         if case.velocity is not None and case.velocity < least:
+            given, asked = (system.told(NumberInSI(v, "velocity")) for v in (case.velocity, least))
             yield (
-                f"{key}.velocity: {case.velocity:.4g} m/s is less than the {least:.4g} m/s of rule "
-                f'"{rule}"; give that at least, or remove one of both'
+                f'{key}.velocity: {given} is less than the {asked} of rule "{rule}"; give that at '
+                "least, or remove one of both"
             )
     most = DROP_RULES[rule].lift
     if case.lift is not None and case.lift > most * (1.0 + VELOCITY_ROUND_OFF):

@@ -121,9 +121,12 @@ class UnitSystem:
         return " ".join(names.get(part, part) for part in dimension.split())
 
     def told(self, number: NumberInSI) -> str:
-        """Return a number of a message with its unit in this system, a mass as on scales."""
+        """Return a number of a message with its unit in this system, masses as on scales."""
+        mass, kilogram = self.scales
         if number.dimension == "mass":
-            unit, factor = self.scales
+            unit, factor = mass, kilogram
+        elif number.dimension == "inertia":
+            unit, factor = f"{mass} {self.length}^2", kilogram * self.factor("area")
         else:
             unit, factor = self.unit(number.dimension), self.factor(number.dimension)
         return f"{number.value / factor:.4g} {unit}"

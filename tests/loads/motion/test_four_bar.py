@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from loads import (
     GROUND,
+    Applied,
     Body,
     Connection,
     ConstantDrive,
@@ -219,6 +220,30 @@ def toggle() -> float:
     """Crank angle at which coupler and rocker of a long-cranked four-bar are in line."""
     crank, ground, reach = 0.9, 1.0, 0.5 + 0.6
     return float(np.arccos((crank**2 + ground**2 - reach**2) / (2 * crank * ground)))
+
+
+@each(
+    ("driven", "poor"),
+    [
+        (Turn("crank", "crank", 0.0), True),
+        (Turn("hinge", "coupler", 0.0, "crank"), False),
+        (Turn("link", "coupler", 0.0), False),
+        (Turn("across", "rocker", 0.0, "crank"), False),
+    ],
+)
+def test_a_small_transmission_angle_is_told_where_forces_grow(driven: Turn, poor: bool) -> None:
+    """Near the crank's dead point, coupler and rocker in line to 1 deg: it takes 20 times the
+    largest load or more to hold them by the crank's drive. Others hold a load on the coupler and
+    one on the rocker with forces of their size, and had the same angle.
+    """
+    linkage = four_bar(1.0, 0.9, 0.5, 0.6, angle=toggle() - 1e-6, gravity=(0.0, 0.0))
+    linkage = replace(linkage, turns=(driven,), driven=(driven.name,))
+    motion = move(linkage, [StateDrive(0.0)], np.zeros(1))
+    loads = [Applied("coupler", (0.5, 0.9), (0.0, -1.0)), Applied("rocker", (0.9, 0.3), (1.0, 0.0))]
+    largest = motion_reactions("", motion, loads, timed=False).reactions.magnitudes.max()
+    angles = [*transmission_angles(motion).values()]
+    assert bool(largest > 20.0) == bool(angles) == poor
+    assert all(np.degrees(angle) < 1.0 for angle in angles)
 
 
 def test_a_dead_point_is_told_with_what_has_no_bound() -> None:

@@ -87,6 +87,14 @@ def test_one_section_gives_all_cases_and_moments_about_the_hinge_their_forces() 
         assert np.linalg.norm(forces["D"][:2]) == pytest.approx(abs(stay), abs=scale), name
 
 
+def test_a_note_on_the_drag_has_the_units_of_the_study() -> None:
+    """An inch study was told kg m^2 and m/s beside a radius in inches."""
+    wheel = {"inertia": "4000 lb*in^2", "radius": "14 in", "speed": "130 ft/s", "time": 0.15}
+    study = study_from({**leg(spin_up=wheel, reference="33700 lbf"), "units": "in-lbf-s"})
+    note = all_loads(study, ["main 25.473-spin-up"])["main 25.473-spin-up"].note
+    assert "I = 4000 lb in^2, v = 1560 in/s, n = 0.8, t = 0.15 s, r = 14 in" in note
+
+
 def test_without_a_wheel_the_drag_is_the_most_that_is_required() -> None:
     study = study_from(leg())
     loads = all_loads(study, ["main 25.473-spin-up"])["main 25.473-spin-up"]

@@ -149,7 +149,7 @@ STIFFNESS = 'stiffness = { value = "600 N/mm", provenance = "assumed" }\n'
 @each(
     ("old", "new", "key", "says"),
     [
-        ('body = "arm"', 'velocity = "2 m/s"\nbody = "arm"', "velocity", "2 m/s is less than the"),
+        ('body = "arm"', 'velocity = "2 m/s"\nbody = "arm"', "velocity", "2000 mm/s is less"),
         ('body = "arm"', 'lift = 0.9\nbody = "arm"', "lift", "0.9 of the weight is more"),
         ('rule = "23.473"', 'rule = "25.473-landing-weight"', "wing_loading", "has no effect"),
         (AT, "deflection = [0, 80]\nforce = [0, 18000]", "tyre.exponent", "has no effect"),
