@@ -123,9 +123,12 @@ def _settle_environment() -> None:
 
     One thread per numeric library; plots without windows; no pydantic plugins, for which it
     searches all installed packages. An invalid SOURCE_DATE_EPOCH is removed, because libraries fail
-    on it at import (our files contain no time).
+    on it at import (our files contain no time), and so is a width of no columns, which terminals
+    of unknown size state, because rich prints no table in it.
     """
     hold_threads()
+    if not os.environ.get("COLUMNS", "").strip("0"):
+        os.environ.pop("COLUMNS", None)
     os.environ["MPLBACKEND"] = "agg"
     os.environ["PYDANTIC_DISABLE_PLUGINS"] = "__all__"
     stated = os.environ.get(EPOCH_VARIABLE)

@@ -83,7 +83,8 @@ def replacing(directory: Path, mark: str = RESULTS_JSON) -> Iterator[Path]:
                 release = _claim(partial, directory)
             _recover(earlier, directory)
         except OSError as error:
-            raise cannot_write_out(directory.parent, error) from None
+            named = directory if error.errno == errno.ENAMETOOLONG else directory.parent
+            raise cannot_write_out(named, error) from None
         require_replaceable(directory, mark)
         try:
             yield partial

@@ -186,6 +186,14 @@ def test_a_file_where_a_folder_belongs_is_called_so(tmp_path: Path) -> None:
     assert (tmp_path / "out").read_text() == "a file"
 
 
+def test_a_name_that_is_too_long_is_named(tmp_path: Path) -> None:
+    """The folder around it was, whose name is short."""
+    why = r"--out: cannot write to .*/x{250} \(File name too long\)"
+    with pytest.raises(InputError, match=why), replacing(tmp_path / ("x" * 250)):
+        pass
+    assert not [*tmp_path.iterdir()]
+
+
 @pytest.mark.parametrize("jobs", ["1", "2"])
 def test_a_full_disk_is_told_and_nothing_is_written(earlier: Path, jobs: str) -> None:
     """No file may be larger than 2 kB, which is met first by the field's."""

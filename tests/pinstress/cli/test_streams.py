@@ -188,6 +188,18 @@ def test_what_libraries_read_from_the_environment_decides_nothing(tmp_path: Path
     assert (tmp_path / "out" / "study-loads" / "results.json").is_file()
 
 
+@each("columns", ["0", "00", ""])
+def test_a_terminal_of_unknown_width_gets_the_answer(columns: str, tmp_path: Path) -> None:
+    """COLUMNS=0 of a container or a serial line printed nothing, with status 0."""
+    printed = []
+    for stated in ("120", columns):
+        status, table, said = shell(tmp_path, ["loads", "study.toml"], COLUMNS=stated)
+        assert status == 0, said
+        printed.append(table)
+    assert "Connection" in printed[0]
+    assert printed[1] == printed[0]
+
+
 @each("epoch", ["abc", "-5", "9" * 20, "9" * 5000, "", "1700000000"])
 def test_a_time_that_is_none_is_removed_before_libraries_read_it(
     epoch: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
