@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 
@@ -14,21 +14,21 @@ from fea.lug.lug_load import LugLoad
 from fea.lug.lug_stress import (
     BoreStress,
     LugInPlane,
-    at_walls,
     bore_stresses,
 )
-from fea.lug.plane_fields import USUAL_AROUND
 from fea.lug.slipping import SlippingBushing
 from fea.lug.through_thickness import EyeStress, eye_stress
+from fea.support.contact.bending import SAME_FORCE
 from fea.support.contact.joint_changes import VariedPressures
 from fea.support.contact.pressed_cases import PressedCases
-from fea.support.contact.variations import ResolutionComparison
+from fea.support.contact.variations import varied_pressures
 from fea.support.lugs.lug import Lug
 from fea.support.records import LugStress
 from pinbase.arrays import Floats
 from pinbase.memo import Memo
 
 ANGLE_DECIMALS = 6  # of degrees, which are far fewer than a mesh resolves
+BENEATH = "beneath"  # the place at a bore on which the pin presses
 ALONG_FORCE = "shank along the largest force, in tension"
 
 
@@ -110,21 +110,19 @@ class _LoadedLug:
 
 
 def lug_stresses(
-    contact: PressedCases,
-    case: str,
-    angles: Mapping[str, ShankAngle],
-    over: ResolutionComparison | None,
-    memo: Memo,
+    contact: PressedCases, case: str, angles: Mapping[str, ShankAngle], varied: bool, memo: Memo
 ) -> tuple[LugStress, ...]:
     """The stress at the bores of all lugs that have a shank, in one case.
 
     angles: of shanks, by connection; a shank without one lies along the largest force.
-    over: the joint with its uncertain properties changed, at one instant.
+    varied: whether over the uncertain properties of the joint, too.
 
     Raises: ArgumentError for an impossible outline; MeshError, SolveError.
     """
     model, links = contact.model, contact.instants[case]
     waves, out = model.waves(contact.states(links)), list[LugStress]()
+    # A lug may be stressed most at another instant than the pin, at which the pin loads it little.
+    over = cache(lambda t: varied_pressures(model, contact.joined(links, t)))
     for rows, lug, ends in model.by_lug():
         if lug.shank is None:
             continue
@@ -139,39 +137,36 @@ def lug_stresses(
         angle = _along(force, len(force)) if given is None else given.at(links.times, len(force))
         assumed = ALONG_FORCE if given is None else given.assumed
         middles = band.z0 + 0.5 * (ends[1:] + ends[:-1])
-        ratios = {}
-        if over is not None and over.pressures:
-            then = angle[:1] if given is None else given.at(over.links.times, 1)
-            ratios = _over_joint(loaded, over.pressures, then)
-        out += [
-            replace(
-                _record(at, stress, float(middles[stress.ring]), assumed),
-                over_joint=ratios.get(place, 1.0),
-            )
-            for place, (at, stress) in loaded.largest(waves, angle, links.times).items()
-        ]
+        for place, (at, stress) in loaded.largest(waves, angle, links.times).items():
+            ratio, t = 1.0, stress.instant
+            if varied and stress.place != BENEATH:
+                least = SAME_FORCE * float(np.linalg.norm(links.forces[t], axis=-1).max())
+                ratio = _over_joint(loaded, over(t), angle[[t]], least).get(place, 1.0)
+            record = _record(at, stress, float(middles[stress.ring]), assumed)
+            out.append(replace(record, over_joint=ratio))
     return tuple(out)
 
 
 def _over_joint(
-    loaded: _LoadedLug, pressures: Sequence[VariedPressures], angle: Floats
+    loaded: _LoadedLug, pressures: Sequence[VariedPressures], angle: Floats, least: float
 ) -> dict[tuple[str, str], float]:
-    """The largest stress by wall and place under any of some pressures, over that under the first
-    ones; not of contact with the pin.
+    """The largest stress with its error, by wall and place, under any of some pressures, over that
+    under the first ones; not of contact with the pin.
+
+    least: a force, N, that is not round-off, which touches nothing in a clearance.
     """
 
     def sizes(joint: VariedPressures) -> dict[tuple[str, str], float]:
+        if np.linalg.norm(loaded.force(joint.waves)) <= least:
+            return {}
         # Lugs that are stiffer, as other links than theirs would make them, are of the same metal.
         (loose,) = (x.clearance for x in joint.lugs if x.connection == loaded.lug.connection)
         load, largest = loaded.load(joint.waves, angle, None), dict[tuple[str, str], float]()
         for _, bonded, slipping in loaded.planes(loose):
-            walls = at_walls(bonded(around=USUAL_AROUND), loaded.eye, load)
-            if slipping is not None:
-                walls += at_walls(slipping(around=USUAL_AROUND), loaded.eye, load)
-            for x in walls:
+            for x in bore_stresses(bonded, loaded.eye, load, slipping):
                 place = x.wall, x.place
-                largest[place] = max(largest.get(place, 0.0), x.von_mises)
-        return {place: size for place, size in largest.items() if place[1] != "beneath"}
+                largest[place] = max(largest.get(place, 0.0), x.von_mises + x.error)
+        return {place: size for place, size in largest.items() if place[1] != BENEATH}
 
     given, *varied = map(sizes, pressures)
     return {

@@ -180,8 +180,8 @@ class LugStress:
     the two, and the larger stress counts. other_interface: the stress with the other one.
     interference: of a bushing whose interference has a range, that of the largest stress, at the
     temperature of the study's dimensions.
-    over_joint: the largest stress over the uncertain properties of the joint, over that of the
-    joint as given.
+    over_joint: the largest stress with its error over the uncertain properties of the joint, over
+    that of the joint as given.
     """
 
     connection: str

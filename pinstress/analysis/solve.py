@@ -270,9 +270,8 @@ def _in_lugs(
         if joint is not None and isinstance(s.held, HeldContact) and not s.held.alone:
             tell(f"pin {task.pin.name}, stress of its lugs")
             try:
-                shanks, compared = task.shanks.get(case, {}), s.held.compared.get(case)
-                over = None if compared is None else compared.row
-                stress = lug_stresses(s.held.contact, case, shanks, over, memo)
+                shanks, varied = task.shanks.get(case, {}), joint.range is not None
+                stress = lug_stresses(s.held.contact, case, shanks, varied, memo)
                 joint = replace(joint, lugs=stress)
             except ArithmeticError as error:  # the pin's stress stands without that of its lugs
                 remark = f"no stress of the lugs: {error}"

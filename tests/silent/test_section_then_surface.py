@@ -10,7 +10,8 @@ from assess.judgement import DEPENDS
 from fea.support.records import FRICTION, JointRange, Variation
 from pinstress.analysis.results import RunResults
 from pinstress.study.reading.in_python import study_from
-from tests.silent.test_checks_over_the_joint import TEXT, TIGHT, solved
+from reports.data.row import PinResult
+from tests.silent.test_checks_over_the_joint import SHANK, TEXT, TIGHT, solved
 from tests.support.pins.remembered import remembered
 
 SHORT = """profile = [
@@ -110,15 +111,14 @@ def test_friction_multiplies_what_a_loose_joint_adds() -> None:
     assert joint.growth(1.0) == joint.across
 
 
-def ranges(
-    tmp_path: Path,
-    joint: str,
-    instants: dict[str, tuple[float, float, float]],
-    *swaps: tuple[str, str],
-) -> tuple[dict[str, str], dict[str, float]]:
-    """What governs, and the upper end of the range over the joint, of a case with two instants,
-    "both", and of each as a case of its own.
-    """
+Instants = dict[str, tuple[float, float, float]]
+SHEAR_THEN_BENT: Instants = {"shear": (25e3, 25e3, 0.0), "bent": (21e3, 42e3, 21e3)}
+
+
+def rows_of(
+    tmp_path: Path, joint: str, instants: Instants, *swaps: tuple[str, str]
+) -> dict[str, PinResult]:
+    """The rows of a case with two instants, "both", and of each as a case of its own."""
     rows = ["time,connection,fx,fy"]
     for t, (a, b, c) in enumerate(instants.values()):
         rows += [f"{t},LEFT,{-a},0", f"{t},EYE,{b},0", f"{t},RIGHT,{-c},0"]
@@ -130,10 +130,12 @@ def ranges(
     for name, (a, b, c) in instants.items():
         force = f"LEFT = [{-a}, 0], EYE = [{b}, 0], RIGHT = [{-c}, 0]"
         text += f'[case.{name}]\nkind = "given"\nforces = {{ {force} }}\n'
-    pins = remembered(study_from(text, tmp_path)).pins
-    over = {x.case: x.joint.range for x in pins if x.joint}
-    governs = {x.case: str(x.places.governs) for x in pins if x.places}
-    return governs, {case: x.max_von_mises[1] for case, x in over.items() if x}
+    return {x.case: x for x in remembered(study_from(text, tmp_path)).pins}
+
+
+def upper_ends(rows: dict[str, PinResult]) -> dict[str, float]:
+    over = {case: x.joint.range for case, x in rows.items() if x.joint}
+    return {case: x.max_von_mises[1] for case, x in over.items() if x}
 
 
 def test_the_joint_is_varied_where_the_surface_peaks_too(tmp_path: Path) -> None:
@@ -141,9 +143,11 @@ def test_the_joint_is_varied_where_the_surface_peaks_too(tmp_path: Path) -> None
     the second the surface is nearly as large, and grows more in soft lugs: it was not tried there.
     """
     soft = ALONE.replace("END", "0.0").replace("[1, 1]", "[0.5, 1]")
-    instants = {"shear": (25000.0, 25000.0, 0.0), "bent": (21000.0, 42000.0, 21000.0)}
-    clevis = SWAPS[0][0], CLEVIS
-    governs, high = ranges(tmp_path, soft, instants, clevis, SWAPS[3])
+    rows = rows_of(tmp_path, soft, SHEAR_THEN_BENT, (SWAPS[0][0], CLEVIS), SWAPS[3])
+    governs, high = (
+        {case: x.places and x.places.governs for case, x in rows.items()},
+        upper_ends(rows),
+    )
     assert governs == {"both": "section", "shear": "section", "bent": "surface"}
     assert high["bent"] > 1.1 * high["shear"]
     assert high["both"] == pytest.approx(high["bent"], rel=0.01)
@@ -158,8 +162,28 @@ def test_foundations_are_varied_where_another_instant_may_govern(tmp_path: Path)
         .replace("= 40,", "= 60,")
         .replace("= 0.6,", "= 5,")
     )
-    instants = {"shear": (25000.0, 25000.0, 0.0), "bent": (15000.0, 30000.0, 15000.0)}
+    instants = {"shear": (25e3, 25e3, 0.0), "bent": (15e3, 30e3, 15e3)}
     beam = "[analysis]", '[analysis]\njoints = "foundation"'
-    _, high = ranges(tmp_path, TIGHT, instants, (SWAPS[0][0], long), beam)
+    high = upper_ends(rows_of(tmp_path, TIGHT, instants, (SWAPS[0][0], long), beam))
     assert high["bent"] > 1.5 * high["shear"]
     assert high["both"] == pytest.approx(high["bent"], rel=1e-6)
+
+
+@pytest.mark.slow
+def test_lugs_are_varied_where_each_is_stressed_most(tmp_path: Path) -> None:
+    """RIGHT carries nothing while the pin is stressed most: a looser joint changed nothing of it.
+    Alone in that case, it had no stress, and neither had the other lugs.
+    """
+    loose = ALONE.replace("END", "0.05")
+    rows = rows_of(tmp_path, loose, SHEAR_THEN_BENT, (SWAPS[0][0], CLEVIS), SWAPS[3], SHANK)
+    found = {
+        case: {x.connection: x for x in row.joint.lugs if x.place == "free"}
+        for case, row in rows.items()
+        if row.joint
+    }
+    assert found["both"]["RIGHT"].time == 1.0
+    for case, lug in (("bent", "RIGHT"), ("shear", "LEFT"), ("shear", "EYE")):
+        ours, alone = found["both"][lug], found[case][lug]
+        ends = [x.over_joint * (x.max_von_mises + x.error_estimate) for x in (ours, alone)]
+        assert min(ends) > 1.5 * alone.max_von_mises
+        assert ends[0] == pytest.approx(ends[1], rel=0.1)

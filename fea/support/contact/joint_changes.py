@@ -86,11 +86,10 @@ class PressedJoint:
 class ChangedContact:
     """A contact under some changes of the joint.
 
-    over: the ratios of those that could be solved, and pressures. missing: the others, and why.
+    over: the ratios of those that could be solved. missing: the others, and why.
     """
 
     over: tuple[Variation, ...] = ()
-    pressures: tuple[VariedPressures, ...] = ()
     missing: tuple[str, ...] = ()
 
 
@@ -124,7 +123,7 @@ class JointChanges:
         are known.
         """
         model = self.model
-        every = self._joints(changes)
+        every = self.joints(changes)
         joints = [[joint for _, joint in solved] for solved, _ in every]
         parts = [(x.waves, VARIATION_MODE_TOLERANCE) for x in itertools.chain(*joints)]
         patterns = model.patterns(parts, known) if parts else known
@@ -139,8 +138,7 @@ class JointChanges:
         out = []
         for contact, like, (solved, missing) in zip(self.at, self.likes, every, strict=True):
             over = [self._variation(contact, like, *one, stress) for one in solved]
-            pressures = [VariedPressures(x.lugs or model.lugs, x.waves) for _, x in solved]
-            out.append(ChangedContact(tuple(over), tuple(pressures), tuple(missing)))
+            out.append(ChangedContact(tuple(over), tuple(missing)))
         return out, patterns
 
     def _variation(
@@ -165,7 +163,7 @@ class JointChanges:
             lugs=growth_of_lugs(other, own),
         )
 
-    def _joints(self, changes: Sequence[Sequence[JointChange]]) -> list[JointsUnderChanges]:
+    def joints(self, changes: Sequence[Sequence[JointChange]]) -> list[JointsUnderChanges]:
         """The joint of each contact under its changes, and those that could not be solved.
 
         Lugs that are free to tilt may leave a couple on the pin, and contact may be lost in a large

@@ -54,7 +54,6 @@ class ResolutionComparison:
     contact, relative to those of the joint as given.
     left_out: the variations that could not be solved, and why.
     half_angle: of contact where a lug presses most, rad (JointContact.half_angle).
-    pressures: of the joint as given and of each variation but those by friction, on the same cells.
     """
 
     stress: AtPlaces
@@ -63,7 +62,6 @@ class ResolutionComparison:
     over: tuple[Variation, ...]
     left_out: str = ""
     half_angle: float = 0.5 * math.pi
-    pressures: tuple[VariedPressures, ...] = ()
 
     def ratios(self, case: AtPlaces) -> tuple[Variation, ...]:
         """The variations relative to the largest stress of a case instead of that of the instant.
@@ -177,8 +175,7 @@ def compare(
     which = (True,) * len(at) if vary is None else vary(out)
     if any(which):
         ratios = _over_joint(model, at, requirement, patterns, likes, which)
-        pairs = zip(out, ratios, strict=True)
-        out = [replace(x, over=a, left_out=b, pressures=c) for x, (a, b, c) in pairs]
+        out = [replace(x, over=a, left_out=b) for x, (a, b) in zip(out, ratios, strict=True)]
     return tuple(out)
 
 
@@ -197,9 +194,8 @@ def _over_joint(
     known: PressureModes,
     likes: Sequence[LikeGiven],
     vary: Sequence[bool],
-) -> list[tuple[tuple[Variation, ...], str, tuple[VariedPressures, ...]]]:
-    """The variations of each contact, what is not included in them, and the pressures
-    (ResolutionComparison).
+) -> list[tuple[tuple[Variation, ...], str]]:
+    """The variations of each contact, and what is not included in them.
 
     likes: the joints as given on the same cells.
     vary: the contacts whose joint is varied.
@@ -209,11 +205,20 @@ def _over_joint(
     changed, known = joints.by([changes if so else () for so in vary], known)
     by_friction = _by_friction(model, requirement, known, at, vary)
     out = []
-    for (*_, given), contact, more in zip(likes, changed, by_friction, strict=True):
+    for contact, more in zip(changed, by_friction, strict=True):
         left_out = f"not included: {'; '.join(contact.missing)}" if contact.missing else ""
-        pressures = (VariedPressures(model.lugs, given.waves), *contact.pressures)
-        out.append(((*contact.over, *more), left_out, pressures))
+        out.append(((*contact.over, *more), left_out))
     return out
+
+
+def varied_pressures(model: ContactModel, contact: JointContact) -> tuple[VariedPressures, ...]:
+    """The pressures of a contact at one instant, and under each change of the joint but friction
+    that can be solved, all on the model's own cells.
+    """
+    joints = JointChanges(model, [contact], Requirement(), (), own_cells=True)
+    ((solved, _),) = joints.joints([tuple(joint_variations(model.whole, model.lugs))])
+    varied = (VariedPressures(x.lugs, x.waves) for _, x in solved)
+    return (VariedPressures(model.lugs, model.waves(contact.contact)), *varied)
 
 
 def _by_friction(
