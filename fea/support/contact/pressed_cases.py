@@ -81,11 +81,6 @@ class Compared:
     section: ResolutionComparison
 
     @property
-    def row(self) -> ResolutionComparison:
-        """The comparison at the place with the larger stress."""
-        return max(self.surface, self.section, key=lambda x: x.stress.row)
-
-    @property
     def _instants(self) -> tuple[ResolutionComparison, ...]:
         """Both, or one where surface and sections have their largest stress at one instant."""
         return (self.surface, self.section)[: 1 + (self.surface is not self.section)]
