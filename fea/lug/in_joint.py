@@ -137,13 +137,14 @@ def lug_stresses(
         angle = _along(force, len(force)) if given is None else given.at(links.times, len(force))
         assumed = ALONG_FORCE if given is None else given.assumed
         middles = band.z0 + 0.5 * (ends[1:] + ends[:-1])
+        ratios = dict[int, dict[tuple[str, str], float]]()
         for place, (at, stress) in loaded.largest(waves, angle, links.times).items():
-            ratio, t = 1.0, stress.instant
-            if varied and stress.place != BENEATH:
+            t = stress.instant
+            if varied and stress.place != BENEATH and t not in ratios:
                 least = SAME_FORCE * float(np.linalg.norm(links.forces[t], axis=-1).max())
-                ratio = _over_joint(loaded, over(t), angle[[t]], least).get(place, 1.0)
+                ratios[t] = _over_joint(loaded, over(t), angle[[t]], least)
             record = _record(at, stress, float(middles[stress.ring]), assumed)
-            out.append(replace(record, over_joint=ratio))
+            out.append(replace(record, over_joint=ratios.get(t, {}).get(place, 1.0)))
     return tuple(out)
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from assess.judgement import DEPENDS
+from fea.support.contact.variations import largest_of
 from fea.support.records import FRICTION, JointRange, Variation
 from pinstress.analysis.results import RunResults
 from pinstress.study.reading.in_python import study_from
@@ -187,3 +188,23 @@ def test_lugs_are_varied_where_each_is_stressed_most(tmp_path: Path) -> None:
         ends = [x.over_joint * (x.max_von_mises + x.error_estimate) for x in (ours, alone)]
         assert min(ends) > 1.5 * alone.max_von_mises
         assert ends[0] == pytest.approx(ends[1], rel=0.1)
+
+
+def test_the_largest_of_two_instants_has_the_interval_that_reaches_farthest() -> None:
+    """Without one of its own a stress has the error of the row."""
+
+    def merged(plain: float) -> Variation:
+        (one,) = largest_of(
+            (
+                Variation("tilt", "free", plain, across=1.1, lugs=(("A", 1.2), ("B", 1.5))),
+                Variation(
+                    "tilt", "free", 1.3, interval=(1.2, 1.4), surface=2.0, lugs=(("A", 1.3),)
+                ),
+            )
+        )
+        return one
+
+    below, above = merged(1.25), merged(1.5)
+    assert (below.max_von_mises, below.interval) == (1.3, (1.25, 1.4))
+    assert (above.max_von_mises, above.interval) == (1.5, None)
+    assert (below.across, below.surface, dict(below.lugs)) == (1.1, 2.0, {"A": 1.3, "B": 1.5})

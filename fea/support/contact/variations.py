@@ -106,15 +106,16 @@ def largest_of(every: Iterable[Variation]) -> tuple[Variation, ...]:
 
 def _largest(at: Sequence[Variation]) -> Variation:
     ends = [x.interval or (x.max_von_mises, x.max_von_mises) for x in at]
+    low, high = max(low for low, _ in ends), max(high for _, high in ends)
+    # Without an interval of its own the largest has the error of the row.
+    plain = max((x.max_von_mises for x in at if x.interval is None), default=0.0)
     lugs = dict[str, float]()
     for name, ratio in (pair for x in at for pair in x.lugs):
         lugs[name] = max(ratio, lugs.get(name, ratio))
     return replace(
         at[0],
         max_von_mises=max(x.max_von_mises for x in at),
-        interval=(max(low for low, _ in ends), max(high for _, high in ends))
-        if any(x.interval for x in at)
-        else None,
+        interval=(low, high) if high > plain else None,
         beneath=max(x.beneath or 0.0 for x in at),
         across=max(x.across for x in at),
         surface=max(x.surface for x in at),
