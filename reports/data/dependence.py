@@ -197,20 +197,25 @@ def _over_joint(
     ]
     way = 1.0 if judged.safe else -1.0
     turning = _alone_first(turning, lambda v: way * _counted(judged, v))
+    reads_beneath = contact is not None and judged.safe and contact.upper_end <= judged.permitted
+    enough = reads_beneath and any(v.what != TOGETHER for v in deep)  # one alone, beneath contact
+    if enough:
+        turning = [v for v in turning if v.what != TOGETHER]
     for v in turning:
         yield Dependence(
             v.what, v.value, "joint", judged.strength / _counted(judged, v),
             given=given if v.length is not None else None, at=v.length,
             flips_at=_crossing(judged, v, given, over.model), dimension="length",
         )  # fmt: skip
-    if not turning and judged.safe and _largest_over_joint(judged, over) > judged.permitted:
+    largest = _largest_over_joint(judged, over)
+    if not (turning or enough) and judged.safe and largest > judged.permitted:
         lugs = "assumed lugs" if over.assumed else "its lugs"
         what, value = "joint", f"contact with {lugs}"
         if over.model == "contact":  # by friction, which multiplies what the others do
             what, value = TOGETHER, f"all properties and {FRICTION}"
         factor = judged.strength / over.max_von_mises[1]
         yield Dependence(what, value, "joint", factor)
-    if contact is None or not judged.safe or contact.upper_end > judged.permitted:
+    if contact is None or not reads_beneath:
         return
     beneath = _alone_first([v for v in deep if v not in turning], lambda v: _upper_end(contact, v))
     if any(v.what == TOGETHER for v in turning):  # which says enough

@@ -18,6 +18,7 @@ from fea.core.places import (
     SurfacePlace,
 )
 from fea.harmonic.beneath import stairs
+from fea.support.records import JointRange, Variation
 from pinbase.records import in_units
 from pinstress import load_study, run
 from pinstress.cli.closing import EXIT_REQUIREMENT_MISSED, report_violations
@@ -33,6 +34,7 @@ from reports.text.pin_sentence import pin_sentence
 from reports.text.summary import summary
 from tests.conftest import ROOT
 from tests.support.results.judged_results import judged, row
+from tests.support.results.made_up_joint import make_joint
 from tests.support.results.rows import with_values
 
 SURFACE = SurfacePlace(59000.0, 295.0, "converged", (0.0, 1.0, 2.0))
@@ -131,6 +133,31 @@ def test_results_json_has_the_places() -> None:
     bare = with_values(pin(85000.0), places=Places("surface", SURFACE))
     found = to_json(only(bare))["pins"][0]
     assert not {"section", "contact"} & set(found)
+
+
+def test_properties_together_are_named_only_where_none_alone_is_enough() -> None:
+    """80,000 psi beneath contact in a looser joint; all together 80,000 of the row as well. A row
+    that fails is judged by itself.
+    """
+    for alone, expected in (
+        (80000.0, [("beneath", "clearance")]),
+        (70000.0, [("together", "all")]),
+    ):
+        over = (
+            Variation("clearance", "high", 60000.0, 0.003, beneath=alone),
+            Variation("together", "all", 80000.0, beneath=81000.0),
+        )
+        joint = replace(make_joint(), range=JointRange((59000.0, 80000.0), over))
+        found = pin(60000.0, joint=joint)
+        assert [(x.what, x.value) for x in found.depends_on] == expected
+        assert found.outcome == "depends"
+    low = (
+        Variation("clearance", "high", 60000.0, 0.003, beneath=80000.0),
+        Variation("together", "all", 50000.0, beneath=50000.0),
+    )
+    joint = replace(make_joint(), range=JointRange((50000.0, 60000.0), low))
+    fails = with_values(pin(60000.0, joint=joint), required=2.2, decided=False)
+    assert [(x.what, x.value) for x in depends_on(fails)] == [("together", "all")]
 
 
 def test_strengths_of_edges_and_depths_are_in_the_units_of_a_study() -> None:
