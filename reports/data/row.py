@@ -185,7 +185,7 @@ class PinResult:
 
     @property
     def surface_growth(self) -> float:
-        """As joint_growth, also of the surface's stress where a section governs."""
+        """The same, also of the surface's stress where a section governs."""
         over = self.joint.range if self.joint else None
         return 1.0 if over is None else max(self.joint_growth, over.surface)
 
