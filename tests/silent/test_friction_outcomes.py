@@ -10,7 +10,7 @@ import pytest
 
 import pinstress
 from fea.support.contact.cell_error import NOWHERE
-from fea.support.contact.variations import ResolutionComparison, over_joint
+from fea.support.contact.variations import ResolutionComparison, joint_range
 from fea.support.records import FRICTION, JointRange, Variation
 from reports.data.dependence import depends_on
 from reports.data.row import PinResult
@@ -53,7 +53,7 @@ def test_the_range_over_the_joint_has_no_lower_end_by_friction() -> None:
         Variation(FRICTION, "0.15, load falling", 1.3),
     )
     known = ResolutionComparison(NOWHERE, NOWHERE, STEADY, over)
-    assert over_joint(known.over, 200.0).max_von_mises == pytest.approx((190.0, 260.0))
+    assert joint_range(known.over, 200.0).max_von_mises == pytest.approx((190.0, 260.0))
 
 
 def test_friction_is_an_open_value_that_only_lowers_the_factor() -> None:

@@ -201,7 +201,7 @@ class HeldContact:
         if search is not None:
             place = in_core(place, search, material.strength_parts(model.pin.length))
             place = replace(place, crushing=self._crushing(solution.loads, contact))
-        over = known.over_joint(row, place.beneath)
+        over = known.joint_range(row, place.beneath)
         torques = self._friction_torques(solution.loads.links)
         joint = contact_result(contact, over, solution.loads, known.left_out, torques)
         peak = with_contact(peak, place)

@@ -35,8 +35,8 @@ from fea.support.contact.solve_joint import ContactModel
 from fea.support.contact.variations import (
     ResolutionComparison,
     compare,
+    joint_range,
     largest_of,
-    over_joint,
     uncompared,
 )
 from fea.support.records import JointRange
@@ -81,27 +81,27 @@ class Compared:
     section: ResolutionComparison
 
     @property
-    def _instants(self) -> tuple[ResolutionComparison, ...]:
+    def _both(self) -> tuple[ResolutionComparison, ...]:
         """Both, or one where surface and sections have their largest stress at one instant."""
         return (self.surface, self.section)[: 1 + (self.surface is not self.section)]
 
-    def over_joint(self, largest: float, below: float) -> JointRange:
+    def joint_range(self, largest: float, below: float) -> JointRange:
         """The range over the joint of the maximum and of the stress beneath contact, Pa, at both
         instants: what is smaller as given may grow more.
         """
-        every = self._instants
+        every = self._both
         case = AtPlaces(
             self.surface.stress.surface,
             self.section.stress.section,
             max(x.stress.beneath for x in every),
         )
         ratios = [y for x in every for y in x.ratios(case)]
-        return over_joint(largest_of(ratios), largest, below)
+        return joint_range(largest_of(ratios), largest, below)
 
     @property
     def left_out(self) -> str:
         """The variations of the joint that could not be solved, and why."""
-        return "; ".join(dict.fromkeys(x.left_out for x in self._instants if x.left_out))
+        return "; ".join(dict.fromkeys(x.left_out for x in self._both if x.left_out))
 
     @property
     def half_angle(self) -> float:

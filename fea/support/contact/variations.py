@@ -123,7 +123,7 @@ def _largest(at: Sequence[Variation]) -> Variation:
     )
 
 
-def over_joint(over: Sequence[Variation], largest: float, below: float = 0.0) -> JointRange:
+def joint_range(over: Sequence[Variation], largest: float, below: float = 0.0) -> JointRange:
     """The range over the joint of a maximum and of the stress beneath contact, Pa.
 
     over: relative to both.

@@ -142,7 +142,7 @@ class HeldFoundation(UnderLinkLoads):
             evidence = replace(evidence, omissions=said + evidence.omissions)
         peak = judge(replace(evidence, governing=here), tolerance)
         peak = replace(peak, places=places.said(case, self.problem.material, tolerance))
-        whole, remark = over.at(case)
+        whole, remark = over.at(case, every)
         at_row = stress.model.solve(here)
         bands = [_band(at_row, stress.model, b) for b in range(len(at_row.lugs))]
         joint = joint_result("foundation", at_row, bands, whole, remark)

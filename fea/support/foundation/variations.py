@@ -49,13 +49,16 @@ class FoundationRange:
         self.own = FoundationStress.of(FoundationModel(pin, material, lugs), distance)
         self._in_lugs: dict[str, FoundationStress | None] = {}  # of joints that were changed
 
-    def at(self, loads: PinLoads) -> tuple[JointRange | None, str]:
+    def at(
+        self, loads: PinLoads, own: JointFoundation | None = None
+    ) -> tuple[JointRange | None, str]:
         """The range over all instants, and the variations it leaves out, or the reason why there
         is none.
 
+        own: the joint as given under these loads, where it is known.
         Raises: SolveError as FoundationModel.solve.
         """
-        own = self.own.model.solve(loads)
+        own = own or self.own.model.solve(loads)
         if len(loads) > 1:
             loads = loads.at(_that_may_govern(self.own, own))
             own = self.own.model.solve(loads)
