@@ -270,7 +270,8 @@ def _in_lugs(
         if joint is not None and isinstance(s.held, HeldContact) and not s.held.alone:
             tell(f"pin {task.pin.name}, stress of its lugs")
             try:
-                shanks, varied = task.shanks.get(case, {}), joint.range is not None
+                shanks = task.shanks.get(case, {})
+                varied = joint.range is not None and bool(joint.range.variations)
                 stress = lug_stresses(s.held.contact, case, shanks, varied, memo)
                 joint = replace(joint, lugs=stress)
             except ArithmeticError as error:  # the pin's stress stands without that of its lugs

@@ -127,6 +127,28 @@ def test_a_failure_at_a_lug_leaves_the_pin_its_stress(
     assert any("solved in full" in m.needs for m in row.margins)
 
 
+def test_lugs_of_a_joint_that_is_not_varied_are_not_varied_either(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*_: object) -> None:
+        raise SolveError("the joint was varied", "contact-unsettled")
+
+    monkeypatch.setattr("fea.lug.in_joint.varied_pressures", fails)
+    known = "[lug_defaults.range]\nclearance = [0.05, 0.05]\nstiffness = [1, 1]\n[pin.P]"
+    tilts = (
+        'lug.EYE = { tilt = "guided" }',
+        "".join(
+            f'lug.{name} = {{ tilt = "guided", range = {{ tilt = ["guided", "guided"] }} }}\n'
+            for name in ("LEFT", "EYE", "RIGHT")
+        ),
+    )
+    (row,) = solve(pinstress.prepare(study(tmp_path, ("[pin.P]", known), tilts)), memo=MEMO).pins
+    assert row.joint is not None
+    assert row.joint.range is not None
+    assert row.joint.range.variations == ()
+    assert {x.over_joint for x in row.joint.lugs} == {1.0}
+
+
 def test_turning_forces_and_shanks_together_changes_nothing(
     clevis: tuple[pinstress.RunResults, Path], tmp_path: Path
 ) -> None:
