@@ -10,6 +10,7 @@ from functools import partial
 
 from assess.judgement import OUTCOME_ORDER, SAFE
 from pinbase.processes.pool import Job, ProcessDied, Progress, in_parallel, preload
+from pinstress.analysis.cache import user_cache
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE
 from pinstress.analysis.results import solve
@@ -104,12 +105,12 @@ def lighten(
 
 def _run(study: Study, pins: list[str], jobs: int) -> tuple[Results, dict[str, CaseLoads]]:
     """Run pins for their factors, without what only explains their rows; the results and the
-    loads.
+    loads. Pins that are as they were before, under the same loads, come from the user's cache.
     """
     plan = prepare(study, pins=pins)
     requirement = replace(plan.requirement, goal="value")
     plan = replace(plan, requirement=requirement, explained=False)
-    return solve(plan, jobs=jobs), plan.loads
+    return solve(plan, jobs=jobs, cache=user_cache()), plan.loads
 
 
 def _raised(aim: WeightGoal, raised: Mapping[str, float], cases: Iterable[str]) -> WeightGoal:
