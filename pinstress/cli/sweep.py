@@ -50,6 +50,8 @@ SWEEP_FILES = (
     f"{DESIGNS_FILE}.partial",
     f"{DESIGNS_PAGE}.partial",
 )
+# In the folder of a sweep that was killed before it stated what it is
+BEGINNINGS = manifest.OWN_FILES | {f"{PARTS_FOLDER}/", f"{PARTS_FOLDER}/{IDENTITY_FILE}.partial"}
 
 
 @dataclass(frozen=True)
@@ -133,10 +135,8 @@ def _require_usable(directory: Path, parts: BatchFolder, resume: bool) -> None:
             "make; remove it or choose another folder",
             code="not-ours",
         )
-    if os.path.exists(directory) and (not directory.is_dir() or manifest.entries(directory)):
-        begun = directory.is_dir() and (parts.folder / IDENTITY_FILE).is_file()
-        mark = f"{PARTS_FOLDER}/{IDENTITY_FILE}" if begun else DESIGNS_FILE
-        require_replaceable(directory, mark, is_ours)
+    if os.path.exists(directory):
+        require_replaceable(directory, _mark(directory, parts), is_ours)
     if resume:
         parts.require_same()
     elif parts.there():
@@ -146,6 +146,14 @@ def _require_usable(directory: Path, parts: BatchFolder, resume: bool) -> None:
             f"its folder {PARTS_FOLDER} to start again",
             code="unfinished-sweep",
         )
+
+
+def _mark(directory: Path, parts: BatchFolder) -> str:
+    """Return the file that a folder must have to be that of a sweep."""
+    if (parts.folder / IDENTITY_FILE).is_file():
+        return f"{PARTS_FOLDER}/{IDENTITY_FILE}"
+    only_begun = directory.is_dir() and manifest.entries(directory) <= BEGINNINGS
+    return manifest.MANIFEST_FILE if only_begun else DESIGNS_FILE
 
 
 def _locked(directory: Path) -> Release:
@@ -173,7 +181,7 @@ def _claimed(directory: Path, parts: BatchFolder, resume: bool) -> Iterator[None
     try:
         directory.mkdir(parents=True, exist_ok=True)
         release = _locked(directory)
-        if not manifest.entries(directory):
+        if manifest.entries(directory) <= BEGINNINGS:
             manifest.begin(directory)
         if not resume:
             parts.begin()

@@ -16,6 +16,7 @@ from pyarrow import parquet
 
 from pinbase.processes.folder_lock import lock
 from pinstress import study_from
+from pinstress.cli import manifest
 from pinstress.explore.sweep.parameters import parameters_of
 from pinstress.explore.sweep.parts import BatchFolder, identity
 from pinstress.explore.sweep.table import table_of
@@ -305,3 +306,42 @@ def test_nothing_is_left_of_a_sweep_that_solved_nothing(
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
         ".pinstress.json", "designs.html", "designs.parquet", "sweep.json",
     ]  # fmt: skip
+
+
+@each("left", [".pinstress.json.partial", ".pinstress.json", "parts", "parts/sweep.json.partial"])
+def test_a_sweep_that_was_killed_before_it_had_begun_begins_again(
+    left: str, tmp_path: Path
+) -> None:
+    """Each is what is left by a kill at one of its first steps, with what is made before it."""
+    _study(tmp_path, LOADS, 2)
+    out = tmp_path / "out"
+    out.mkdir()
+    if left.startswith(".pinstress.json.p"):
+        (out / left).write_text('{"sch')
+    else:
+        manifest.begin(out)
+    if left.startswith("parts"):
+        (out / "parts").mkdir()
+    if left.startswith("parts/"):
+        (out / left).write_text('{"sch')
+    made = run_here("sweep", "study.toml", "--jobs", "1", "--out", "out", cwd=tmp_path)
+    assert made.returncode == 0, made.stderr
+    assert sorted(path.name for path in out.iterdir()) == [
+        ".pinstress.json", "designs.html", "designs.parquet", "sweep.json",
+    ]  # fmt: skip
+
+
+def test_batches_left_by_a_kill_are_not_taken_for_those_of_a_new_sweep(tmp_path: Path) -> None:
+    """A sweep was killed while it removed them; their columns do not tell whose they are."""
+    _study(tmp_path, LOADS, 2)
+    study = study_from((tmp_path / "study.toml").read_text())
+    command = "sweep", "study.toml", "--jobs", "1", "--out", "out"
+    assert run_here(*command, cwd=tmp_path).returncode == 0
+    table = parquet.read_table(tmp_path / "out" / "designs.parquet")
+    column = table.schema.get_field_index("max_von_mises")
+    wrong = table.set_column(column, table.schema.field(column), pa.array([1.0, 2.0]))
+    parts = BatchFolder(tmp_path / "out", identity(study))
+    parts.folder.mkdir()
+    parts.write(wrong)
+    assert run_here(*command, cwd=tmp_path).returncode == 0
+    assert parquet.read_table(tmp_path / "out" / "designs.parquet").equals(table)
