@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import resource
 import signal
@@ -227,6 +228,25 @@ def test_a_full_disk_at_the_end_loses_no_design(tmp_path: Path) -> None:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
     assert full.returncode == 2
     assert "2 batches are kept: run the same command with --resume to continue" in full.stderr
+
+
+def test_a_full_disk_on_the_way_tells_how_to_go_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Some batches were kept, which the message did not say."""
+    _study(tmp_path, LOADS, 2)
+    write = BatchFolder.write
+
+    def full(parts: BatchFolder, table: pa.Table) -> None:
+        if parts.count:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        write(parts, table)
+
+    monkeypatch.setattr(BatchFolder, "write", full)
+    made = run_here("sweep", "study.toml", "--out", "out", "--jobs", "1", cwd=tmp_path)
+    assert made.returncode == 2
+    assert "cannot write to out (No space left on device)" in made.stderr
+    assert "1 batch is kept: run the same command with --resume to continue" in made.stderr
 
 
 def test_run_ignores_vary_and_check_reads_it(tmp_path: Path) -> None:
