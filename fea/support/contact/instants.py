@@ -9,7 +9,7 @@ import numpy as np
 
 from fea.support.contact.contact import ContactProblem
 from fea.support.contact.contact_state import ContactState, rotation
-from pinbase.arrays import Floats
+from pinbase.arrays import Floats, Mask
 
 EQUAL_LOAD_TOLERANCE = 1e-13  # relative: loads that differ by no more are the same
 LARGEST_FORCE_SHARE = 1.0 - 1e-6  # of the largest: a force that is as good as it
@@ -44,11 +44,16 @@ class JointLoads:
 
 
 def contact_at_instants(
-    contact: ContactProblem, loads: JointLoads, angles: Sequence[float], length: float
+    contact: ContactProblem,
+    loads: JointLoads,
+    angles: Sequence[float],
+    length: float,
+    start: Mask | None = None,
 ) -> list[ContactState]:
     """The contact at each instant, with cells that begin at angles (T,), rad.
 
     length: of the pin, m, with which couples are compared with forces.
+    start: a guess of the cells (R, M) in contact at the first instant.
 
     Raises: SolveError as `ContactProblem.solve`.
     """
@@ -67,6 +72,6 @@ def contact_at_instants(
         if near is not None and apart[near] <= EQUAL_LOAD_TOLERANCE:
             states.append(states[near].times(float(scale[t] / scale[near])))
             continue
-        start = None if near is None else states[near].active
-        states.append(contact.solve(force, (couple[0], couple[1]), start, loads.moments[t]))
+        guess = start if near is None else states[near].active
+        states.append(contact.solve(force, (couple[0], couple[1]), guess, loads.moments[t]))
     return [x.turned(angle) for x, angle in zip(states, angles, strict=True)]

@@ -44,6 +44,7 @@ from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.changes import JointChange
 from fea.support.lugs.lug import Lug
 from fea.support.records import Variation
+from pinbase.arrays import Mask
 
 # Of the largest amplitude: what a pattern must add to the pressures of a varied joint. Chosen by
 # judgement, coarser than MODE_TOLERANCE since only ratios of maxima follow from it.
@@ -175,19 +176,30 @@ class JointChanges:
             for change in of_contact:  # each is one joint for all contacts
                 wanted.setdefault(f"{change.what} {change.value}", []).append((k, change))
         highest = self.model.cells.highest * (1.0 if self.own_cells else 0.5)
+        # Joints of the same gaps touch nearly the same cells, from which the next of them begins.
+        # For other gaps the usual first guess is nearer: it knows the width of contact.
+        gaps = self.model.bands.gap.tobytes()
+        touching = {(k, gaps): self._given(k) for k in range(len(self.at))}
         for name, of_change in wanted.items():
             _, change = of_change[0]
             other = self.model.varied(change.lugs, change.softness)
             cells = _own_cells(other) if self.own_cells else on_coarser_cells(other)
             for k, _ in of_change:
                 contact, (solved, missing) = self.at[k], out[k]
+                like = k, other.bands.gap.tobytes()
                 try:
-                    joint = on_cells(other, contact.loads.links, *cells)
+                    joint = on_cells(other, contact.loads.links, *cells, touching.get(like))
+                    touching.setdefault(like, joint.states[0].active)
                     per_arc = highest * contact.half_angle(other.bands, other.tail)
                     solved.append((change, replace(joint, per_arc=per_arc, lugs=other.lugs)))
                 except SolveError as error:
                     missing.append(f"{name} ({error})")
         return out
+
+    def _given(self, k: int) -> Mask:
+        """The cells in contact in the joint as given."""
+        states = self.at[k].contact if self.own_cells else self.likes[k][2].states
+        return states[0].active
 
 
 def loaded(model: ContactModel, joint: PressedJoint, contact: JointContact) -> LoadedJoint:
@@ -261,9 +273,14 @@ def at_places(
 
 
 def on_cells(
-    model: ContactModel, links: PinLoads, problem: ContactProblem, belongs: Floats
+    model: ContactModel,
+    links: PinLoads,
+    problem: ContactProblem,
+    belongs: Floats,
+    start: Mask | None = None,
 ) -> PressedJoint:
-    states = model.pressed(links, problem)
+    """The contact on other cells; the arguments as of `on_coarser_cells` and `pressed`."""
+    states = model.pressed(links, problem, start)
     states = [replace(x, pressure=belongs @ x.pressure) for x in states]
     return PressedJoint(model.waves(states), states)
 

@@ -54,7 +54,7 @@ from geometry.shape.rings import (
     ringed,
     rings,
 )
-from pinbase.arrays import Ints
+from pinbase.arrays import Ints, Mask
 from pinbase.memo import Memo
 
 LUG_SIZE_DIGITS = 12  # digits to which lugs of the same size agree
@@ -350,20 +350,23 @@ class ContactModel:
         cut, angles = contact.bands, contact.angles
         return JointContact(self.pin, self.lugs, cut, loads, mass, angles, tuple(states))
 
-    def pressed(self, loads: PinLoads, problem: ContactProblem | None = None) -> list[ContactState]:
+    def pressed(
+        self, loads: PinLoads, problem: ContactProblem | None = None, start: Mask | None = None
+    ) -> list[ContactState]:
         """The contact at each instant of the loads, on cells that turn with the largest force of a
         link, unless the pin has cuts.
 
         Loads that differ by a rotation then share one solution. Each starts from that under the
         most similar loads; without any initial gap, loads in proportion share one solution, too.
         problem: with other cells than this model's.
+        start: a guess of the cells in contact at the first instant.
 
         Raises: SolveError as `solve`.
         """
         contact, cuts = self.freed(loads, problem), self.cuts
         acting = self.acting(loads, contact.bands)
         angles = acting.directions if cuts is None else [cuts.angle] * len(acting.forces)
-        return contact_at_instants(contact, acting, angles, self.pin.length)
+        return contact_at_instants(contact, acting, angles, self.pin.length, start)
 
     def freed(self, loads: PinLoads, problem: ContactProblem | None = None) -> ContactProblem:
         """The contact problem in which the lugs of links that state moments are free to tilt.
