@@ -14,32 +14,33 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from reports.folder.inside import PARTIAL_SUFFIX as SUFFIX
-from reports.folder.inside import read_inside
+from reports.folder.inside import read_inside, write_inside
 
 MANIFEST_FILE = ".pinstress.json"
-PARTIAL_MANIFEST = f"{MANIFEST_FILE}.partial"
+# Of the list itself; a process that is killed while it writes the list leaves the second
+OWN_FILES = frozenset({MANIFEST_FILE, f"{MANIFEST_FILE}{SUFFIX}"})
 MANIFEST_SCHEMA = "pinstress-output/1"
 MAX_MANIFEST_SIZE = 10_000_000  # bytes
 
 
 def begin(folder: Path) -> None:
     """Mark a folder as being written: everything in it is ours."""
-    _write(folder, [])
+    _write(folder, set())
 
 
 def complete(folder: Path) -> None:
     """Write the list of all files in a folder."""
-    _write(folder, sorted(entries(folder) - {MANIFEST_FILE}))
+    _write(folder, entries(folder))
 
 
 def add(folder: Path, names: list[str]) -> None:
     """Add entries, before they are written, to the list of a folder that has one."""
-    _write(folder, sorted(((listed(folder) or set()) | set(names)) - {MANIFEST_FILE}))
+    _write(folder, (listed(folder) or set()) | set(names))
 
 
 def drop(folder: Path, names: list[str]) -> None:
     """Take entries, which are gone, from the list of a folder that has one."""
-    _write(folder, sorted((listed(folder) or set()) - set(names) - {MANIFEST_FILE}))
+    _write(folder, (listed(folder) or set()) - set(names))
 
 
 def partial_names(names: Iterable[str]) -> list[str]:
@@ -52,14 +53,14 @@ def ours(folder: Path) -> set[str] | None:
     writer was killed while writing; None if the folder is not empty and has no list of ours.
     """
     contents, known = entries(folder), listed(folder)
-    if known == {MANIFEST_FILE} or contents <= {PARTIAL_MANIFEST}:
+    if (known and known <= OWN_FILES) or contents <= OWN_FILES - {MANIFEST_FILE}:
         return contents
     return known
 
 
 def listed(folder: Path) -> set[str] | None:
-    """Return the files that we wrote into a folder, with the list itself; None without a list of
-    ours.
+    """Return the files that we wrote into a folder, with those of the list itself; None without a
+    list of ours.
     """
     try:
         content: Any = json.loads(read_inside(folder, MANIFEST_FILE, MAX_MANIFEST_SIZE))
@@ -68,7 +69,8 @@ def listed(folder: Path) -> set[str] | None:
         names = {str(name) for name in content["files"]}
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
-    return {MANIFEST_FILE} | {n for n in names if _is_below(n)}
+    of_list = {name for name in OWN_FILES if os.path.lexists(folder / name)}
+    return of_list | {n for n in names if _is_below(n)}
 
 
 def _is_below(name: str) -> bool:
@@ -114,16 +116,10 @@ def remove(folder: Path, names: set[str]) -> None:
             path.rmdir() if name.endswith("/") else path.unlink()
 
 
-def _write(folder: Path, names: list[str]) -> None:
-    text = json.dumps({"schema": MANIFEST_SCHEMA, "files": names}, indent=1, ensure_ascii=False)
-    partial = folder / PARTIAL_MANIFEST
-    try:
-        with partial.open("x", encoding="utf-8") as file:
-            file.write(text + "\n")
-        partial.replace(folder / MANIFEST_FILE)
-    except BaseException:
-        partial.unlink(missing_ok=True)
-        raise
+def _write(folder: Path, names: set[str]) -> None:
+    listing = {"schema": MANIFEST_SCHEMA, "files": sorted(names - OWN_FILES)}
+    text = json.dumps(listing, indent=1, ensure_ascii=False) + "\n"
+    write_inside(folder, MANIFEST_FILE, text.encode())
 
 
 def _raise(error: OSError) -> None:

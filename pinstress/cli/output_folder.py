@@ -41,8 +41,11 @@ def require_replaceable(
             raise InputError(f"--out: {directory} is a file; give a folder", code="not-a-folder")
         contents = manifest.entries(directory) if directory.exists() else set()
         known = manifest.listed(directory)
+        ours = manifest.ours(directory) is not None if contents else True
     except OSError as error:  # it cannot be read, or its name is too long
         raise InputError(f"--out: {directory}: {error.strerror}", code="cannot-read") from None
+    if ours and contents <= manifest.OWN_FILES:  # all else was deleted, or not begun
+        return
     if contents and mark not in contents:
         raise InputError(
             f"--out: {directory} contains files that are not results of this command (it has no "

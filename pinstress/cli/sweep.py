@@ -50,6 +50,8 @@ SWEEP_FILES = (
     f"{DESIGNS_FILE}.partial",
     f"{DESIGNS_PAGE}.partial",
 )
+# In the folder of a sweep that was killed before it stated what it is
+BEGINNINGS = manifest.OWN_FILES | {f"{PARTS_FOLDER}/", f"{PARTS_FOLDER}/{IDENTITY_FILE}.partial"}
 
 
 @dataclass(frozen=True)
@@ -83,7 +85,8 @@ def sweep_and_write(
         if not way.quiet:
             click.echo(f"The sweep in {directory} is complete: nothing to do.", err=True)
         return _told(directory, read_table(directory / DESIGNS_FILE), way)
-    with _claimed(directory, parts, way.resume):
+    kept = resumable(lambda: parts.count, "batch", "batches")
+    with _claimed(directory, parts, way.resume), kept, _writing(directory):
         before = parts.count_before if way.resume else None
         if before is not None:
             parts.continue_with(table_of(study, sweep.parameters, []).schema)
@@ -91,10 +94,9 @@ def sweep_and_write(
                 count = len(sweep.values)
                 click.echo(f"Continued from {before:,} designs to {count:,}.", err=True)
         alone = way.connection is not None or (way.jobs or cores()) == 1
-        with resumable(lambda: parts.count, "batch", "batches"):
-            with progress(way.quiet, alone) as report:
-                table = solved(sweep, parts, way.jobs, way.connection, report, warn)
-            _write(directory, table)
+        with progress(way.quiet, alone) as report:
+            table = solved(sweep, parts, way.jobs, way.connection, report, warn)
+        _write(directory, table)
         parts.finish()
     return _told(directory, table, way)
 
@@ -113,11 +115,22 @@ def _told(directory: Path, table: pa.Table, way: Way) -> int:
 
 
 def _write(directory: Path, table: pa.Table) -> None:
+    manifest.add(directory, list(SWEEP_FILES))
+    write_table(table, directory / DESIGNS_FILE)
+    write_inside(directory, DESIGNS_PAGE, render_designs(designs_of(table)).encode())
+
+
+@contextmanager
+def _writing(directory: Path) -> Iterator[None]:
+    """Name the folder where it cannot be written, as on a full disk.
+
+    Raises: InputError.
+    """
     try:
-        manifest.add(directory, list(SWEEP_FILES))
-        write_table(table, directory / DESIGNS_FILE)
-        write_inside(directory, DESIGNS_PAGE, render_designs(designs_of(table)).encode())
-    except OSError as error:  # a full disk
+        yield
+    except OSError as error:
+        if error.filename is None and error.errno is None:
+            raise
         raise cannot_write_out(directory, error) from error
 
 
@@ -133,10 +146,8 @@ def _require_usable(directory: Path, parts: BatchFolder, resume: bool) -> None:
             "make; remove it or choose another folder",
             code="not-ours",
         )
-    if os.path.exists(directory) and (not directory.is_dir() or manifest.entries(directory)):
-        begun = directory.is_dir() and (parts.folder / IDENTITY_FILE).is_file()
-        mark = f"{PARTS_FOLDER}/{IDENTITY_FILE}" if begun else DESIGNS_FILE
-        require_replaceable(directory, mark, is_ours)
+    if os.path.exists(directory):
+        require_replaceable(directory, _mark(directory, parts), is_ours)
     if resume:
         parts.require_same()
     elif parts.there():
@@ -146,6 +157,14 @@ def _require_usable(directory: Path, parts: BatchFolder, resume: bool) -> None:
             f"its folder {PARTS_FOLDER} to start again",
             code="unfinished-sweep",
         )
+
+
+def _mark(directory: Path, parts: BatchFolder) -> str:
+    """Return the file that a folder must have to be that of a sweep."""
+    if (parts.folder / IDENTITY_FILE).is_file():
+        return f"{PARTS_FOLDER}/{IDENTITY_FILE}"
+    only_begun = directory.is_dir() and manifest.entries(directory) <= BEGINNINGS
+    return manifest.MANIFEST_FILE if only_begun else DESIGNS_FILE
 
 
 def _locked(directory: Path) -> Release:
@@ -171,17 +190,14 @@ def _claimed(directory: Path, parts: BatchFolder, resume: bool) -> Iterator[None
     release: Release | None = None
     existed = os.path.exists(directory)
     try:
-        directory.mkdir(parents=True, exist_ok=True)
-        release = _locked(directory)
-        if not manifest.entries(directory):
-            manifest.begin(directory)
-        if not resume:
-            parts.begin()
+        with _writing(directory):
+            directory.mkdir(parents=True, exist_ok=True)
+            release = _locked(directory)
+            if manifest.entries(directory) <= BEGINNINGS:
+                manifest.begin(directory)
+            if not resume:
+                parts.begin()
         yield
-    except OSError as error:
-        if error.filename is None and error.errno is None:
-            raise
-        raise cannot_write_out(directory, error) from error
     finally:
         if release is not None:
             if not resume and parts.there() and not parts.count:

@@ -221,8 +221,14 @@ def ways_table(reliability: Reliability) -> Table[Risk]:
 def _by_errors(probabilities: ByErrors | None) -> str:
     if probabilities is None:
         return DASH
-    ends = f"{chance(probabilities.lower.value)} to {chance(probabilities.higher.value)}"
-    return f"{ends} (stress {change(probabilities)})"
+    return f"{error_range(probabilities)} (stress {change(probabilities)})"
+
+
+def error_range(probabilities: ByErrors) -> str:
+    """Return the probabilities by an error; only the upper end where nothing fails in either."""
+    if probabilities.higher.value <= 0.0:
+        return chance_range(probabilities.higher)
+    return f"{chance(probabilities.lower.value)} to {chance(probabilities.higher.value)}"
 
 
 def change(probabilities: ByErrors) -> str:

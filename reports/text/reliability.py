@@ -12,6 +12,7 @@ from reports.tables.reliability import (
     chance_range,
     change,
     drivers_table,
+    error_range,
     remark,
     risks_table,
     ways_table,
@@ -36,8 +37,7 @@ def sentence(reliability: Reliability, risk: Risk) -> str:
         text = f"{chance(value.value)} ({per_cent}: {chance(ends.low)} to {chance(ends.high)}"
     for errors, what in ((risk.mesh, "mesh"), (risk.joint, "joint")):
         if errors is not None:
-            low, high = chance(errors.lower.value), chance(errors.higher.value)
-            text += f"; {what}, {change(errors)} of stress: {low} to {high}"
+            text += f"; {what}, {change(errors)} of stress: {error_range(errors)}"
     limit = engineering(reliability.limit, 3)
     text += "; model form not included)"
     if risk.beneath is not None:

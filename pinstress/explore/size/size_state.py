@@ -74,10 +74,14 @@ class SizeState(Generic[T]):
 
     @property
     def exists(self) -> bool:
-        """Whether there is such a folder; a name that is too long has none."""
-        with suppress(OSError):
-            return self.path.exists()
-        return False
+        """Whether a size has begun there; an empty folder is of one that was killed before."""
+        try:
+            written = {*os.listdir(self.path)} - {_partial(self._pins).name}
+            return self.path.is_symlink() or bool(written)
+        except (NotADirectoryError, PermissionError):
+            return True
+        except OSError:  # it is not there, or its name is too long
+            return False
 
     def begin(self) -> None:
         """Create and lock the folder, in which nothing is finished.
@@ -85,18 +89,20 @@ class SizeState(Generic[T]):
         Raises: InputError where there is one already, or it cannot be written.
         """
         try:
-            self.path.mkdir()
+            with suppress(FileExistsError):
+                self.path.mkdir()
             self._lock()
-        except FileExistsError:
-            with suppress(NotADirectoryError):  # a link, or a file
-                self._lock()
+            unfinished = self.exists
+        except NotADirectoryError:  # a link, or a file
+            unfinished = True
+        except OSError as error:
+            raise self._cannot_write(error) from None
+        if unfinished:
             raise InputError(
                 f"{self._target} has a size that did not end: resume it with --resume, or delete "
                 f"{self.path.name} and {self._target.name} to start again",
                 code="unfinished-size",
-            ) from None
-        except OSError as error:
-            raise self._cannot_write(error) from None
+            )
         try:
             self.write(())
         except InputError:
@@ -193,7 +199,7 @@ def _replace(path: Path, content: bytes) -> None:
 
     Raises: OSError.
     """
-    partial = path.with_name(f".{path.name}.partial")
+    partial = _partial(path)
     try:
         partial.write_bytes(content)
         os.replace(partial, path)
@@ -201,3 +207,8 @@ def _replace(path: Path, content: bytes) -> None:
         with suppress(OSError):  # as of a name that is too long
             partial.unlink(missing_ok=True)
         raise
+
+
+def _partial(path: Path) -> Path:
+    """Return the file in which another is written; a process that is killed leaves it."""
+    return path.with_name(f".{path.name}.partial")

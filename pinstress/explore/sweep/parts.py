@@ -55,8 +55,17 @@ class BatchFolder:
         self.sweep = identity.sweep
 
     def begin(self) -> None:
-        """Make the folder, with only the identity of the sweep in it."""
+        """Make the folder, with only the identity of the sweep in it.
+
+        Batches of a sweep that was killed while they were removed are of other numbers.
+        """
         self.folder.mkdir(parents=True, exist_ok=True)
+        for path in self.folder.glob(f"*{PART_SUFFIX}*"):
+            path.unlink()
+        self._state()
+
+    def _state(self) -> None:
+        """Write the identity of the sweep, with which it has begun."""
         identity = self.identity
         stated = {"sweep": identity.sweep, "but_count": identity.but_count, "count": identity.count}
         text = json.dumps({"schema": SWEEP_SCHEMA, **stated}, indent=1) + "\n"
@@ -134,7 +143,7 @@ class BatchFolder:
         for table in tables:
             if table.schema.equals(schema):
                 self.write(table.replace_schema_metadata(schema.metadata))
-        self.begin()
+        self._state()
 
     def write(self, table: pa.Table) -> None:
         """Keep a batch, named by its first design; its file is complete or absent."""

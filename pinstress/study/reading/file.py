@@ -174,6 +174,11 @@ def load_study(path: str | os.PathLike[str]) -> Study:
             code="not-a-path",
         )
     path = Path(path)
+    if any("\ud800" <= letter <= "\udfff" for letter in path.name):  # bytes that are no letters
+        raise InputError(
+            f"{path}: the name of this file is not UTF-8 text, and results name it; rename it",
+            code="unusable-name",
+        )
     try:
         text = read_regular(path, MAX_STUDY_SIZE).decode("utf-8-sig")
         text = text.replace("\r\n", "\n").replace("\r", "\n")

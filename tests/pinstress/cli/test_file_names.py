@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from pinstress import InputError, load_study
@@ -55,3 +56,11 @@ def test_a_pin_and_a_case_that_give_the_name_of_others_are_refused(tmp_path: Pat
     (tmp_path / "study.toml").write_text(text)
     with raises(InputError, "same-file-names", "pin.a in case.b_c"):
         load_study(tmp_path / "study.toml")
+
+
+def test_a_study_whose_name_is_no_text_is_refused_before_it_is_solved(tmp_path: Path) -> None:
+    """As "Bügel.toml" in Latin-1; tables and pages name the study, in UTF-8."""
+    path = tmp_path / os.fsdecode(b"B\xfcgel.toml")
+    path.write_text(ONE_PIN)
+    with raises(InputError, "unusable-name"):
+        load_study(path)

@@ -393,3 +393,25 @@ def test_a_list_that_is_none_makes_nothing_ours(text: str, tmp_path: Path) -> No
     (tmp_path / manifest.MANIFEST_FILE).write_text(text)
     refused(tmp_path, "no list of what pinstress wrote")
     assert names(tmp_path) == [manifest.MANIFEST_FILE, "results.json"]
+
+
+def test_a_list_that_was_being_written_when_its_process_was_killed_is_ours(earlier: Path) -> None:
+    """As `plots` and `pdf` write it, into results that are complete."""
+    (earlier / f"{manifest.MANIFEST_FILE}.partial").write_text('{"sch')
+    manifest.add(earlier, ["more"])
+    assert "more" in (manifest.listed(earlier) or set())
+    (earlier / f"{manifest.MANIFEST_FILE}.partial").write_text('{"sch')
+    with replacing(earlier) as staging:
+        (staging / "results.json").write_text("next")
+    assert (earlier / "results.json").read_text() == "next"
+    assert names(earlier.parent) == ["out"]
+
+
+def test_a_folder_of_which_all_but_the_list_was_deleted_is_replaced(earlier: Path) -> None:
+    """As `rm -r out/*` leaves it."""
+    for name in names(earlier):
+        if name != manifest.MANIFEST_FILE:
+            (earlier / name).unlink()
+    with replacing(earlier) as staging:
+        (staging / "results.json").write_text("next")
+    assert (earlier / "results.json").read_text() == "next"

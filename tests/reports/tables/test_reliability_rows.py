@@ -131,3 +131,12 @@ def test_a_range_that_does_not_contain_the_maximum_is_not_a_plus_or_minus() -> N
     assert "joint, −81 to −12 % of stress: 0 to 0.02" in said
     assert "mesh, ±1 % of stress" in said
     assert risks_table(found).grid().body[0][-1] == "0 to 0.02 (stress −81 to −12 %)"
+
+
+def test_no_failure_by_an_error_is_no_probability_of_nothing() -> None:
+    """Among 2,000 samples none fails, also not with the error: that bounds it, but not by zero."""
+    none = Spread(0.0, 0.0, 0.00184)
+    row = replace(ROW, sampled=none, failures=0, mesh=ByErrors(-0.01, 0.01, none, none))
+    found = Reliability("t", "s", 1.0, 1e-3, 0.95, 2000, 1, (), (row,))
+    assert "mesh, ±1 % of stress: below 0.00184;" in sentence(found, row)
+    assert "0 to 0" not in str(risks_table(found).grid().body)

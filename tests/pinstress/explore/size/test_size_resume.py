@@ -265,3 +265,18 @@ def test_loads_that_follow_from_weights_of_pins() -> None:
     assert loaded_more(plan, goal, [result("J", 1e3), result("E", 1e3)]) == []
     assert "E" in loaded_more(plan, goal, [result("J", 1e3), result("E", 10.1)])
     assert loaded_more(plan, goal, [result("E", 10.1)]) == []
+
+
+def test_a_size_that_was_killed_before_it_had_begun_begins_again(tmp_path: Path) -> None:
+    """Its folder is empty, or has the file in which the finished pins were to be written."""
+    (tmp_path / "study.toml").write_text(QUICK)
+    state = tmp_path / "study_sized.toml.unfinished"
+    state.mkdir()
+    (state / ".pins.partial").write_bytes(b"PK")
+    command = "size", "study.toml", "--fos", "1.5"
+    nothing = run_here(*command, "--resume", cwd=tmp_path)
+    assert nothing.returncode == 2
+    assert "there is no size of study_sized.toml to resume" in nothing.stderr
+    made = run_here(*command, cwd=tmp_path)
+    assert made.returncode == 0, made.stderr
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["study.toml", "study_sized.toml"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import resource
 import signal
@@ -16,6 +17,7 @@ from pyarrow import parquet
 
 from pinbase.processes.folder_lock import lock
 from pinstress import study_from
+from pinstress.cli import manifest
 from pinstress.explore.sweep.parameters import parameters_of
 from pinstress.explore.sweep.parts import BatchFolder, identity
 from pinstress.explore.sweep.table import table_of
@@ -228,6 +230,25 @@ def test_a_full_disk_at_the_end_loses_no_design(tmp_path: Path) -> None:
     assert "2 batches are kept: run the same command with --resume to continue" in full.stderr
 
 
+def test_a_full_disk_on_the_way_tells_how_to_go_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Some batches were kept, which the message did not say."""
+    _study(tmp_path, LOADS, 2)
+    write = BatchFolder.write
+
+    def full(parts: BatchFolder, table: pa.Table) -> None:
+        if parts.count:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        write(parts, table)
+
+    monkeypatch.setattr(BatchFolder, "write", full)
+    made = run_here("sweep", "study.toml", "--out", "out", "--jobs", "1", cwd=tmp_path)
+    assert made.returncode == 2
+    assert "cannot write to out (No space left on device)" in made.stderr
+    assert "1 batch is kept: run the same command with --resume to continue" in made.stderr
+
+
 def test_run_ignores_vary_and_check_reads_it(tmp_path: Path) -> None:
     _study(tmp_path, count=5)
     checked = run_here("check", "study.toml", cwd=tmp_path)
@@ -305,3 +326,42 @@ def test_nothing_is_left_of_a_sweep_that_solved_nothing(
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
         ".pinstress.json", "designs.html", "designs.parquet", "sweep.json",
     ]  # fmt: skip
+
+
+@each("left", [".pinstress.json.partial", ".pinstress.json", "parts", "parts/sweep.json.partial"])
+def test_a_sweep_that_was_killed_before_it_had_begun_begins_again(
+    left: str, tmp_path: Path
+) -> None:
+    """Each is what is left by a kill at one of its first steps, with what is made before it."""
+    _study(tmp_path, LOADS, 2)
+    out = tmp_path / "out"
+    out.mkdir()
+    if left.startswith(".pinstress.json.p"):
+        (out / left).write_text('{"sch')
+    else:
+        manifest.begin(out)
+    if left.startswith("parts"):
+        (out / "parts").mkdir()
+    if left.startswith("parts/"):
+        (out / left).write_text('{"sch')
+    made = run_here("sweep", "study.toml", "--jobs", "1", "--out", "out", cwd=tmp_path)
+    assert made.returncode == 0, made.stderr
+    assert sorted(path.name for path in out.iterdir()) == [
+        ".pinstress.json", "designs.html", "designs.parquet", "sweep.json",
+    ]  # fmt: skip
+
+
+def test_batches_left_by_a_kill_are_not_taken_for_those_of_a_new_sweep(tmp_path: Path) -> None:
+    """A sweep was killed while it removed them; their columns do not tell whose they are."""
+    _study(tmp_path, LOADS, 2)
+    study = study_from((tmp_path / "study.toml").read_text())
+    command = "sweep", "study.toml", "--jobs", "1", "--out", "out"
+    assert run_here(*command, cwd=tmp_path).returncode == 0
+    table = parquet.read_table(tmp_path / "out" / "designs.parquet")
+    column = table.schema.get_field_index("max_von_mises")
+    wrong = table.set_column(column, table.schema.field(column), pa.array([1.0, 2.0]))
+    parts = BatchFolder(tmp_path / "out", identity(study))
+    parts.folder.mkdir()
+    parts.write(wrong)
+    assert run_here(*command, cwd=tmp_path).returncode == 0
+    assert parquet.read_table(tmp_path / "out" / "designs.parquet").equals(table)
