@@ -155,7 +155,7 @@ def local_fields(
         _at_open_ends(piece, points[outer]),
         model.faces.free_ends,
         moved,
-        model.unknowns,
+        model.space.unknowns,
         tuple(
             replace(corner, distance=np.tile(corner.distance, len(x)))
             for corner in inner_corners(model, model.faces.points, distance)

@@ -56,7 +56,7 @@ def solid_solution(
     mesh = solid_mesh(pin, size, tuple(dict.fromkeys(edges)), element, most)
     units = acting(cases) or ((UnitLoad(names[0], "force", 1), 0),)  # whose coefficient is zero
     model = SolidModel(pin, mesh, problem.material, clamps)
-    require_memory(pin.name, model.unknowns, problem.memory)
+    require_memory(pin.name, model.space.unknowns, problem.memory)
     if profile is not None and pin.revolved:
         near = [[p.varied(x) for p in singularities] for x in (1.0, *DISTANCE_VARIATIONS)]
         rims = [all_round(rim(profile, p, p.radius)) for here in near for p in here]

@@ -104,11 +104,6 @@ class SolidModel:
         self.pin, self.material, self.clamps = pin, material, clamps
         self.space = Discretisation(solid.mesh)
 
-    @property
-    def unknowns(self) -> int:
-        """Number of displacement components, constrained ones included."""
-        return self.space.unknowns
-
     @cached_property
     def stiffness(self) -> sp.csr_matrix:
         """The stiffness matrix, N/m."""
@@ -146,8 +141,8 @@ class SolidModel:
 
     def _displace(self, F: Floats) -> tuple[Floats, Floats]:
         """Displacements (N, 3, L) under nodal forces F (N, 3, L), and resultants of clamps."""
-        shape, F = F.shape, F.reshape(self.unknowns, -1)
-        free = np.setdiff1d(np.arange(self.unknowns), self.fixed)
+        shape, F = F.shape, F.reshape(self.space.unknowns, -1)
+        free = np.setdiff1d(np.arange(self.space.unknowns), self.fixed)
         K = self.stiffness
         u = np.zeros_like(F)
         u[free] = factorize(K[free][:, free], free // 3)(F[free])
