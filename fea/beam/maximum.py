@@ -91,8 +91,9 @@ class StressAlongBeam:
 
 def harmonics(beam: BeamStress, loads: Loads) -> Floats:
     """Stress (3, S, 6, T), Pa: its constant part, and the factors of cos theta and sin theta."""
-    c = shares(beam.loads, loads)
-    across = np.array([load.n == 1 for load in beam.loads], dtype=bool)
+    units = beam.forces.loads
+    c = shares(units, loads)
+    across = np.array([load.n == 1 for load in units], dtype=bool)
     first, second = (np.einsum("sik,tk->sit", beam.stress, c[:, p] * across) for p in (0, 1))
     even, odd = (np.einsum("sik,tk->sit", beam.stress, c[:, p] * ~across) for p in (0, 1))
     a, b, s = even, first.copy(), second.copy()

@@ -56,7 +56,7 @@ class BeamField(StressAlongBeam):
         stress, J.
         """
         coefficients = self.case.coefficients()
-        felt = {unit: coefficients[unit] for unit in self._beam.loads}
+        felt = {unit: coefficients[unit] for unit in self._beam.forces.loads}
         amounts = LoadAmounts(self.case.case, felt, len(self.case))
         return self._beam.energy.of(amounts, self.estimate.instant)
 

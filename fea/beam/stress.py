@@ -45,14 +45,9 @@ class BeamStress:
     stress: Floats
 
     @property
-    def loads(self) -> tuple[UnitLoad, ...]:
-        """The unit load of each of the K columns."""
-        return self.forces.loads
-
-    @property
     def energy(self) -> StrainEnergy:
         """The strain energy of the beam under these loads, without what notches add."""
-        return StrainEnergy.of_both_phases(self.loads, self.forces.work(self.material))
+        return StrainEnergy.of_both_phases(self.forces.loads, self.forces.work(self.material))
 
 
 def beam_stress(
