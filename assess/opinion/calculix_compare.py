@@ -26,6 +26,7 @@ from assess.opinion import calculix
 from assess.opinion.calculix_deck import write_deck
 from assess.opinion.opinions import Opinion
 from fea.core.material import Material
+from fea.core.model import MeshProblem
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
@@ -86,7 +87,8 @@ def first_solid_solution(
     """
     constrained = tuple(pin.surface(name) for name in clamps)
     singularities = singularities_of(pin, material, constrained, cases, distance)
-    return solid_solution(pin, material, constrained, cases, singularities, MeshSize(), distance)
+    problem = MeshProblem(pin, material, constrained, cases, singularities, distance=distance)
+    return solid_solution(problem, MeshSize())
 
 
 def _compared(

@@ -13,6 +13,7 @@ import numpy as np
 from assess.opinion import calculix
 from assess.opinion.calculix_deck import write_deck
 from benchmarks.random_pins import STEEL
+from fea.core.model import MeshProblem
 from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
 from fea.cut.local_solution import CUT_LOW_STRESS_POWER, LOCAL_MESH_RATIO
@@ -45,7 +46,7 @@ def in_calculix(pin: CutPin, clamps: tuple[str, ...], loads: PinLoads, finer: fl
     Raises: CalculixError.
     """
     size = MeshSize().finer(finer)
-    solution = solid_solution(pin, STEEL, clamps, (loads,), (), size, 0.1)
+    solution = solid_solution(MeshProblem(pin, STEEL, clamps, (loads,)), size)
     fields, space = solution.fields, solution.fields.space
     forces = fields.forces @ fields.coefficients(loads)[0]
     nodes = fields.surface.nodes

@@ -45,7 +45,7 @@ def fillet() -> str:
         mesh = solid_mesh(PIN, MeshSize(across=3.0, arc=1.5).finer(STEP**level), (0.02, 0.06))
         model = SolidModel(PIN, mesh, STEEL, ("start",))
         found = envelope(model.solve(acting([LOAD])), LOAD)
-        steps.append(Refinement(model.unknowns, found.maximum, 0.0))
+        steps.append(Refinement(model.space.unknowns, found.maximum, 0.0))
     true = truth()
     rows = []
     for i, step in enumerate(steps):

@@ -75,4 +75,4 @@ def _solid(size: MeshSize) -> Timed:
     marks.append(time.perf_counter())
     envelope(fields, LOAD)
     marks.append(time.perf_counter())
-    return model.unknowns, np.diff(marks).tolist()
+    return model.space.unknowns, np.diff(marks).tolist()

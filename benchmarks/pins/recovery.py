@@ -86,4 +86,4 @@ def _solid(size: MeshSize) -> tuple[int, float, float]:
     averaged = nodal_stress(fields.space, STEEL, fields.displacement) @ c
     known = fields.stress @ c
     peaks = [float(von_mises(stress[near]).max()) for stress in (averaged, known)]
-    return model.unknowns, peaks[0], peaks[1]
+    return model.space.unknowns, peaks[0], peaks[1]

@@ -13,10 +13,10 @@ from skfem import MeshTet2
 
 from fea.core.linear_solver import factorize
 from fea.core.material import Material
-from fea.core.pin_loads import UnitLoad
+from fea.core.pin_loads import Unit, UnitLoad
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh, clamped_nodes, surface
-from fea.solid.nodal_loads import Unit, nodal_loads
+from fea.solid.nodal_loads import nodal_loads
 from fea.solid.stress_recovery import nodal_stress, with_known_traction
 from geometry import Pin, Segment
 

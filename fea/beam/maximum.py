@@ -12,7 +12,7 @@ import numpy as np
 
 from fea.beam.line_load import shares
 from fea.beam.stress import BeamStress
-from fea.core.pin_loads import Loads
+from fea.core.pin_loads import Loads, PinLoads
 from fea.core.solution import StressPoints
 from fea.core.voigt import VON_MISES
 from pinbase.arrays import Floats, Ints
@@ -54,10 +54,46 @@ def stress_points(points: Floats, stress: Floats) -> StressPoints:
     return StressPoints.on_meridian(points, points[:, 0] > 0.0, stress.shape[-1], at)
 
 
+class StressAlongBeam:
+    """The stress along a beam under any loads (fea.core.solution.StressField).
+
+    at: points (S, 2), r and z in m, at which it is known.
+    """
+
+    at: Floats
+
+    def harmonics(self, loads: Loads) -> Floats:
+        """Stress (3, S, 6, T), Pa: constant, times cos theta, times sin theta."""
+        raise NotImplementedError
+
+    def maxima(self, loads: Loads, _: float = 0.0) -> Floats:
+        """Largest von Mises stress (T,) Pa at every instant."""
+        return np.asarray(von_mises_maxima(self.harmonics(loads)).von_mises.max(axis=0))
+
+    def largest(self, loads: Loads) -> tuple[float, int]:
+        """The largest von Mises stress over all instants, Pa, and the index of its instant."""
+        top = von_mises_maxima(self.harmonics(loads))
+        return float(top.von_mises[top.place]), top.place[1]
+
+    def points(self, loads: PinLoads) -> StressPoints:
+        """Stress at the beam's points, for fatigue."""
+        return stress_points(self.at, self.harmonics(loads))
+
+    def surface(self) -> None:
+        """Return None, since a beam has no field over its surface."""
+
+    def picture(self, loads: PinLoads, instant: int) -> None:
+        """Return None, for the same reason."""
+
+    def volume(self, loads: PinLoads, instant: int) -> None:
+        """Return None, for the same reason."""
+
+
 def harmonics(beam: BeamStress, loads: Loads) -> Floats:
     """Stress (3, S, 6, T), Pa: its constant part, and the factors of cos theta and sin theta."""
-    c = shares(beam.loads, loads)
-    across = np.array([load.n == 1 for load in beam.loads], dtype=bool)
+    units = beam.forces.loads
+    c = shares(units, loads)
+    across = np.array([load.n == 1 for load in units], dtype=bool)
     first, second = (np.einsum("sik,tk->sit", beam.stress, c[:, p] * across) for p in (0, 1))
     even, odd = (np.einsum("sik,tk->sit", beam.stress, c[:, p] * ~across) for p in (0, 1))
     a, b, s = even, first.copy(), second.copy()

@@ -9,13 +9,12 @@ import numpy as np
 
 from fea.beam.error_model import BeamEstimate, beam_estimate
 from fea.beam.line_load import acting
-from fea.beam.maximum import harmonics, stress_points, von_mises_maxima
+from fea.beam.maximum import StressAlongBeam, harmonics, von_mises_maxima
 from fea.beam.stress import BeamStress, beam_stress
 from fea.core.material import Material
 from fea.core.mesh_result import MeshMaximum, at_angle
 from fea.core.peak import ErrorParts, Reason, Refinement
 from fea.core.pin_loads import LoadAmounts, Loads, PinLoads
-from fea.core.solution import StressPoints
 from fea.core.verdict import Evidence
 from fea.core.zone import Zone
 from fea.singular.singularities import outside
@@ -23,7 +22,7 @@ from geometry import Pin
 from pinbase.arrays import Floats
 
 
-class BeamField:
+class BeamField(StressAlongBeam):
     """The stress of a pin as a beam under the unit loads of a case."""
 
     def __init__(
@@ -31,43 +30,25 @@ class BeamField:
     ) -> None:
         self.pin, self.case, self.clamps = pin, case, clamps
         self._beam: BeamStress = beam_stress(pin, material, acting(case), clamps)
+        self.at = self._beam.points
 
     @cached_property
     def estimate(self) -> BeamEstimate:
         """The beam's estimate of the largest stress of the case."""
         return beam_estimate(self._beam, self.case, self.clamps)
 
-    def maxima(self, loads: Loads, _: float = 0.0) -> Floats:
-        """Largest von Mises stress (T,) Pa at every instant."""
-        return np.asarray(von_mises_maxima(harmonics(self._beam, loads)).von_mises.max(axis=0))
-
-    def largest(self, loads: Loads) -> tuple[float, int]:
-        """The largest von Mises stress over all instants, Pa, and the index of its instant."""
-        maxima = von_mises_maxima(harmonics(self._beam, loads))
-        point, instant = maxima.place
-        return float(maxima.von_mises[point, instant]), instant
+    def harmonics(self, loads: Loads) -> Floats:
+        """The stress of the unit loads, superposed."""
+        return harmonics(self._beam, loads)
 
     def result(self, singularities: Sequence[Zone]) -> MeshMaximum:
         """The largest stress outside the singular zones, in the form of the other models."""
-        maxima = von_mises_maxima(harmonics(self._beam, self.case))
-        r, z = self._beam.points.T
+        maxima = von_mises_maxima(self.harmonics(self.case))
+        r, z = self.at.T
         value = np.where(outside(singularities, r, z)[:, None], maxima.von_mises, 0.0)
         point, instant = (int(i) for i in np.unravel_index(value.argmax(), value.shape))
-        location = at_angle(self._beam.points[point], maxima.theta[point, instant])
+        location = at_angle(self.at[point], maxima.theta[point, instant])
         return MeshMaximum(0, float(value[point, instant]), instant, location)
-
-    def points(self, loads: PinLoads) -> StressPoints:
-        """Stress at the beam's points, for fatigue."""
-        return stress_points(self._beam.points, harmonics(self._beam, loads))
-
-    def surface(self) -> None:
-        """Return None, since a beam has no field over its surface."""
-
-    def picture(self, loads: PinLoads, instant: int) -> None:
-        """Return None, for the same reason."""
-
-    def volume(self, loads: PinLoads, instant: int) -> None:
-        """Return None, for the same reason."""
 
     @property
     def strain_energy(self) -> float:
@@ -75,7 +56,7 @@ class BeamField:
         stress, J.
         """
         coefficients = self.case.coefficients()
-        felt = {unit: coefficients[unit] for unit in self._beam.loads}
+        felt = {unit: coefficients[unit] for unit in self._beam.forces.loads}
         amounts = LoadAmounts(self.case.case, felt, len(self.case))
         return self._beam.energy.of(amounts, self.estimate.instant)
 

@@ -45,16 +45,9 @@ class BeamStress:
     stress: Floats
 
     @property
-    def loads(self) -> tuple[UnitLoad, ...]:
-        """The unit load of each of the K columns."""
-        return self.forces.loads
-
-    @property
     def energy(self) -> StrainEnergy:
         """The strain energy of the beam under these loads, without what notches add."""
-        work = self.forces.work(self.material)
-        units = tuple((load, phase) for phase in (0, 1) for load in self.loads)
-        return StrainEnergy(units, np.asarray(np.kron(np.eye(2), work), np.float64))
+        return StrainEnergy.of_both_phases(self.forces.loads, self.forces.work(self.material))
 
 
 def beam_stress(

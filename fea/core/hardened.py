@@ -99,7 +99,7 @@ class StrengthPart:
 def strength_parts(
     hardened: tuple[Hardened, ...], strength: float | None, length: float
 ) -> tuple[StrengthPart, ...]:
-    """The parts of a pin with hardened stretches.
+    """The parts of a pin with hardened stretches; none without any.
 
     strength: yield strength of what is not hardened, Pa; without one it is not judged.
     length: of the pin, m.
@@ -114,7 +114,7 @@ def strength_parts(
             out.append(StrengthPart("unhardened", case.core, stretch))
     ends = [0.0, *(z for case in hardened for z in (case.start, case.end)), length]
     rest = tuple((a, b) for a, b in list(pairwise(ends))[::2] if b > a)
-    if rest and strength is not None:
+    if hardened and rest and strength is not None:
         out.append(StrengthPart("unhardened", strength, rest))
     return tuple(out)
 

@@ -90,8 +90,6 @@ class Material:
 
     def strength_parts(self, length: float) -> tuple[StrengthPart, ...]:
         """The parts of a pin of this length (m) with hardened stretches; none without any."""
-        if not self.hardened:
-            return ()
         return strength_parts(self.hardened, self.unhardened, length)
 
     @property

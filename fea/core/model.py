@@ -70,20 +70,16 @@ class MeshSolution(Protocol):
     @property
     def zones(self) -> tuple[Zone, ...]:
         """The problem's, and those found on the mesh: corners of cuts, edges of tetrahedra."""
-        ...
 
     @property
     def solids(self) -> tuple[tuple[float, float], ...]:
         """The ends, z in m, of each local solid; none where the whole pin has one model."""
-        ...
 
     def field(self, case: str) -> StressField:
         """Stress as one case sees it: it is not read in zones that its loads make singular."""
-        ...
 
     def maximum(self, loads: PinLoads) -> MeshMaximum:
         """The maximum of a case, with the parts of its error that this mesh knows."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -117,4 +113,3 @@ class Model(Protocol):
 
         Raises: MeshError; SolveError, also for more memory than the problem allows.
         """
-        ...

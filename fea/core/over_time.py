@@ -91,6 +91,23 @@ def through_time(
     return with_crest(answer, loads, between)
 
 
+def over_time(
+    answer: StressMaxima, loads: PinLoads, between: Between | None, tolerance: float
+) -> tuple[PinLoads, float]:
+    """The loads with all instants that matter, and the rise of the maximum between these, Pa; the
+    loads as they are without a motion.
+    """
+    if between is None or len(loads) < 2:
+        return loads, 0.0
+    loads = through_time(answer, loads, between, tolerance)
+    return loads, rise_between(answer, loads, between)
+
+
+def changed(change: Callable[[PinLoads], PinLoads], between: Between, times: Floats) -> PinLoads:
+    """The loads of a motion at some times (T,) s, with the same change at all of them."""
+    return change(between(times))
+
+
 def with_crest(answer: StressMaxima, loads: PinLoads, between: Between) -> PinLoads:
     """The loads with the instant of the maximum added, if it lies between the given instants."""
     times = _times(loads)

@@ -42,6 +42,7 @@ Distribution = Literal["uniform", "cosine"]
 
 # Of the largest force and the pin's length: a moment across the axis below it is none.
 MOMENT_ROUND_OFF = 1e-9
+LOAD_ROUND_OFF = 1e-9  # of a load's amounts
 
 BODY_SURFACE = ""  # the `surface` of a load on the whole pin
 
@@ -98,6 +99,9 @@ class UnitLoad(NamedTuple):
         if self.n:
             return (0, 1)
         return (1,) if self.kind in ("moment", "twist", "around", "turn") else (0,)
+
+
+Unit = tuple[UnitLoad, int]  # a unit load and its phase
 
 
 @dataclass(frozen=True)
@@ -319,6 +323,23 @@ def require_solved(case: str, acting: Iterable[UnitLoad], solved: Iterable[UnitL
         raise ArgumentError(
             f"case {case}: no unit fields were solved for {sorted(missing)}", "missing-fields"
         )
+
+
+def amounts_of(units: tuple[Unit, ...], loads: Loads) -> Floats:
+    """The amount of each of L units at each instant, (T, L).
+
+    Raises: ArgumentError when a part of the loads is not among the units.
+    """
+    number = {unit: k for k, unit in enumerate(units)}
+    out = np.zeros((len(loads), len(units)))
+    for load, amounts in loads.coefficients().items():
+        least = LOAD_ROUND_OFF * np.abs(amounts).max()
+        for phase in load.phases:
+            if (load, phase) in number:
+                out[:, number[load, phase]] = amounts[:, phase]
+            elif np.abs(amounts[:, phase]).max() > least:
+                require_solved(loads.case, (load,), ())
+    return out
 
 
 def chord_deviation(loads: PinLoads, middle: PinLoads) -> LoadAmounts:

@@ -84,11 +84,9 @@ class StressMaxima(Protocol):
 
         least: where the stress does not exceed this, Pa, any value up to it may be returned.
         """
-        ...
 
     def largest(self, loads: Loads) -> tuple[float, int]:
         """The largest of these (Pa), and the number of its instant."""
-        ...
 
 
 class StressField(StressMaxima, Protocol):
@@ -96,22 +94,18 @@ class StressField(StressMaxima, Protocol):
 
     def points(self, loads: PinLoads) -> StressPoints:
         """Stress tensors at points of the pin at all instants, for fatigue."""
-        ...
 
     def surface(self) -> SurfaceField | None:
         """The surface for views, which superpose its unit fields; None for a model without
         fields.
         """
-        ...
 
     def picture(self, loads: PinLoads, instant: int) -> Picture | None:
         """The pin at one instant, with its envelope over all instants; None for a model without
         fields.
         """
-        ...
 
     def volume(self, loads: PinLoads, instant: int) -> Picture | None:
         """A body at one instant with its inside, without an envelope; None for solid models, whose
         picture has all there is.
         """
-        ...

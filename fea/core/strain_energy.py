@@ -6,11 +6,12 @@ square of its error in the energy norm.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from fea.core.pin_loads import Loads, UnitLoad, require_solved
+from fea.core.pin_loads import Loads, Unit, UnitLoad, amounts_of
 from pinbase.arrays import Floats
 
 
@@ -22,17 +23,19 @@ class StrainEnergy:
     work: (L, L) J, of each unit load on the displacements by each of them.
     """
 
-    units: tuple[tuple[UnitLoad, int], ...]
+    units: tuple[Unit, ...]
     work: Floats
+
+    @classmethod
+    def of_both_phases(cls, loads: Sequence[UnitLoad], work: Floats) -> StrainEnergy:
+        """The energy of K unit loads whose work (K, K), J, is the same in both phases."""
+        units = tuple((load, phase) for phase in (0, 1) for load in loads)
+        return cls(units, np.asarray(np.kron(np.eye(2), work), np.float64))
 
     def of(self, loads: Loads, instant: int = 0) -> float:
         """The energy under the loads of an instant, by its number, J.
 
         Raises: ArgumentError where a part of the loads is not among the unit loads.
         """
-        acting = loads.coefficients()
-        require_solved(loads.case, acting, (load for load, _ in self.units))
-        amounts = np.array(
-            [acting[load][instant, p] if load in acting else 0.0 for load, p in self.units]
-        )
+        amounts = amounts_of(self.units, loads)[instant]
         return 0.5 * float(amounts @ self.work @ amounts)

@@ -65,21 +65,17 @@ class SectionPlane(Protocol):
     @property
     def skin(self) -> Floats:
         """Points (S, 2) of the outline, r and z in m, in their order."""
-        ...
 
     def walls(self, z: Floats) -> tuple[Floats, Floats]:
         """Radii (Z,) of the bore (0 without one) and of the outside at z (Z,), m."""
-        ...
 
     def outside(self, points: Floats) -> Mask:
         """Mask (..) of the points (.., 2) that are in no excluded zone."""
-        ...
 
     def von_mises(self, loads: PinLoads, instant: int, angle: float, points: Floats) -> Floats:
         """Stress (2, ..), Pa, at points (.., 2) of the half plane at an angle, rad, and of the one
         opposite.
         """
-        ...
 
 
 class SurfaceField(Protocol):
@@ -102,25 +98,21 @@ class SurfaceField(Protocol):
 
     def amounts(self, loads: PinLoads) -> Floats:
         """The amount of each unit load at each instant, by phase: (T, K, 2)."""
-        ...
 
     def largest(self, loads: PinLoads, instant: int) -> Floats:
         """The von Mises stress (P,), Pa, at an instant; on a meridian the largest about the axis
         where it is read, 0 where it is not.
         """
-        ...
 
     def location(self, loads: PinLoads, instant: int) -> Point | None:
         """The place (x, y, z), m, of the largest stress that is read at an instant, for a section
         through it; None for a body that is not of revolution.
         """
-        ...
 
     def unread(self, loads: PinLoads, points: Ints, angles: Floats) -> Mask | None:
         """Mask (T, J, A) of the points (J,) that are not read at all instants and angles (A,), rad,
         since lugs press on them or beside; None where no lugs press on a body of revolution.
         """
-        ...
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
-from fea.core.pin_loads import PinLoads
+from fea.core.pin_loads import PinLoads, Unit
 from fea.core.solution import Picture
 from fea.core.voigt import rotation
 from fea.cut.frames import cartesian, turn_of
@@ -22,7 +22,6 @@ from fea.cut.supports import ClampReaction
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.revolve import revolve_solid
 from fea.solid.boundary import QUARTER_TRIANGLES
-from fea.solid.nodal_loads import Unit
 from geometry.mesh.clip import EIGHT_TETRAHEDRA, clipped, gaps, halved, upright
 from pinbase.arrays import Floats, Ints
 

@@ -22,7 +22,7 @@ import numpy as np
 from fea.core.local_fit import continuation
 from fea.core.material import Material
 from fea.core.memory import most_unknowns
-from fea.core.pin_loads import UnitLoad
+from fea.core.pin_loads import Unit, UnitLoad
 from fea.cut.evaluate import fine_about
 from fea.cut.frames import cartesian, turn_of
 from fea.cut.local_model import LocalModel
@@ -32,7 +32,6 @@ from fea.cut.piece_system import combinations
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.model import HarmonicModel
 from fea.harmonic.section_solution import FIRST_MESH_SIZE, finer_at_rings
-from fea.solid.nodal_loads import Unit
 from geometry import Pin
 from geometry.mesh.cut_piece import Piece
 from geometry.mesh.section_mesh import meridian_mesh

@@ -12,7 +12,7 @@ import numpy as np
 from fea.core.memory import most_unknowns
 from fea.core.mesh_result import MeshMaximum
 from fea.core.model import MeshBefore, MeshProblem, MeshSequence
-from fea.core.pin_loads import PinLoads
+from fea.core.pin_loads import PinLoads, Unit
 from fea.core.zone import DISTANCE_VARIATIONS, Zone
 from fea.cut.field import CutField, CutSolution
 from fea.cut.local_fields import LocalFields
@@ -25,7 +25,6 @@ from fea.harmonic.fields import MeridianFields
 from fea.harmonic.first_mesh import FirstMesh
 from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.harmonic.stress_recovery import NO_POINTS
-from fea.solid.nodal_loads import Unit
 from geometry import CutPin
 from geometry.mesh.cut_piece import Piece
 from geometry.mesh.sizing import Grade

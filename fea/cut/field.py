@@ -14,7 +14,7 @@ from fea.core.solution import Picture, StressPoints
 from fea.core.unit_surface import SpaceSurface, UnitSurface
 from fea.core.zone import Zone
 from fea.cut.body import body
-from fea.cut.local_fields import MAX_REFINED_RISE, LocalFields
+from fea.cut.local_fields import MAX_REFINED_RISE, LocalFields, point_of
 from fea.cut.shown import ShownCut, shown
 from fea.cut.shown_free import free_picture, stress_points
 from fea.cut.supports import ClampMotions, ClampReaction
@@ -109,8 +109,7 @@ class CutField:
             value, point = piece.beneath(loads, loads.pressed)
             t = int(value.argmax())
             if value[t] > deepest.value:
-                x, y, z = piece.points[point[t]].tolist()
-                deepest = Beneath(float(value[t]), (x, y, z), t)
+                deepest = Beneath(float(value[t]), point_of(piece.points[point[t]]), t)
         return deepest
 
     def depths(self, loads: PinLoads, instant: int, least: float) -> Steps:

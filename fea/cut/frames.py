@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
+from fea.core.pin_loads import Unit
 from fea.core.voigt import rotation
 from fea.harmonic.fields import MeridianFields
-from fea.solid.nodal_loads import Unit
 from geometry.mesh.cut_piece import Piece
 from pinbase.arrays import Floats
 

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from fea.core.mesh_result import FEATURE_READING_DISTANCE, Point, ZoneMaximum
-from fea.core.pin_loads import Loads, require_solved
+from fea.core.pin_loads import Loads, Unit, amounts_of
 from fea.core.pressed import PressedArcs, Rings
 from fea.cut.frames import turn_of
 from fea.cut.free_points import AwayFromPressed, CutReading, FreePoints, distance, relieved
@@ -16,7 +16,6 @@ from fea.cut.inner_corners import InnerCorner
 from fea.cut.interior import InnerFields
 from fea.cut.region import zone
 from fea.harmonic.beneath import Steps, stairs
-from fea.solid.nodal_loads import Unit
 from fea.solid.superposition import squares
 from geometry.mesh.cut_piece import Piece
 from pinbase.arrays import Floats, Ints, Mask
@@ -25,7 +24,6 @@ from pinbase.arrays import Floats, Ints, Mask
 CUT_REFINE_ABOVE = 0.95  # of the maximum: a place with more stress is refined
 CUT_MIN_SPACING = 0.35  # of the hole's size, between such places
 CUT_MAX_PLACES = 4
-LOAD_ROUND_OFF = 1e-9  # of a load's amounts
 # Bounds of effects, each rounded up from the largest one seen (docs/method.md for the ends).
 END_EFFECT_FACTOR = 1.5  # change at the maximum by an end, over what is left there (1.2 seen)
 NEIGHBOUR_EFFECT_FACTOR = 5.0  # stress at a cut over the change beside it by another (4.4 seen)
@@ -81,7 +79,7 @@ class LocalFields:
 
         Raises: ArgumentError when there is no field for a part of the loads.
         """
-        return coefficients_of(loads, self.units)
+        return amounts_of(self.units, loads)
 
     def at(self, amounts: Floats) -> LocalFields:
         """The fields of all unit loads in amounts (L,), as those of one."""
@@ -216,22 +214,6 @@ class LocalFields:
             if all(np.linalg.norm(positive[k] - positive[o]) > apart for o in places):
                 places.append(int(k))
         return tuple(point_of(self.points[k]) for k in places)
-
-
-def coefficients_of(loads: Loads, units: tuple[Unit, ...]) -> Floats:
-    """The amount of each unit (load and phase) at each instant, (T, L).
-
-    Raises: ArgumentError when a part of the loads is not among the units.
-    """
-    acting, out = loads.coefficients(), np.zeros((len(loads), len(units)))
-    for load, amounts in acting.items():
-        least = LOAD_ROUND_OFF * np.abs(amounts).max()
-        for phase in load.phases:
-            if (load, phase) in units:
-                out[:, units.index((load, phase))] = amounts[:, phase]
-            elif np.abs(amounts[:, phase]).max() > least:
-                require_solved(loads.case, (load,), ())
-    return out
 
 
 def point_of(x: Floats) -> Point:

@@ -92,11 +92,6 @@ class LocalModel:
         self.relief = Relief(self.faces, bearings)
         self.system = PieceSystem(piece.profile.name, self.space, material, clamps, self.parities)
 
-    @property
-    def unknowns(self) -> int:
-        """Number of displacement components, constrained ones included."""
-        return self.space.unknowns
-
     @cached_property
     def scatter(self) -> Floats:
         """Relative scatter (P,) of stress with the positions of nodes, of rounded corners."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from fea.core.material import Material
 from fea.core.mesh_result import Point
+from fea.core.pin_loads import Unit
 from fea.core.voigt import rotation
 from fea.core.zone import Zone
 from fea.cut.frames import cartesian, in_pin, on_skin, turn_of
@@ -20,7 +21,6 @@ from fea.cut.lost_loads import bearings
 from fea.cut.movement import displacement, rigid
 from fea.harmonic.fields import MeridianFields
 from fea.singular.singularities import outside
-from fea.solid.nodal_loads import Unit
 from geometry.mesh.cut_piece import Piece, Spots, piece_mesh
 from pinbase.arrays import Floats, Mask
 
@@ -155,7 +155,7 @@ def local_fields(
         _at_open_ends(piece, points[outer]),
         model.faces.free_ends,
         moved,
-        model.unknowns,
+        model.space.unknowns,
         tuple(
             replace(corner, distance=np.tile(corner.distance, len(x)))
             for corner in inner_corners(model, model.faces.points, distance)

@@ -10,8 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from fea.core.local_fit import continuation
+from fea.core.pin_loads import Unit
 from fea.harmonic.fields import MeridianFields
-from fea.solid.nodal_loads import Unit, vectors
+from fea.solid.nodal_loads import vectors
 from pinbase.arrays import Floats
 
 

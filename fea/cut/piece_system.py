@@ -50,11 +50,6 @@ class PieceSystem:
     clamps: tuple[str, ...]
     parities: Parities
 
-    @property
-    def unknowns(self) -> int:
-        """Number of displacement components, constrained ones included."""
-        return self.space.unknowns
-
     def displace(
         self,
         loaded: Ints,
@@ -71,7 +66,7 @@ class PieceSystem:
         whole: (M, L) size of all classes' forces.
         tolerance: of iterations (TwoLevel.solve).
         """
-        free = np.ones(self.unknowns)
+        free = np.ones(self.space.unknowns)
         free[self._fixed(parity)] = 0.0
         held = np.zeros(0, dtype=np.int64)
         # Without clamps rigid motions are left: forces are balanced, and one corner's unknown is
@@ -88,11 +83,11 @@ class PieceSystem:
         forces = free[loaded, None] * forces
         size, right = combinations(forces)
         rank = int(np.sum(size > TRACTION_RANK_TOLERANCE * size[0]))
-        some = np.zeros((self.unknowns, rank))
+        some = np.zeros((self.space.unknowns, rank))
         some[loaded] = forces @ right[:rank].T
         u = (
             self._two_level.solve(free, held, some, tolerance)
-            if self.unknowns > MAX_FACTORED_UNKNOWNS
+            if self.space.unknowns > MAX_FACTORED_UNKNOWNS
             else None
         )
         # Small systems are factored, and those on which the iteration fails.
@@ -114,7 +109,7 @@ class PieceSystem:
 
     @cached_property
     def _system(self) -> ConstrainedSystem:
-        return ConstrainedSystem(self.stiffness, np.arange(self.unknowns) // 3)
+        return ConstrainedSystem(self.stiffness, np.arange(self.space.unknowns) // 3)
 
     @cached_property
     def stiffness(self) -> sp.csr_matrix:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 
+from fea.core.pin_loads import Unit
 from fea.core.zone import Zone
 from fea.cut.local_fields import LocalFields
 from fea.cut.local_model import LocalModel
 from fea.cut.local_solution import LocalMesh, local_fields, section_points
 from fea.harmonic.fields import MeridianFields
-from fea.solid.nodal_loads import Unit
 from pinbase.arrays import Floats
 from pinbase.memo import Memo
 from pinbase.records import digest

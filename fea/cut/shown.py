@@ -9,13 +9,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial import cKDTree
 
+from fea.core.pin_loads import Unit
 from fea.cut.frames import cartesian
 from fea.cut.local_fields import LocalFields
 from fea.cut.movement import axis_kept, of_units, rigid
 from fea.cut.region import zone
 from fea.cut.supports import ClampReaction, reached
 from fea.harmonic.fields import MeridianFields
-from fea.solid.nodal_loads import Unit
 from pinbase.arrays import Floats, Ints, Mask
 
 # Chosen by judgement:

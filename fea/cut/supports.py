@@ -15,9 +15,8 @@ from dataclasses import dataclass, field, fields
 import numpy as np
 
 from fea.core.linear_solver import SolveError
-from fea.core.pin_loads import LoadAmounts, Loads, PinLoads, UnitLoad
-from fea.cut.local_fields import LocalFields, coefficients_of
-from fea.solid.nodal_loads import Unit
+from fea.core.pin_loads import LoadAmounts, Loads, PinLoads, Unit, UnitLoad, amounts_of
+from fea.cut.local_fields import LocalFields
 from pinbase.arrays import Floats
 
 MAX_GAP_CONDITION = 1e8  # largest condition number of the equations that close the gaps
@@ -74,7 +73,7 @@ class ClampMotions:
         """The loads together with the motions of clamps that they cause."""
         if not self.motions:
             return loads
-        q = coefficients_of(loads, self.units) @ self.amounts.T
+        q = amounts_of(self.units, loads) @ self.amounts.T
         acting = dict(loads.coefficients())
         for (unit, phase), amount in zip(self.motions, q.T, strict=True):
             both = acting.setdefault(unit, np.zeros((len(loads), 2)))

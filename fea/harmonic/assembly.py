@@ -35,11 +35,13 @@ class Section:
     """The harmonic equations of quadratic triangles on a section (m).
 
     Unknown 3 k + c belongs to node k: p, m or w for c = 0, 1, 2.
+    nodes: (N, 2) r, z in m; elements: (M, 6) their nodes.
     parts: (M,) the number of each element's material, from 0 on; without them there is one.
     """
 
     def __init__(self, section: MeridianMesh, parts: Ints | None = None) -> None:
         self.section, self.parts = section, parts
+        self.nodes, self.elements = section.nodes, section.elements
         at, self._area_weights, exact = _rules()
         self.sampled_at = at[:, exact:]  # three, where strains are most exact
         self._quadrature, self._sampled_points = slice(0, exact), slice(exact, None)
@@ -49,16 +51,6 @@ class Section:
     def unknowns(self) -> int:
         """Number of unknowns, constrained ones included."""
         return 3 * len(self.nodes)
-
-    @property
-    def nodes(self) -> Floats:
-        """Node coordinates (N, 2): r, z in m."""
-        return self.section.nodes
-
-    @property
-    def elements(self) -> Ints:
-        """Node numbers (M, 6)."""
-        return self.section.elements
 
     @cached_property
     def _mapped(self) -> tuple[Floats, Floats, Floats]:

@@ -35,7 +35,7 @@ class Outline:
 
     def __init__(self, space: Section) -> None:
         edges = space.section.edges
-        self._nodes = space.nodes
+        self.every_node = space.nodes
         self._surface_weights: dict[str, tuple[Floats, Floats]] = {}
         self.of_rings: dict[tuple[UnitLoad, ...], tuple[Floats, Floats]] = {}
         self.nodes: Ints = np.concatenate(list(edges.values()))
@@ -49,13 +49,8 @@ class Outline:
     def moved(self, nodes: Floats) -> Outline:
         """The same edges on a section whose nodes are elsewhere, (N, 2), m."""
         other = copy(self)
-        other._nodes, other._surface_weights, other.of_rings = nodes, {}, {}
+        other.every_node, other._surface_weights, other.of_rings = nodes, {}, {}
         return other
-
-    @property
-    def every_node(self) -> Floats:
-        """All nodes of the section, (N, 2): r, z in m."""
-        return self._nodes
 
     def constrained(self, surfaces: tuple[str, ...]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
         """Mask (E,) of the edges on any of the surfaces."""
@@ -69,18 +64,18 @@ class Outline:
         out = np.zeros((*self.nodes.shape, 3))
         for part in parts:
             rows = self.rows[part.surface]
-            out[rows] += part.at(self._nodes[self.nodes[rows], 1])
+            out[rows] += part.at(self.every_node[self.nodes[rows], 1])
         return out
 
     def forces(self, parts: tuple[Traction, ...], n: int) -> Floats:
         """Nodal forces (N, 3), N, along r, theta and z of tractions of harmonic n."""
         if not parts:
-            return np.zeros((len(self._nodes), 3))
+            return np.zeros((len(self.every_node), 3))
         nodes, by_part = self.nodes[np.concatenate([self.rows[x.surface] for x in parts])], []
         for part in parts:
             z, weight = self._quadrature(part.surface)
             by_part.append(np.einsum("eqi,eqa->eia", weight, part.at(z)))
-        out = np.zeros((len(self._nodes), 3))
+        out = np.zeros((len(self.every_node), 3))
         np.add.at(out, nodes.ravel(), around(n) * np.concatenate(by_part).reshape(-1, 3))
         return out
 
@@ -101,7 +96,7 @@ class Outline:
         """The heights (E, 4), m, of Gauss points of edges, and the weights (E, 4, 3), m^2, with
         which values there act on the nodes.
         """
-        x, values = self._nodes[self.nodes[rows]], shapes(_EDGE_GAUSS_POINTS)
+        x, values = self.every_node[self.nodes[rows]], shapes(_EDGE_GAUSS_POINTS)
         at = np.einsum("qi,eia->eqa", values, x)
         length = np.linalg.norm(np.einsum("qi,eia->eqa", slopes(_EDGE_GAUSS_POINTS), x), axis=2)
         return at[..., 1], (_EDGE_GAUSS_WEIGHTS * length * at[..., 0])[..., None] * values

@@ -141,16 +141,15 @@ class MeridianSurface:
 
 def unit_meridian(fields: MeridianFields) -> UnitSurface:
     """The meridian under the unit loads of a mesh; made once."""
-    key = ("meridian",)
-    if key not in fields.derived:
-        r, z = fields.points[: fields.skin].T
-        fields.derived[key] = UnitSurface(
+    r, z = fields.points[: fields.skin].T
+    return fields.once(
+        ("meridian",),
+        lambda: UnitSurface(
             points=np.stack([r, 0.0 * r, z], axis=1),
             triangles=np.zeros((0, 3), dtype=np.int64),
             n=np.array([load.n for load in fields.loads], dtype=np.int64),
             even=EVEN_COMPONENTS,
             stress=VON_MISES_ROOT @ fields.stress[: fields.skin],
             displacement=fields.displacement[: fields.skin],
-        )
-    unit: UnitSurface = fields.derived[key]
-    return unit
+        ),
+    )

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import scipy.sparse as sp
@@ -16,6 +16,8 @@ from fea.core.zone import Zone
 from fea.singular.singularities import outside
 from geometry.mesh.section_mesh import MeridianMesh
 from pinbase.arrays import Floats, Ints, Mask
+
+Made = TypeVar("Made")
 
 
 @dataclass(frozen=True)
@@ -68,8 +70,14 @@ class MeridianFields:
         for one in np.unique(n):
             here = np.flatnonzero(n == one)
             work[np.ix_(here, here)] = self.forces[:, here].T @ moved[:, here]
-        units = tuple((load, phase) for phase in (0, 1) for load in self.loads)
-        return StrainEnergy(units, np.asarray(np.kron(np.eye(2), work), np.float64))
+        return StrainEnergy.of_both_phases(self.loads, work)
+
+    def once(self, key: tuple[object, ...], make: Callable[[], Made]) -> Made:
+        """A quantity derived from these fields by its key, made when it is first asked for."""
+        if key not in self.derived:
+            self.derived[key] = make()
+        made: Made = self.derived[key]
+        return made
 
     @cached_property
     def derived(self) -> dict[tuple[object, ...], Any]:

@@ -59,11 +59,7 @@ class SurfacePoints:
 
 def surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfacePoints:
     """The points of the surface of a pin with rings; nu: Poisson's ratio. They are found once."""
-    key: tuple[object, ...] = ("surface", nu, rings.key)
-    known: dict[tuple[object, ...], SurfacePoints] = fields.derived
-    if key not in known:
-        known[key] = _surface_points(fields, rings, nu)
-    return known[key]
+    return fields.once(("surface", nu, rings.key), lambda: _surface_points(fields, rings, nu))
 
 
 def _surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfacePoints:

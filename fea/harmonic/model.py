@@ -169,14 +169,9 @@ class HarmonicModel(HarmonicBody):
     """
 
     def __init__(
-        self,
-        pin: Pin,
-        section: MeridianMesh,
-        material: Material,
-        clamps: tuple[str, ...],
-        pivot: float = 0.0,
+        self, pin: Pin, section: MeridianMesh, material: Material, clamps: tuple[str, ...]
     ) -> None:
-        super().__init__(pin, Section(section), material, clamps, pivot)
+        super().__init__(pin, Section(section), material, clamps)
         self.material = material
         self._readings: dict[tuple[bytes, tuple[tuple[float, float], ...]], Reading] = {}
 

@@ -137,8 +137,4 @@ class PartField:
 
 def part_mask(fields: MeridianFields, pin: Pin, part: StrengthPart) -> Mask:
     """Mask (S,) of the points of a section that belong to a part; made once."""
-    key: tuple[object, ...] = ("part", part)
-    known: dict[tuple[object, ...], Mask] = fields.derived
-    if key not in known:
-        known[key] = part.holds(pin, fields.points)
-    return known[key]
+    return fields.once(("part", part), lambda: part.holds(pin, fields.points))

@@ -44,14 +44,12 @@ class ShownStress(Protocol):
 
         Components are rr, tt, zz, tz, rz, rt.
         """
-        ...
 
     def envelope(self, instant: int) -> Floats:
         """The largest von Mises stress (P, A), Pa, of the free surface over all instants.
 
         It includes what is shown at this instant. NaN where lugs press at all instants.
         """
-        ...
 
 
 def shown_surface(fields: MeridianFields, loads: PinLoads, nu: float) -> ShownStress:

@@ -95,20 +95,12 @@ class Reading:
 def points_of_nodes(outline: Outline, count: int) -> Ints:
     """The point of a reading at each of `count` nodes, (N,)."""
     row = np.zeros(count, dtype=np.int64)
-    inner = np.flatnonzero(~_mask(count, outline.nodes))
+    inner = np.setdiff1d(np.arange(count), outline.nodes)
     row[inner] = len(EDGE_STATIONS) * len(outline.nodes) + np.arange(len(inner))
     first = len(EDGE_STATIONS) * np.arange(len(outline.nodes))
     for node, at in ((2, len(EDGE_STATIONS) // 2), (1, len(EDGE_STATIONS) - 1), (0, 0)):
         row[outline.nodes[:, node]] = first + at
     return row
-
-
-def _mask(count: int, *nodes: Ints) -> Mask:
-    """Mask (N,) of the given nodes among `count`."""
-    marked = np.zeros(count, dtype=bool)
-    for some in nodes:
-        marked[some] = True
-    return marked
 
 
 def reading(
@@ -130,13 +122,12 @@ def reading(
         np.array([[j.r, j.z] for j in every_jump]).reshape(-1, 2).repeat(EDGE_DIRECTIONS, axis=0)
     )
     skin_at = np.einsum("qi,eia->eqa", shapes(EDGE_STATIONS), space.nodes[outline.nodes])
-    count = len(space.nodes)
-    inner = np.flatnonzero(~_mask(count, outline.nodes))
+    inner = np.setdiff1d(np.arange(len(space.nodes)), outline.nodes)
     constrained = outline.constrained(clamps)
     # Stress on clamped edges and on the axis comes from inside, at `rough` nodes.
     on_axis = ON_AXIS_TOLERANCE * space.nodes[:, 0].max()
     axis = outline.nodes[space.nodes[outline.nodes, 0] < on_axis]
-    rough = np.flatnonzero(_mask(count, outline.nodes[constrained], axis))
+    rough = np.union1d(outline.nodes[constrained], axis)
     # Points of the skin, inner nodes, further points inside, points of jumps; the last two have no
     # displacement.
     points = [skin_at.reshape(-1, 2), space.nodes[inner], inside, on_jumps]

@@ -45,14 +45,12 @@ class Region(Protocol):
 
     def masked(self, points: Ints) -> Mask:
         """Mask (J,) of the points (J,) that are read on a part of the circumference only."""
-        ...
 
     def read(self, points: Ints, instants: Ints) -> Mask:
         """The arcs (J, ARC_COUNT) on which pairs of points and instants, (J,) each, are read.
 
         Source of the arcs: fea.core.pressed.
         """
-        ...
 
 
 class SuperposedStress:

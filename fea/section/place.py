@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fea.core.over_time import Between, rise_between, through_time
+from fea.core.over_time import Between, over_time
 from fea.core.peak import ErrorParts
 from fea.core.pin_loads import PinLoads
 from fea.core.places import SectionPlace
@@ -69,10 +69,7 @@ def found_section(
     cells: relative error from the contact cells that the forces come from; None where the forces
     are given. Statics alone gives those exactly; between two clamps they have the error of a beam.
     """
-    rise = 0.0
-    if between is not None and len(loads) > 1:
-        loads = through_time(answer, loads, between, tolerance)
-        rise = rise_between(answer, loads, between)
+    loads, rise = over_time(answer, loads, between, tolerance)
     at = answer.place(loads)
     parts = ErrorParts(mesh=0.0, time=rise, model=answer.held_twice(at) * at.value)
     if cells is not None:

@@ -9,7 +9,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from fea.core.material import Material
 from fea.core.memory import most_unknowns, require_memory
 from fea.core.mesh_result import MeshMaximum, ZoneMaximum
 from fea.core.model import MeshBefore, MeshProblem, MeshSequence
@@ -21,7 +20,6 @@ from fea.solid.field import SolidField, SolidSolution, in_none
 from fea.solid.model import SolidModel, acting
 from fea.solid.sharp_edges import sharp_edges
 from fea.solid.superposition import envelope
-from geometry import PinLike
 from geometry.imported.meshing import solid_mesh
 from geometry.mesh.elements import Element
 from geometry.mesh.solid_mesh import MeshSize
@@ -38,35 +36,27 @@ GIVEN_SOLID_MESHES = replace(SOLID_MESHES, ratio=2.0)
 
 
 def solid_solution(
-    pin: PinLike,
-    material: Material,
-    clamps: tuple[str, ...],
-    cases: tuple[PinLoads, ...],
-    singularities: tuple[Zone, ...],
-    size: MeshSize,
-    distance: float,
-    element: Element = "curved",
-    memory: float | None = None,
+    problem: MeshProblem, size: MeshSize, element: Element = "curved"
 ) -> SolidSolution:
     """Solve all unit loads of the cases on a mesh that is finer at edges of bands and clamps.
 
-    singularities: those of a body of revolution; those of any other body are found on its mesh,
-    `distance` (of the diameter) wide.
-    memory: as in fea.solve.solve.Asked.
+    The problem has the zones of a body of revolution; those of any other body are found on its
+    mesh.
 
     Raises: MeshError, SolveError.
     """
+    pin, clamps, cases, singularities = problem.pin, problem.clamps, problem.cases, problem.zones
     names = tuple(dict.fromkeys(name for c in cases for name in c.surfaces))
     edges = tuple(z for name in names for z in (pin.band(name).z0, pin.band(name).z1))
     profile = pin.profile
     if profile is not None:
         turned = tuple(name for name in clamps if name in (*END_FACES, *profile.labels))
         edges += tuple(z for _, z in clamp_rims(profile, turned))
-    most = most_unknowns(memory)
+    most = most_unknowns(problem.memory)
     mesh = solid_mesh(pin, size, tuple(dict.fromkeys(edges)), element, most)
     units = acting(cases) or ((UnitLoad(names[0], "force", 1), 0),)  # whose coefficient is zero
-    model = SolidModel(pin, mesh, material, clamps)
-    require_memory(pin.name, model.unknowns, memory)
+    model = SolidModel(pin, mesh, problem.material, clamps)
+    require_memory(pin.name, model.space.unknowns, problem.memory)
     if profile is not None and pin.revolved:
         near = [[p.varied(x) for p in singularities] for x in (1.0, *DISTANCE_VARIATIONS)]
         rims = [all_round(rim(profile, p, p.radius)) for here in near for p in here]
@@ -79,7 +69,7 @@ def solid_solution(
         limit = partial(free_of_arcs, profile) if profile is not None else None
         edge = sharp_edges(fields.space, fields.surface, clamps, limit)
         at = [
-            edge.singularities(fields.points, times * distance)
+            edge.singularities(fields.points, times * problem.distance)
             for times in (1.0, *DISTANCE_VARIATIONS)
         ]
         within, *varied = ([mask for _, mask in here] for here in at)
@@ -136,11 +126,8 @@ class Solid:
         self, problem: MeshProblem, level: int, before: MeshBefore | None = None
     ) -> SolidMeshSolution:
         """Solve one mesh, as every model does."""
-        solution = solid_solution(
-            problem.pin, problem.material, problem.clamps, problem.cases, problem.zones,
-            MeshSize().finer(self.meshes.ratio**level), problem.distance, self._element,
-            problem.memory,
-        )  # fmt: skip
+        size = MeshSize().finer(self.meshes.ratio**level)
+        solution = solid_solution(problem, size, self._element)
         maxima = {} if before is None else before.maxima
         return SolidMeshSolution(solution, self.meshes.ratio, maxima)
 

@@ -64,10 +64,7 @@ class SolidSolution:
 
 def in_none(within: Iterable[Mask], count: int) -> Mask:
     """Mask of the `count` points that are in none of some masks."""
-    out = np.ones(count, dtype=bool)
-    for mask in within:
-        out &= ~mask
-    return out
+    return np.asarray(~np.any([np.zeros(count, dtype=bool), *within], axis=0))
 
 
 class SolidField:

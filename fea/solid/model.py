@@ -16,12 +16,12 @@ import scipy.sparse as sp
 
 from fea.core.linear_solver import SolveError, factorize
 from fea.core.material import Material
-from fea.core.pin_loads import Loads, PinLoads, require_solved
+from fea.core.pin_loads import Loads, PinLoads, Unit, amounts_of
 from fea.core.strain_energy import StrainEnergy
 from fea.singular.probes import interpolation
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh, clamped_nodes, resultants, surface
-from fea.solid.nodal_loads import Unit, nodal_loads, relative_resultant, with_closing_tractions
+from fea.solid.nodal_loads import nodal_loads, relative_resultant, with_closing_tractions
 from fea.solid.stress_recovery import nodal_stress, with_known_traction
 from geometry import PinLike
 from geometry.mesh.solid_mesh import SolidMesh
@@ -77,15 +77,9 @@ class UnitFields:
     def coefficients(self, loads: Loads) -> Floats:
         """The amount of each unit load at each instant, (T, L).
 
-        Raises: ValueError when there is no field for a part of the loads.
+        Raises: ArgumentError when there is no field for a part of the loads.
         """
-        acts = loads.coefficients()
-        require_solved(loads.case, acts, (load for load, _ in self.loads))
-        out = np.zeros((len(loads), len(self.loads)))
-        for k, (load, phase) in enumerate(self.loads):
-            if load in acts:
-                out[:, k] = acts[load][:, phase]
-        return out
+        return amounts_of(self.loads, loads)
 
 
 def acting(cases: Iterable[PinLoads]) -> tuple[Unit, ...]:
@@ -109,11 +103,6 @@ class SolidModel:
     ) -> None:
         self.pin, self.material, self.clamps = pin, material, clamps
         self.space = Discretisation(solid.mesh)
-
-    @property
-    def unknowns(self) -> int:
-        """Number of displacement components, constrained ones included."""
-        return self.space.unknowns
 
     @cached_property
     def stiffness(self) -> sp.csr_matrix:
@@ -152,8 +141,8 @@ class SolidModel:
 
     def _displace(self, F: Floats) -> tuple[Floats, Floats]:
         """Displacements (N, 3, L) under nodal forces F (N, 3, L), and resultants of clamps."""
-        shape, F = F.shape, F.reshape(self.unknowns, -1)
-        free = np.setdiff1d(np.arange(self.unknowns), self.fixed)
+        shape, F = F.shape, F.reshape(self.space.unknowns, -1)
+        free = np.setdiff1d(np.arange(self.space.unknowns), self.fixed)
         K = self.stiffness
         u = np.zeros_like(F)
         u[free] = factorize(K[free][:, free], free // 3)(F[free])

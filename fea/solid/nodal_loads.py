@@ -8,14 +8,12 @@ import numpy as np
 
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
-from fea.core.pin_loads import UnitLoad
+from fea.core.pin_loads import Unit, UnitLoad
 from fea.core.tractions import Traction, closing_tractions, density_of, traction
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import Patch, SurfaceMesh, resultants
 from geometry import Band, GeometryError, PinLike
 from pinbase.arrays import Floats, Mask
-
-Unit = tuple[UnitLoad, int]  # a unit load and its phase
 
 RESULTANT_TOLERANCE = 1e-10  # of the nodal forces: error of their resultant, by round-off
 # Parts of a band's area by which a mesh may differ from it; chosen by judgement.

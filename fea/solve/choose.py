@@ -22,16 +22,16 @@ from fea.beam.model import BeamField
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.model import Model
-from fea.core.over_time import rise_between, through_time
+from fea.core.over_time import over_time
 from fea.core.peak import NO_REASON, Reason
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import DECIDED_TEXT, Requirement, decided, limit_of
 from fea.core.zone import Zone
 from fea.harmonic.evaluate import Harmonic
 from fea.harmonic.first_mesh import FirstMesh
-from fea.solve.refine import posed_for, refine, zones_of
+from fea.solve.refine import Attempt, posed_for, refine, zones_of
 from fea.support.prescribed import PrescribedSupport
-from fea.support.support import HeldPin, PinProblem, Progress, Solution, StressReading, Support
+from fea.support.support import PinProblem, Solution, StressReading, Support
 from geometry import ArgumentError, CutPin, Pin, body_of_revolution
 
 if TYPE_CHECKING:  # the steps import the supports and models that they use
@@ -51,27 +51,6 @@ BEAM_WITHIN_TOLERANCE = Reason(
     "beam: its error is within the tolerance", ("beam-within-tolerance",)
 )
 BEAM_DECIDES = Reason(f"beam: {DECIDED_TEXT}", ("beam-decides",))
-
-
-@dataclass(frozen=True)
-class Attempt:
-    """A held pin, the cases that are left to solve, and the requirement on them.
-
-    failure: the failure of the step before, if it failed.
-    """
-
-    held: HeldPin
-    problem: PinProblem
-    requirement: Requirement
-    progress: Progress
-    failure: Exception | None = None
-
-    def refined(self, model: Model, why: Reason | None = None) -> dict[str, Solution]:
-        """Solve the cases on finer and finer meshes of a model."""
-        problem, requirement = self.problem, self.requirement
-        posed = posed_for(model, self.held, problem, requirement)
-        why = why or chosen(requirement, model.name, problem.material, posed.zones)
-        return refine(model, posed, self.held, problem, requirement, why, self.progress)
 
 
 @dataclass(frozen=True)
@@ -167,7 +146,7 @@ def _beam(at: Attempt) -> dict[str, Solution]:
         zones = zones_of(at.held.pin, at.held.clamps, material, (case,), requirement)
         if beam_refused(requirement, zones):
             continue
-        solution = by_beam(at.held, at.problem, case, requirement)
+        solution = by_beam(at, case)
         peak, why = solution.peak, REQUESTED_BEAM
         if auto:
             assert isinstance(solution.answer, BeamField)
@@ -205,19 +184,23 @@ def _beam_instead(at: Attempt) -> dict[str, Solution]:
     """The beam solutions, with their own error, where no harmonic mesh could be solved."""
     remark = Reason(f"; the harmonic model failed: {at.failure}")
     why = Reason("beam: the harmonic model failed", ("harmonic-failed",))
-    return {
-        case.case: with_reason(by_beam(at.held, at.problem, case, at.requirement, remark), why)
-        for case in at.problem.cases
-    }
+    return {case.case: with_reason(by_beam(at, case, remark), why) for case in at.problem.cases}
+
+
+def _refined(at: Attempt, model: Model, why: Reason | None = None) -> dict[str, Solution]:
+    """Solve the cases on finer and finer meshes of a model."""
+    posed = posed_for(model, at.held, at.problem, at.requirement)
+    why = why or chosen(at.requirement, model.name, at.problem.material, posed.zones)
+    return refine(at, model, posed, why)
 
 
 def _harmonic(at: Attempt) -> dict[str, Solution]:
     pressed = any(at.held.start(case.case).pressed is not None for case in at.problem.cases)
-    return at.refined(Harmonic(at.problem.memo, pressed=pressed))
+    return _refined(at, Harmonic(at.problem.memo, pressed=pressed))
 
 
 def _local(at: Attempt) -> dict[str, Solution]:
-    return at.refined(_local_solids(at))
+    return _refined(at, _local_solids(at))
 
 
 def _solid(at: Attempt) -> dict[str, Solution]:
@@ -230,7 +213,7 @@ def _solid(at: Attempt) -> dict[str, Solution]:
     elif at.failure is not None:
         text = f"solid: a local solid about the cuts failed: {at.failure}"
         why = Reason(text, ("not-axisymmetric", "local-failed"))
-    return at.refined(Solid(at.held.pin.meshed), why)
+    return _refined(at, Solid(at.held.pin.meshed), why)
 
 
 def _local_solids(at: Attempt, first: FirstMesh | None = None) -> LocalSolids:
@@ -283,7 +266,7 @@ def _contact(at: Attempt) -> dict[str, Solution]:
                 f"pin {held.pin.name}: no local solid about the cuts will do, since {refused}",
                 refused.code,
             ) from refused
-    solutions = at.refined(model, why)
+    solutions = _refined(at, model, why)
     return {
         case: solution
         for case, solution in solutions.items()
@@ -367,26 +350,19 @@ def chosen(
     return Reason(f"harmonic: beam rejected: {text}", ("beam-inaccurate",))
 
 
-def by_beam(
-    held: HeldPin,
-    problem: PinProblem,
-    case: PinLoads,
-    requirement: Requirement,
-    remark: Reason = NO_REASON,
-) -> Solution:
+def by_beam(at: Attempt, case: PinLoads, remark: Reason = NO_REASON) -> Solution:
     """The solution of a case by the beam model, with its own error.
 
     remark: appended to its note.
     """
-    start, rise, pin = time.perf_counter(), 0.0, body_of_revolution(held.pin)
+    start, held, pin = time.perf_counter(), at.held, body_of_revolution(at.held.pin)
     assert pin is not None
     remarks = held.notes.get(case.case, NO_REASON) + remark
-    loads = held.start(case.case)
-    field = BeamField(pin, problem.material, held.clamps, loads)
-    if between := problem.between.get(case.case):
-        loads = through_time(field, loads, between, requirement.tolerance)
-        rise = rise_between(field, loads, between)
-        field = BeamField(pin, problem.material, held.clamps, loads)
+    loads, material = held.start(case.case), at.problem.material
+    field, between = BeamField(pin, material, held.clamps, loads), at.problem.between.get(case.case)
+    loads, rise = over_time(field, loads, between, at.requirement.tolerance)
+    if len(loads) > len(field.case):
+        field = BeamField(pin, material, held.clamps, loads)
     instant, spent = field.estimate.instant, time.perf_counter() - start
     reading = StressReading(field.evidence(spent, remarks, rise), field, loads, instant)
-    return held.finished(reading, requirement)
+    return held.finished(reading, at.requirement)

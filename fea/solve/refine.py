@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -12,7 +13,7 @@ from fea.core.material import Material
 from fea.core.memory import too_much
 from fea.core.mesh_history import MeshHistory
 from fea.core.model import MeshBefore, MeshProblem, MeshSequence, MeshSolution, Model
-from fea.core.over_time import Between, rise_between, through_time, with_crest
+from fea.core.over_time import Between, changed, rise_between, through_time, with_crest
 from fea.core.peak import NO_REASON, Reason
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import (
@@ -82,15 +83,26 @@ def zones_of(
     )
 
 
-def refine(
-    model: Model,
-    posed: MeshProblem,
-    held: HeldPin,
-    problem: PinProblem,
-    requirement: Requirement,
-    why: Reason,
-    progress: Progress,
-) -> dict[str, Solution]:
+@dataclass(frozen=True)
+class Attempt:
+    """A held pin, the cases that are left to solve, and the requirement on them.
+
+    failure: the failure of the step before, if it failed.
+    """
+
+    held: HeldPin
+    problem: PinProblem
+    requirement: Requirement
+    progress: Progress
+    failure: Exception | None = None
+
+    def between(self, case: str) -> Between | None:
+        """The loads on the pin at any times of a motion; None without a motion."""
+        links = self.problem.between.get(case)
+        return links and partial(changed, self.held.press, links)
+
+
+def refine(at: Attempt, model: Model, posed: MeshProblem, why: Reason) -> dict[str, Solution]:
     """Solve finer and finer meshes until every case is converged or decided, or a limit is reached.
 
     posed: the problem of the held pin as the model takes it (`posed_for`).
@@ -98,7 +110,8 @@ def refine(
 
     Raises: MeshError, SolveError.
     """
-    meshes, material = model.meshes, problem.material
+    held, requirement = at.held, at.requirement
+    meshes, material = model.meshes, at.problem.material
     seen = {
         c.case: MeshHistory(held.pin.name, c.case, model.name, (), (), meshes) for c in posed.cases
     }
@@ -108,13 +121,13 @@ def refine(
         if before is not None and (limit := _limit(model, posed, before, level)) is not None:
             notes = {case: notes.get(case, NO_REASON) + limit for case in seen}
             break
-        progress(f"pin {held.pin.name}, {model.name} model, mesh {level + 1}")
+        at.progress(f"pin {held.pin.name}, {model.name} model, mesh {level + 1}")
         start = time.perf_counter()
         mesh, below = model.solve(posed, level, before), before
         # The first mesh shows between which instants of a motion the maximum may lie; these are
         # added for all meshes.
         if not level:
-            posed = replace(posed, cases=_through_time(held, problem, mesh, posed, requirement))
+            posed = replace(posed, cases=_through_time(at, mesh, posed))
         for case in posed.cases:
             maximum, end = mesh.maximum(case), time.perf_counter()
             seen[case.case] = seen[case.case].appended(maximum, end - start)
@@ -126,8 +139,7 @@ def refine(
     # Verdicts come last, since the instant of the maximum is refined on the last mesh alone.
     out = {}
     for case in posed.cases:
-        between = _between(held, problem, case.case)
-        loads, history = _at_crest(mesh, case, seen[case.case], between)
+        loads, history = _at_crest(mesh, case, seen[case.case], at.between(case.case))
         reasons = notes.get(case.case, NO_REASON), why + met(requirement, material, history)
         reading = _reading(reasons, mesh, loads, history)
         if material.hardened and below is not None and below.solution is not None:
@@ -205,19 +217,7 @@ def too_much_memory(problem: MeshProblem, model: Model, unknowns: float) -> str 
     return too_much(unknowns, problem.memory, section, local)
 
 
-def _between(held: HeldPin, problem: PinProblem, case: str) -> Between | None:
-    """The loads on the pin at any times of a motion; None without a motion."""
-    links = problem.between.get(case)
-    return None if links is None else lambda times: held.press(links(times))
-
-
-def _through_time(
-    held: HeldPin,
-    problem: PinProblem,
-    mesh: MeshSolution,
-    posed: MeshProblem,
-    requirement: Requirement,
-) -> tuple[PinLoads, ...]:
+def _through_time(at: Attempt, mesh: MeshSolution, posed: MeshProblem) -> tuple[PinLoads, ...]:
     """The cases with the instants that matter according to the first mesh.
 
     Beside an error that exceeds the tolerance, such as that of contact's cells, instants to the
@@ -225,9 +225,8 @@ def _through_time(
     """
     out = []
     for case in posed.cases:
-        between = _between(held, problem, case.case)
-        if between is not None:
-            tolerance = max(posed.tolerance, requirement.besides.get(case.case, 0.0))
+        if (between := at.between(case.case)) is not None:
+            tolerance = max(posed.tolerance, at.requirement.besides.get(case.case, 0.0))
             case = through_time(mesh.field(case.case), case, between, tolerance)
         out.append(case)
     return tuple(out)

@@ -10,7 +10,8 @@ from fea.core.material import Material
 from fea.core.over_time import Between
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
-from fea.solve.choose import Attempt, rungs
+from fea.solve.choose import rungs
+from fea.solve.refine import Attempt
 from fea.support.support import HeldPin, PinProblem, Progress, Solution, silent
 from geometry import ArgumentError, GeometryError, Pin, PinLike
 from geometry.mesh.solid_mesh import MeshError

@@ -45,12 +45,21 @@ class Bands:
         """
         return float(0.5 * (self.z.min() + self.z.max()))
 
+    def largest(self, of_rings: Floats) -> Floats:
+        """The largest of the values of each band's rings (T, R), (T, B)."""
+        return np.stack([of_rings[:, on].max(axis=1) for on in self._on], axis=1)
+
+    def sums(self, of_rings: Floats) -> Floats:
+        """The sums of the values of each band's rings (T, R, ..), (T, B, ..)."""
+        return np.stack([of_rings[:, on].sum(axis=1) for on in self._on], axis=1)
+
+    @property
+    def _on(self) -> list[NDArray[np.bool_]]:
+        """Masks (R,) of the rings of each band."""
+        return [self.band == b for b in range(len(self))]
+
     @cached_property
     def middles(self) -> Floats:
         """The z of the bands' middles, (B,) m."""
-        ends = [
-            (self.z - self.length / 2.0)[self.band == b].min()
-            + (self.z + self.length / 2.0)[self.band == b].max()
-            for b in range(len(self))
-        ]
-        return 0.5 * np.array(ends)
+        start, end = self.z - self.length / 2.0, self.z + self.length / 2.0
+        return 0.5 * np.array([start[on].min() + end[on].max() for on in self._on])

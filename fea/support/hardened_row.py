@@ -17,7 +17,7 @@ import numpy as np
 from fea.core.hardened import StrengthPart, linear_strength
 from fea.core.material import Material
 from fea.core.mesh_result import Point
-from fea.core.over_time import Between, rise_between, through_time
+from fea.core.over_time import Between, over_time
 from fea.core.peak import ErrorParts, Maximum, Reason
 from fea.core.pin_loads import PinLoads
 from fea.core.places import ContactPlace, PartPlace, Places
@@ -129,10 +129,8 @@ class PartSearch:
         """The largest stress of a part in the field; where: as of PartField."""
         answer = self.reading.answer
         assert isinstance(answer, HarmonicField)
-        field, loads, rise = PartField(answer, self.pin, part, where), self.reading.loads, 0.0
-        if self.between is not None and len(loads) > 1:
-            loads = through_time(field, loads, self.between, self.tolerance)
-            rise = rise_between(field, loads, self.between)
+        field = PartField(answer, self.pin, part, where)
+        loads, rise = over_time(field, self.reading.loads, self.between, self.tolerance)
         top = field.maximum(loads)
         now = loads.at(np.array([top.instant]))
         errors = self._errors(part, top.value, rise, where == "beneath")

@@ -10,9 +10,9 @@ from typing import Protocol
 import numpy as np
 
 from fea.core.material import Material
-from fea.core.over_time import Between
+from fea.core.over_time import Between, changed
 from fea.core.peak import Maximum, Reason
-from fea.core.pin_loads import Floats, PinLoads
+from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.core.solution import StressField
 from fea.core.verdict import Evidence
@@ -24,6 +24,7 @@ from geometry import Pin, PinLike, body_of_revolution
 from pinbase.memo import Memo
 
 Progress = Callable[[str], None]
+LoadsChange = Callable[[PinLoads], PinLoads]
 
 
 def silent(_: str) -> None:
@@ -58,10 +59,7 @@ class PinProblem:
         every = (*self.cases, *self.also.values())
         if any(pulled(self.pin, self.lugs, x, mass) for x in every):
             whole = partial(structure_reacts, self.pin, self.lugs, mass)
-            object.__setattr__(self, "cases", tuple(map(whole, self.cases)))
-            object.__setattr__(self, "also", {k: whole(x) for k, x in self.also.items()})
-            of_times = {k: partial(_at_times, whole, x) for k, x in self.between.items()}
-            object.__setattr__(self, "between", of_times)
+            self._change({x.case: whole for x in self.cases}, whole)
         # A link states moments in a whole case, also where these pass through zero. Loads of all
         # cases have the same seats, so that they can be solved together; and what acts under any of
         # them is solved for all.
@@ -75,19 +73,15 @@ class PinProblem:
             )
             for case, of_case in tilting.items()
         }
-        cases = tuple(known[x.case](x) for x in self.cases)
-        also = {
-            case: known[case](x) if case in known else replace(x, seats=seats, pulls=pulls)
-            for case, x in self.also.items()
-        }
-        between = {
-            case: partial(_at_times, known[case], loads)
-            for case, loads in self.between.items()
-            if case in tilting
-        }
-        object.__setattr__(self, "cases", cases)
-        object.__setattr__(self, "also", also)
-        object.__setattr__(self, "between", between)
+        self._change(known, partial(replace, seats=seats, pulls=pulls))
+
+    def _change(self, of: Mapping[str, LoadsChange], other: LoadsChange) -> None:
+        """Change the loads of each case in its own way, and those of other cases (`also`)."""
+        cases = tuple(of[x.case](x) for x in self.cases)
+        also = {case: of.get(case, other)(x) for case, x in self.also.items()}
+        between = {c: partial(changed, of[c], x) for c, x in self.between.items() if c in of}
+        for name, value in (("cases", cases), ("also", also), ("between", between)):
+            object.__setattr__(self, name, value)
 
     def completed(self, links: PinLoads) -> PinLoads:
         """Other loads of a case, with what is known of them in the whole case."""
@@ -125,64 +119,49 @@ class PinProblem:
         return {s: x for s, x in axial_seats(pin, self.lugs).items() if s in pulling}
 
 
-def _at_times(whole: Callable[[PinLoads], PinLoads], between: Between, times: Floats) -> PinLoads:
-    """The loads at some times (T,) s, with what is known of them in the whole case."""
-    return whole(between(times))
-
-
 class HeldPin(Protocol):
     """A pin held in one way, ready for any loads of its links. It lives in one process."""
 
     @property
     def problem(self) -> PinProblem:
         """The pin, its lugs and its cases."""
-        ...
 
     @property
     def pin(self) -> PinLike:
         """The pin that is meshed: bands are cut into rings where pressure varies along them."""
-        ...
 
     @property
     def clamps(self) -> tuple[str, ...]:
         """Constrained surfaces, by the pin's names."""
-        ...
 
     @property
     def failures(self) -> Mapping[str, Maximum]:
         """The cases that cannot be held, with the verdict "rigid" or "failed" and its reason."""
-        ...
 
     @property
     def notes(self) -> Mapping[str, Reason]:
         """The notes on the support, by case, that belong to the maximum."""
-        ...
 
     @property
     def finest(self) -> bool:
         """Whether no finer resolution may follow."""
-        ...
 
     def start(self, case: str) -> PinLoads:
         """The loads on the pin at the instants from which the solution of a case starts."""
-        ...
 
     def press(self, links: PinLoads) -> PinLoads:
         """The loads on the pin under loads of its links.
 
         Raises: SolveError.
         """
-        ...
 
     def resolved(self, case: str, requirement: Requirement) -> bool:
         """Return whether a finer resolution could not change the answer, before stress is
         refined.
         """
-        ...
 
     def of_meshes(self, requirement: Requirement) -> Requirement:
         """The requirement on the meshes, given the support's own error."""
-        ...
 
     def finished(self, reading: StressReading, requirement: Requirement) -> Solution:
         """The solution of a case, judged once, with the results of the support.
@@ -191,7 +170,6 @@ class HeldPin(Protocol):
         properties of the joint. All of them follow from the loads at one instant, which are found
         once.
         """
-        ...
 
 
 class UnderLinkLoads:
@@ -241,7 +219,6 @@ class Support(Protocol):
         Raises: ArgumentError for lugs that do not fit; MeshError, SolveError where no case can be
         held.
         """
-        ...
 
 
 @dataclass(frozen=True)

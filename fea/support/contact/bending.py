@@ -61,16 +61,13 @@ class LoadedJoint:
     def section_forces(self) -> JointForces:
         """The section forces at all instants."""
         z, bands = stations(self.pin), self.bands
-        across = self.loads.forces[:, : len(bands.z), :2]
-        forces = [across[:, bands.band == b].sum(axis=1) for b in range(len(self.lugs))]
+        forces = bands.sums(self.loads.forces[:, : len(bands.z), :2])
         shear, moment = (
             np.linalg.norm(x, axis=2) for x in (self.shear_force(z), self.bending_moment(z))
         )
         names = tuple(lug.connection for lug in self.lugs)
         pull, torque = map(np.abs, self.along(z))
-        return JointForces(
-            z, self.loads.times, shear, moment, names, np.stack(forces, axis=1), pull, torque
-        )
+        return JointForces(z, self.loads.times, shear, moment, names, forces, pull, torque)
 
     def along(self, z: Floats) -> tuple[Floats, Floats]:
         """The axial force (T, Z) N and the torque (T, Z) N m before z (Z,) m."""

@@ -12,7 +12,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.places import BandPressure, ContactPlace, PressedCell
 from fea.cut.field import CutField
-from fea.harmonic.beneath import Beneath, stairs
+from fea.harmonic.beneath import stairs
 from fea.harmonic.field import HarmonicField
 from fea.support.contact.edge_peak import contact_edges
 from fea.support.contact.joint_contact import JointContact
@@ -46,7 +46,7 @@ def contact_place(
         deepest.value,
         error * deepest.value,
         deepest.location,
-        _time(loads, deepest),
+        loads.time(deepest.instant),
         None,
         None,
         contact_edges(contact, material),
@@ -63,10 +63,6 @@ def reached(material: Material, required: float | None) -> tuple[float, ...]:
     if strength is None:
         return ()
     return (strength,) if required is None else (strength, strength / required)
-
-
-def _time(loads: PinLoads, beneath: Beneath) -> float | None:
-    return None if loads.times is None else float(loads.times[beneath.instant])
 
 
 def _instant(loads: PinLoads, contact: JointContact) -> int:

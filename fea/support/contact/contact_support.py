@@ -72,7 +72,11 @@ class ContactSupport:
         near: Mapping[str, Candidates] = {}
         cells, finer, left = self.cells, self.finer, problem.cases
         if isinstance(coarser, HeldContact):
-            near, left = coarser.candidates, self._of_arcs(coarser, left)
+            near = coarser.candidates
+            if self.arcs == "wide":
+                # Cells that follow narrow arcs have many harmonics and few rings, so that they
+                # neither suit a case with wide ones nor should be solved for it.
+                left = tuple(case for case in left if not coarser.narrow(case))
             if not left:
                 return replace(coarser, starts={})  # none is held
             cells, finer = self._cells(coarser, left, requirement)
@@ -120,16 +124,6 @@ class ContactSupport:
         model = _seeing(ContactModel(*of, cells, problem.memo), problem.pin)
         progress(f"pin {name}, contact")
         return model, PressedCases(model, cases, problem.between, problem.also, cut)
-
-    def _of_arcs(self, coarser: HeldContact, cases: tuple[PinLoads, ...]) -> tuple[PinLoads, ...]:
-        """The cases that are held.
-
-        Cells that follow narrow arcs have many harmonics and few rings, so that they neither suit a
-        case with wide ones nor should be solved for it.
-        """
-        if self.arcs != "wide":
-            return cases
-        return tuple(case for case in cases if not coarser.narrow(case))
 
     def _cells(
         self, coarser: HeldContact, cases: Sequence[PinLoads], requirement: Requirement

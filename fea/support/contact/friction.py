@@ -77,9 +77,7 @@ def ring_torques(model: ContactModel, states: Sequence[ContactState]) -> Floats:
 
 def band_torques(model: ContactModel, states: Sequence[ContactState]) -> Floats:
     """The largest torque of friction between the pin and each lug, (T, B) N m."""
-    rings = ring_torques(model, states)
-    each = [rings[:, model.bands.band == b].sum(axis=1) for b in range(len(model.lugs))]
-    return np.stack(each, axis=1)
+    return model.bands.sums(ring_torques(model, states))
 
 
 def opposed(torques: Floats, z: Floats) -> Floats:
@@ -109,7 +107,7 @@ def along_axis(model: ContactModel, contact: JointContact) -> Floats:
     bands = model.bands
     friction = np.array([lug.friction for lug in model.lugs])[bands.band]
     force = contact.line_load[0] * bands.length[:, None]
-    of_lugs = np.stack([force[bands.band == b].sum(axis=0) for b in range(len(model.lugs))])
+    (of_lugs,) = bands.sums(force[None])
     largest = of_lugs[np.linalg.norm(of_lugs, axis=1).argmax()]
     # mu p along the axis turns a ring by mu R times its force.
     arm = bands.radius * (force @ (largest / (np.linalg.norm(largest) or 1.0)))

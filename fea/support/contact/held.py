@@ -6,11 +6,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
 from fea.core.equilibrium import out_of_balance
+from fea.core.over_time import changed
 from fea.core.peak import Maximum, Reason, meets_limit
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.places import CaseCrushing
@@ -252,11 +253,10 @@ class HeldContact:
         cells: its relative error from the cells.
         """
         between, loads = self.problem.between.get(case.case), self.contact.instants[case.case]
-        on_rings = None if between is None else lambda times: self.contact.on_rings(between(times))
         return found_section(
             self.contact.sections[case.case],
             self.contact.on_rings(loads),
-            on_rings,
+            between and partial(changed, self.contact.on_rings, between),
             requirement.tolerance,
             cells,
         )
@@ -275,10 +275,9 @@ class HeldContact:
         """
         of, between = self.contact, self.problem.between.get(case.case)
         links, sections = of.instants[case.case], of.sections[case.case]
-        on_rings = on_pin = None
-        if between is not None:
-            on_rings = lambda times: of.on_rings(between(times))  # noqa: E731
-            on_pin = lambda times: of.press(between(times))  # noqa: E731
+        on_rings, on_pin = (
+            between and partial(changed, change, between) for change in (of.on_rings, of.press)
+        )
         at_sections = of.on_rings(links), on_rings
         return PartSearch(
             reading, self.model.pin, on_pin, surface, sections, at_sections, requirement.tolerance,

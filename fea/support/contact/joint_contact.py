@@ -30,10 +30,7 @@ class JointContact(LoadedJoint):
         """Half angle of contact, (T, B) rad, at the ring of each band where it is largest."""
         sector = self.angles[1] - self.angles[0]
         cells = np.stack([(state.pressure > 0.0).sum(axis=1) for state in self.contact])
-        half = 0.5 * sector * cells
-        return np.stack(
-            [half[:, self.bands.band == b].max(axis=1) for b in range(len(self.lugs))], axis=1
-        )
+        return self.bands.largest(0.5 * sector * cells)
 
     @property
     def largest_pressure(self) -> Floats:
@@ -41,10 +38,7 @@ class JointContact(LoadedJoint):
 
         At edges it depends on the size of the cells.
         """
-        by_ring = np.stack([state.pressure.max(axis=1) for state in self.contact])
-        return np.stack(
-            [by_ring[:, self.bands.band == b].max(axis=1) for b in range(len(self.lugs))], axis=1
-        )
+        return self.bands.largest(np.stack([x.pressure.max(axis=1) for x in self.contact]))
 
     def half_angle(self, bands: Bands, tail: Floats) -> float:
         """The half angle of contact, rad, at the ring that is pressed most at the first instant,

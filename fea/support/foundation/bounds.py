@@ -111,9 +111,8 @@ def _relative_clearance(model: FoundationModel, joint: JointFoundation, instant:
 
 def band_forces(joint: JointFoundation) -> Floats:
     """The magnitude of the force of each lug on the pin, (T, B) N."""
-    starts = np.flatnonzero(np.diff(joint.bands.band, prepend=-1))
-    sums = np.add.reduceat(joint.loads.forces[:, :, :2], starts, axis=1)
-    return np.asarray(np.linalg.norm(sums, axis=2))
+    on_rings = joint.loads.forces[:, : len(joint.bands.z), :2]
+    return np.asarray(np.linalg.norm(joint.bands.sums(on_rings), axis=2))
 
 
 def _moment_part(model: FoundationModel, loose: float) -> float:

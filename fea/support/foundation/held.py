@@ -16,16 +16,15 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from fea.beam.error_model import PLAIN_SECTION_ERROR
-from fea.beam.maximum import VonMisesMaxima, stress_points
+from fea.beam.maximum import StressAlongBeam
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.mesh_result import Point, at_angle
-from fea.core.over_time import rise_between, through_time
+from fea.core.over_time import over_time
 from fea.core.peak import ErrorParts, Maximum, Reason, Refinement
 from fea.core.pin_loads import Floats, LoadAmounts, Loads, PinLoads, UnitLoad
 from fea.core.places import Place, Places, SurfacePlace
 from fea.core.requirement import Requirement
-from fea.core.solution import StressPoints
 from fea.core.verdict import Evidence, judge
 from fea.section.place import FoundSection
 from fea.section.section_stress import AtSection, SectionField
@@ -126,12 +125,10 @@ class HeldFoundation(UnderLinkLoads):
             return Solution(peak, None, case, held=self)
 
     def _solution(self, case: PinLoads, requirement: Requirement) -> Solution:
-        start, rise, over = time.perf_counter(), 0.0, self.over
+        start, over = time.perf_counter(), self.over
         stress, tolerance = over.own, requirement.tolerance
         answer = FoundationField(stress, case)
-        if between := self.problem.between.get(case.case):
-            case = through_time(answer, case, between, tolerance)
-            rise = rise_between(answer, case, between)
+        case, rise = over_time(answer, case, self.problem.between.get(case.case), tolerance)
         every = stress.model.solve(case)
         places = FoundPlaces.of(stress, every)
         row = places.row
@@ -170,40 +167,18 @@ class HeldFoundation(UnderLinkLoads):
         return (peak.max_von_mises or 0.0) >= MIN_GOVERNING_RATIO * PRESSURE_FACTOR * largest
 
 
-class FoundationField:
+class FoundationField(StressAlongBeam):
     """The stress of beams on foundations, for any loads of the pin's links."""
 
     def __init__(self, stress: FoundationStress, case: PinLoads) -> None:
         self.stress, self.case = stress, case
+        self.at = np.stack([stress.r, stress.z], axis=1)
 
-    def maxima(self, loads: Loads, _: float = 0.0) -> Floats:
-        """Largest von Mises stress (T,) Pa at every instant."""
-        return np.asarray(self._von_mises(loads).von_mises.max(axis=0))
-
-    def largest(self, loads: Loads) -> tuple[float, int]:
-        """The largest von Mises stress over all instants, Pa, and the index of its instant."""
-        top = self._von_mises(loads)
-        return float(top.von_mises[top.place]), top.place[1]
-
-    def points(self, loads: PinLoads) -> StressPoints:
-        """Stress at the beam's points, for fatigue."""
-        stress = self.stress
-        points = np.stack([stress.r, stress.z], axis=1)
-        return stress_points(points, stress.harmonics(stress.model.solve(loads)))
-
-    def _von_mises(self, loads: Loads) -> VonMisesMaxima:
+    def harmonics(self, loads: Loads) -> Floats:
+        """The stress in the lugs, which need not react the amounts of unit loads."""
         whole = isinstance(loads, PinLoads)
         links = loads if isinstance(loads, PinLoads) else _as_loads(loads, self.case)
-        return self.stress.von_mises(self.stress.model.solve(links, whole))
-
-    def surface(self) -> None:
-        """Return None, since a beam has no field over its surface."""
-
-    def picture(self, loads: PinLoads, instant: int) -> None:
-        """Return None, for the same reason."""
-
-    def volume(self, loads: PinLoads, instant: int) -> None:
-        """Return None, for the same reason."""
+        return self.stress.harmonics(self.stress.model.solve(links, whole))
 
 
 def _as_loads(amounts: LoadAmounts, like: PinLoads) -> PinLoads:

@@ -74,10 +74,6 @@ class FoundationStress:
         left = tuple(n for n, out in zip(every, free, strict=True) if out)
         return cls(model, r[keep], z[keep], per_force[keep], near[keep], left)
 
-    def in_lugs(self, model: FoundationModel) -> FoundationStress:
-        """The stress of the same pin in other lugs."""
-        return replace(self, model=model)
-
     @cached_property
     def on_surface(self) -> FoundationStress:
         """The stress without the points on the axis."""

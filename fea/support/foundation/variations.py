@@ -9,6 +9,7 @@ the beam knows no more than these.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -179,4 +180,4 @@ def _changed(given: FoundationStress, change: JointChange) -> FoundationStress |
         both = zip(change.lugs, change.softness, strict=True)
         lugs = [with_stiffness(*x) for x in both]
         other = FoundationModel(given.model.given, given.model.material, lugs)
-    return given.in_lugs(other)
+    return replace(given, model=other)

@@ -12,6 +12,7 @@ from assess.opinion import calculix
 from assess.opinion.calculix_compare import compared_nodes, second_opinions
 from assess.opinion.opinions import Opinion
 from fea.core.material import Material
+from fea.core.model import MeshProblem
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
@@ -102,7 +103,7 @@ def test_what_no_longer_is_a_body_of_revolution_is_read_on_its_surface(steel: Ma
     """Of a pin with a flat no section tells which nodes inside lie in a singular place."""
     plain = Pin("P", (Segment(0.01, 0.02, connection="P1"),))
     pin = CutPin(plain, (), (Flat(0.004, 0.01, 0.008),))
-    solution = solid_solution(pin, steel, ("start",), (UP,), (), MeshSize(2.0), 0.1)
+    solution = solid_solution(MeshProblem(pin, steel, ("start",), (UP,)), MeshSize(2.0))
     surface = set(solution.fields.surface.nodes.tolist())
     read = set(compared_nodes(solution).tolist())
     excluded = surface - read

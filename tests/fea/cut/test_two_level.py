@@ -23,16 +23,16 @@ MESH = piece_mesh(PIECE, 1.0)
 def test_a_held_body_as_by_a_factorisation() -> None:
     """Forces at random nodes, in two columns of very different size; one is none at all."""
     model = LocalModel(PIECE, MESH, STEEL)
-    free = np.ones(model.unknowns)
+    free = np.ones(model.space.unknowns)
     held = model.space.basis.get_dofs(model.space.mesh.boundaries["end"]).flatten()
     free[(3 * held[:, None] + np.arange(3)).ravel()] = 0.0
-    forces = np.random.default_rng(1).normal(size=(model.unknowns, 3)) * [1.0, 1e-3, 0.0]
+    forces = np.random.default_rng(1).normal(size=(model.space.unknowns, 3)) * [1.0, 1e-3, 0.0]
     found = TwoLevel(model.space, model.system.stiffness).solve(
         free, np.zeros(0, dtype=int), forces
     )
     assert found is not None
     assert not found[free == 0.0].any()
-    system = ConstrainedSystem(model.system.stiffness, np.arange(model.unknowns) // 3)
+    system = ConstrainedSystem(model.system.stiffness, np.arange(model.space.unknowns) // 3)
     known = system.solve(model.system.stiffness.copy(), free, forces)
     assert np.abs(found - known).max(axis=0) == pytest.approx(0.0, abs=1e-5 * np.abs(known).max())
 
@@ -49,7 +49,7 @@ def test_stress_about_a_hole_as_by_a_factorisation(
         stress[..., 3, 0], stress[..., 4, 0] = x, -y
     else:
         stress[..., 2, 0] = 1.0 + y
-    monkeypatch.setattr(piece_system, "MAX_FACTORED_UNKNOWNS", model.unknowns)
+    monkeypatch.setattr(piece_system, "MAX_FACTORED_UNKNOWNS", model.space.unknowns)
     known = model.solve(stress)
     monkeypatch.setattr(piece_system, "MAX_FACTORED_UNKNOWNS", 0)
     found = model.solve(stress)
@@ -66,7 +66,7 @@ def test_what_brings_little_is_solved_less_accurately(monkeypatch: pytest.Monkey
     model = LocalModel(PIECE, MESH, STEEL)
     stress = np.zeros((*model.faces.images.shape[:2], 6, 2))
     stress[..., 2, 0], stress[..., 2, 1] = 1.0, model.faces.images[..., 1] / D
-    monkeypatch.setattr(piece_system, "MAX_FACTORED_UNKNOWNS", model.unknowns)
+    monkeypatch.setattr(piece_system, "MAX_FACTORED_UNKNOWNS", model.space.unknowns)
     known = model.solve(stress).stress
     monkeypatch.setattr(piece_system, "MAX_FACTORED_UNKNOWNS", 0)
     weight = np.array([1.0, 1e-3])

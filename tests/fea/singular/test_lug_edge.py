@@ -179,7 +179,8 @@ def flexibility(body: Pin, rings: list[str], of: Material, inwards: bool, start:
     """
     edges = ((D / 2.0, start), (D / 2.0, start + 2.0 * D))
     mesh = meridian_mesh(body, SectionSize(6.0), finer=[Grade(edges, 7e-5 * D, 0.0, 0.2)])
-    model = HarmonicModel(body, mesh, of, (), pivot=0.5)
+    model = HarmonicModel(body, mesh, of, ())
+    model.pivot = 0.5
     push = np.array([-1.0 if inwards else 1.0, 0.0, 0.0])
     forces = model.forces(0, [(Traction(name, 0.0, push, np.zeros(3)),) for name in rings])
     work = forces.T @ model.displace(0, forces) / around(0)

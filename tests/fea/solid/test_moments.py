@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 
 from fea.core.equilibrium import out_of_balance
 from fea.core.material import Material
-from fea.core.pin_loads import PinLoads, UnitLoad
+from fea.core.pin_loads import PinLoads, Unit, UnitLoad
 from fea.core.requirement import Requirement
 from fea.core.voigt import von_mises
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import resultants, surface
 from fea.solid.field import SolidField
 from fea.solid.model import SolidModel, UnitFields, acting
-from fea.solid.nodal_loads import Unit, nodal_loads
+from fea.solid.nodal_loads import nodal_loads
 from fea.solid.superposition import envelope
 from fea.solve.solve import solve_pin
 from geometry import ArgumentError, Pin, Segment

@@ -10,6 +10,7 @@ import pytest
 from assess.opinion.cantilever import cantilever
 from fea.core.equilibrium import out_of_balance
 from fea.core.material import Material
+from fea.core.model import MeshProblem
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.singular.singularities import find_singularities
@@ -158,12 +159,8 @@ def test_a_fillet_converges(cantilever_pin: Pin, steel: Material) -> None:
     assert coarse.peak.verdict == "converged", coarse.peak.note
     size = MeshSize().finer(2.0)
     singularities = find_singularities(cantilever_pin, ("start",), ("P1",), steel.poisson_ratio)
-    fine = solid_result(
-        solid_solution(cantilever_pin, steel, ("start",), (load,), singularities, size, 0.1),
-        {},
-        2.0,
-        load,
-    )
+    problem = MeshProblem(cantilever_pin, steel, ("start",), (load,), singularities)
+    fine = solid_result(solid_solution(problem, size), {}, 2.0, load)
     a, b = coarse.peak.max_von_mises, fine.maximum
     assert a is not None
     assert coarse.peak.error_estimate is not None

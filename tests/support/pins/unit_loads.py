@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.core.pin_loads import PinLoads, UnitLoad
+from fea.core.pin_loads import PinLoads, Unit, UnitLoad
 from fea.solid.model import UnitFields
-from fea.solid.nodal_loads import Unit
 
 
 def forces(*names: str, along: tuple[int, ...] = (0, 1)) -> tuple[Unit, ...]:

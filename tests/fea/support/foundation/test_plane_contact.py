@@ -47,7 +47,8 @@ def test_a_section_held_by_a_body_force(pin: Pin, bore: float) -> None:
     """n = 1: the work of a pressure and the body force that balances it is that of the surface's
     motion against the mean of the section.
     """
-    model = HarmonicModel(pin, meridian_mesh(pin, SectionSize(20.0)), EVEN, (), pivot=0.5)
+    model = HarmonicModel(pin, meridian_mesh(pin, SectionSize(20.0)), EVEN, ())
+    model.pivot = 0.5
     inwards = (Traction("A", 0.0, np.array([-1.0, 0.0, 0.0]), np.zeros(3)),)
     pressure, body = (
         model.forces(1, [inwards])[:, 0],
