@@ -60,7 +60,11 @@ class Solved:
 
 @pytest.fixture(scope="module", params=[0.0, 5e-4], ids=["sharp", "rounded"])
 def solved(request: pytest.FixtureRequest) -> Solved:
-    radius: float = request.param
+    return with_edges(request.param)
+
+
+def with_edges(radius: float, fillet: float = 5e-4) -> Solved:
+    """The pin in lugs with edges of a radius, m, the first of them beside a fillet of another."""
     pin = Pin(
         "P",
         (
@@ -72,7 +76,7 @@ def solved(request: pytest.FixtureRequest) -> Solved:
             Segment(0.010, D, connection="R"),
             Segment(0.010, D),
         ),
-        5e-4,
+        fillet,
     )
     lugs = [Lug(c, 2.5 * D, STEEL, edge_radius=radius, tilt=1e5) for c in "LMR"]
     share = np.array([-0.55, 1.0, -0.45])[:, None] * 50e3
@@ -154,6 +158,25 @@ def test_the_edges_of_lugs_are_read_where_all_beside_them_is(solved: Solved) -> 
             assert not (inner & read).any()
             seen |= read
         assert seen.any() or not of.cusps
+
+
+def test_the_edge_of_a_lug_beside_a_fillet_is_not_extrapolated() -> None:
+    """A fit between the two takes the fillet's stress for a cusp. What is between is not read
+    instead: it feels the last step of the pressure.
+    """
+    found = with_edges(1e-4, fillet=1.1e-3)
+    of, free = found.of, found.free
+    (near,) = [k for k, cusp in of.cusps.items() if not cusp.fits]
+    cusp = of.cusps[near]
+    assert cusp.place == pytest.approx((D / 2, 0.0052 + 1e-4))
+    assert near in of.fields.unread
+    assert not set(of.cusps) - {near} & set(of.fields.unread.tolist())
+    for instant in range(2):
+        (beside,) = free.read(np.array([near]), np.array([instant]))
+        inner = free.read(cusp.between, np.full(len(cusp.between), instant))
+        beyond = free.read(cusp.near, np.full(len(cusp.near), instant))
+        assert beyond[:, beside].all()
+        assert not inner[:, beside].any()
 
 
 def test_pressed_surface_is_read_away_from_the_edges_of_lugs(solved: Solved) -> None:
