@@ -222,10 +222,10 @@ def test_a_full_or_forbidden_folder_costs_nothing(
 ) -> None:
     replace = os.replace
 
-    def fails(source: str, target: Path) -> None:
+    def fails(source: str, target: Path, **of: int) -> None:
         if Path(target).parent == folder:
             raise OSError(code, os.strerror(code))
-        replace(source, target)
+        replace(source, target, **of)
 
     monkeypatch.setattr(os, "replace", fails)
     shutil.rmtree(folder)
