@@ -119,7 +119,7 @@ def _in_lugs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
         yield Rung(ContactSupport(ROUGH, alone=requirement.cells), _contact)
         return
     elif joints == "auto" and foundation.may_be_enough(problem, requirement):
-        yield Rung(foundation, _foundation)
+        yield Rung(foundation, _foundation, trial=True)
     resolutions = RESOLUTIONS
     if requirement.cells is not None:
         resolutions = (ROUGH if requirement.cells == "rough" else RESOLUTIONS[0],)

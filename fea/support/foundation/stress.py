@@ -21,6 +21,7 @@ from fea.beam.round_section import circle
 from fea.beam.stress import TZ, ZZ, notch_stress, section_stress
 from fea.beam.stress_concentration import Notch, notches
 from fea.beam.timoshenko import AXIAL, MOMENT
+from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats
 from fea.core.zone import Zone
 from fea.singular.singularities import find_singularities, outside
@@ -60,6 +61,8 @@ class FoundationStress:
         """The stress per section force of a pin on foundations.
 
         distance: excluded at sharp corners, of the local diameter.
+
+        Raises: SolveError where nothing of the surface is outside of that.
         """
         pin, nu = model.whole, model.material.poisson_ratio
         corners = find_singularities(pin, (), (), nu, distance)
@@ -70,6 +73,11 @@ class FoundationStress:
         near = _near(corners, r, z)
         near[len(r) - len(local) :] = NOTCH_ERROR
         keep = outside(corners, r, z)
+        if not (r[keep] > 0.0).any():
+            raise SolveError(
+                "its sharp corners are so close together that no surface is left to read",
+                "beyond-foundations",
+            )
         free = keep[len(r) - len(local) :]
         left = tuple(n for n, out in zip(every, free, strict=True) if out)
         return cls(model, r[keep], z[keep], per_force[keep], near[keep], left)

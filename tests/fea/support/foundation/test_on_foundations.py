@@ -299,6 +299,30 @@ def test_contact_in_three_dimensions_is_within_the_range(
     assert low < largest * 1e6 < high
 
 
+def test_discs_between_sharp_corners_have_no_surface_to_read() -> None:
+    """A beam says nothing of them: contact answers, unless foundations are requested, and there is
+    no range around a pin with another support.
+    """
+    profile = (
+        Segment(0.0075, 0.300, connection="L"),
+        Segment(0.005, 0.296),
+        Segment(0.0075, 0.300, connection="M"),
+        Segment(0.005, 0.296),
+        Segment(0.0075, 0.300, connection="R"),
+    )
+    discs, eyes = Pin("D", profile), tuple(Lug(name, 0.6, STEEL) for name in "LMR")
+    why = "no surface is left to read"
+    with pytest.raises(SolveError, match=why):
+        FoundationRange(discs, STEEL, eyes, 0.1, assumed=True)
+    (around,) = prescribed_ranges(discs, STEEL, eyes, (PULL,), (0.1, True))
+    assert around is not None
+    assert (around.range, why in around.remark) == (None, True)
+    decide = Requirement(goal="decide", required=2.0)
+    (found,) = solve(PinProblem(discs, replace(STEEL, yield_strength=800e6), eyes, (PULL,)), decide)
+    assert found.joint is not None
+    assert found.joint.model == "contact"
+
+
 SOFT_AND_FREE = "stiffness of the lugs times 0.5, tilt free"
 
 
