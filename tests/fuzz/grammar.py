@@ -40,6 +40,7 @@ REASONS = {
     r"change point at": "two paths cross there",
     r"friction jams": "that much friction leaves no motion, or two",
     r"bushing in lug .* is loose at": "its interference is smaller than what heat takes from it",
+    r"reliability needs its yield_strength": "without one there is no factor",
 }
 
 
