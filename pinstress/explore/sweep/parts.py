@@ -60,8 +60,7 @@ class BatchFolder:
         Batches of a sweep that was killed while they were removed are of other numbers.
         """
         self.folder.mkdir(parents=True, exist_ok=True)
-        for path in self.folder.glob(f"*{PART_SUFFIX}*"):
-            path.unlink()
+        self._clear()
         self._state()
 
     def _state(self) -> None:
@@ -185,9 +184,15 @@ class BatchFolder:
 
     def remove(self) -> None:
         """Remove the files and the folder."""
-        for path in (*self.folder.glob(f"*{PART_SUFFIX}*"), *self.folder.glob(f"{IDENTITY_FILE}*")):
+        self._clear()
+        for path in self.folder.glob(f"{IDENTITY_FILE}*"):
             path.unlink(missing_ok=True)
         self.folder.rmdir()
+
+    def _clear(self) -> None:
+        """Remove all batches, finished or not."""
+        for path in self.folder.glob(f"*{PART_SUFFIX}*"):
+            path.unlink(missing_ok=True)
 
 
 def is_ours(name: str) -> bool:
