@@ -3,8 +3,9 @@
 Every full answer is that of `pinstress.run` on the changed study, to the last bit. A quick one of a
 pin in contact is scaled from the study as it is (pinstress.analysis.scaled), or in full where its
 lugs press on it elsewhere, or on arcs too narrow for rough cells, and where the stress of lugs
-or of a hardened surface is wanted, which needs fine ones. Both are the same
-whatever was asked before: what is remembered has the content of everything it depends on as its
+or of a hardened surface is wanted, which needs fine ones. The range over its joint is scaled, too,
+or that of the rough cells where it may be another one. Both answers are the same whatever was
+asked before: what is remembered has the content of everything it depends on as its
 key, and nothing is updated in place.
 """
 
@@ -223,24 +224,30 @@ class Engine:
         name = task.pin.name
         if name not in self._as_is:
             self._as_is[name] = self._both(name)
-        tasks, before = self._as_is[name].tasks, self._as_is[name].rows
+        tasks = self._as_is[name].tasks
         # Cases at other temperatures are tasks of their own, with other clearances.
         cases = {loads.case for loads in task.loads}
-        if not all(same_ranges(x, task) for x in tasks if cases & {y.case for y in x.loads}):
+        same = all(same_ranges(x, task) for x in tasks if cases & {y.case for y in x.loads})
+        as_is, now = self._as_is[name].rows, self._coarse(plan, task, varied=not same)
+        if not now or not {row.case for row in now} <= as_is.keys():
             return None
-        now = self._coarse(plan, task, any(same_shape(x, task) for x in tasks))
-        if not now or not {row.case for row in now} <= before.keys():
-            return None
-        if any(contact_changed(before[x.case][1], x) for x in now):
+        if any(contact_changed(as_is[x.case][1], x) for x in now):
             return self._solve(plan, [task])[0]
+        rows = self._judged(plan, task, now)
+        if same and any(range_may_widen(as_is[x.case][0], x) for x in rows):
+            rows = self._judged(plan, task, self._coarse(plan, task, varied=True))
+        return PinOutcome(rows) if rows else None
+
+    def _judged(self, plan: Plan, task: Task, now: tuple[PinResult, ...]) -> tuple[PinResult, ...]:
+        """The rows of a task scaled by its coarse ones; none where one cannot be scaled."""
+        as_is = self._as_is[task.pin.name].rows
         of = for_task(plan.study, task, plan.requirement)
         rows = [
-            scaled_row(*before[x.case], x, task, of.of_case(x.case), plan.loads[x.case].range)
+            scaled_row(*as_is[x.case], x, task, of.of_case(x.case), plan.loads[x.case].range)
             for x in now
         ]
         judged = tuple(assessed(plan.study, task, row) for row in rows if row)
-        open_ = any(range_may_widen(before[row.case][0], row) for row in judged)
-        return None if open_ or len(judged) < len(rows) else PinOutcome(judged)
+        return () if len(judged) < len(rows) else judged
 
     def _both(self, pin: str) -> AsIs:
         """A pin of the study as it is; without rows where it cannot be built."""
@@ -250,16 +257,19 @@ class Engine:
             return AsIs([], {})
         out = {}
         for task, outcome in zip(plan.tasks, self._solve(plan, plan.tasks), strict=True):
-            for full, row in zip(outcome.rows, self._coarse(plan, task, True), strict=False):
+            for full, row in zip(outcome.rows, self._coarse(plan, task), strict=False):
                 out[row.case] = full, row
         return AsIs(plan.tasks, out)
 
-    def _coarse(self, plan: Plan, task: Task, lasting: bool) -> tuple[PinResult, ...]:
+    def _coarse(self, plan: Plan, task: Task, varied: bool = False) -> tuple[PinResult, ...]:
         """The rows of a task whose ratios are taken; none where they cannot be solved.
 
-        lasting: as in pinstress.analysis.scaled.coarse.
+        varied: whether the range over the joint is wanted, too.
         """
-        plan = replace(plan, requirement=coarse(plan.requirement, lasting), explained=False)
+        known = self._as_is.get(task.pin.name)  # None while it is being made
+        lasting = known is None or any(same_shape(x, task) for x in known.tasks)
+        requirement = coarse(plan.requirement, lasting, varied)
+        plan = replace(plan, requirement=requirement, explained=False)
         task = elastic_task(task)
 
         def make() -> tuple[PinResult, ...]:

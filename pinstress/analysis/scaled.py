@@ -21,7 +21,7 @@ from fea.core.places import BandPressure, ContactPlace, Place, Places
 from fea.core.requirement import MAX_ROUGH_ERROR, Requirement
 from fea.support.contact.contact_place import reached
 from fea.support.lugs.lug import LugRange
-from fea.support.records import JointRange, JointResult
+from fea.support.records import FRICTION, JointRange, JointResult, Variation, range_ends
 from geometry import Pin
 from pinbase.arrays import Floats
 from pinstress.analysis.gather.gather_landing import range_of
@@ -59,13 +59,14 @@ def scalable(task: Task) -> bool:
     return bool(task.lugs) and isinstance(task.pin, Pin)
 
 
-def coarse(requirement: Requirement, lasting: bool) -> Requirement:
+def coarse(requirement: Requirement, lasting: bool, varied: bool) -> Requirement:
     """Return the requirement on the solutions whose ratio is taken.
 
     lasting: whether the shape is to be solved again under other loads.
+    varied: whether the range over the joint is wanted, too.
     """
     cells: Literal["unit", "alone"] = "unit" if lasting else "alone"
-    return replace(requirement, cells=cells, meshes=1, goal="value", required=None)
+    return replace(requirement, cells=cells, meshes=1, goal="value", required=None, varied=varied)
 
 
 def same_shape(one: Task, other: Task) -> bool:
@@ -74,8 +75,8 @@ def same_shape(one: Task, other: Task) -> bool:
 
 
 def same_ranges(one: Task, other: Task) -> bool:
-    """Return whether two tasks leave the same open of their joints: a range is scaled with its row,
-    so that a changed one is not known.
+    """Return whether two tasks leave the same open of their joints, so that the range of one may
+    be scaled with its row to that of the other.
     """
     return _open_of_joint(one) == _open_of_joint(other)
 
@@ -155,8 +156,7 @@ def scaled_row(
     places = _places(row, now, ratios, drift, task, requirement)
     peak = _peak(row.maximum, now.maximum, places, requirement.tolerance)
     assert peak.max_von_mises is not None
-    by = peak.max_von_mises / (row.max_von_mises or 1.0)
-    joint = now.joint and _with_range(now.joint, row.joint, by, ratios["beneath"])
+    joint = now.joint and _joint(row, now, peak, max(drift.values()))
     landing = None
     if row.landing is not None and over is not None:
         landing = _landing(row.landing, over, peak, task)
@@ -286,25 +286,49 @@ def _peak(full: Maximum, now: Maximum, places: Places, tolerance: float) -> Maxi
     )
 
 
-def _with_range(
-    joint: JointResult, full: JointResult | None, by: float, beneath: float
-) -> JointResult:
-    """Return the joint of a coarse solution with the range of the full one, scaled."""
-    over = full.range if full is not None else None
-    if over is None:
+def _joint(row: PinResult, now: PinResult, peak: Maximum, drift: float) -> JointResult:
+    """Return the joint of a coarse solution with its range scaled to the maximum; where it has
+    none, with that of the row of the study as it is.
+
+    drift: the relative error of the ratios to the coarse solution.
+    """
+    joint = now.joint
+    assert joint is not None
+    if joint.range is not None and joint.range.variations:
+        return replace(joint, range=_scaled_range(joint.range, now, peak, drift))
+    if row.joint is None or row.joint.range is None:
         return joint
-    low, high = over.max_von_mises
+    return replace(joint, range=_scaled_range(row.joint.range, row, peak), remark=RANGE_REMARK)
+
+
+def _scaled_range(over: JointRange, of: PinResult, peak: Maximum, drift: float = 0.0) -> JointRange:
+    """Return the range of a row, scaled to another maximum and widened by a relative drift."""
+    largest = peak.max_von_mises or 0.0
+    by, deep = largest / (of.max_von_mises or 1.0), _beneath(peak) / _beneath(of.maximum)
+
+    def interval(x: Variation) -> tuple[float, float] | None:
+        if x.what == FRICTION or not (drift or x.interval):
+            return x.interval
+        low, high = x.interval or (x.max_von_mises, x.max_von_mises)
+        return by * low * (1.0 - drift), by * high * (1.0 + drift)
+
     variations = tuple(
         replace(
             x,
             max_von_mises=x.max_von_mises * by,
-            interval=x.interval and (x.interval[0] * by, x.interval[1] * by),
-            beneath=None if x.beneath is None else x.beneath * beneath,
+            interval=interval(x),
+            beneath=None if x.beneath is None else x.beneath * deep * (1.0 + drift),
         )
         for x in over.variations
     )
-    scaled = JointRange((low * by, high * by), variations, over.model, over.assumed)
-    return replace(joint, range=scaled, remark=RANGE_REMARK)
+    return replace(over, max_von_mises=range_ends(largest, variations), variations=variations)
+
+
+def _beneath(peak: Maximum) -> float:
+    """Return the stress beneath contact, Pa."""
+    assert peak.places is not None
+    assert peak.places.contact is not None
+    return peak.places.contact.beneath
 
 
 def _landing(full: LandingRange, over: ImpulseLoads, peak: Maximum, task: Task) -> LandingRange:

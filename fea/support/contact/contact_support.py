@@ -92,7 +92,7 @@ class ContactSupport:
         if finer is not None:
             finest |= model.ring_count(finer.rings) * finer.sectors > MAX_CELLS
         if self.alone:
-            compared = contact.uncompared(near)
+            compared = contact.uncompared(near, requirement)
         else:
             compared = contact.compared(near, requirement, finest)
         if isinstance(coarser, HeldContact):  # which has cases that later cells hold

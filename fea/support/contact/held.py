@@ -241,11 +241,12 @@ class HeldContact:
     def _compared_anew(
         self, requirement: Requirement
     ) -> Callable[[JointContact], ResolutionComparison]:
-        of = self.contact
+        of, known = self.contact, self.contact.patterns
+        assert known is not None
         if self.alone:
-            return uncompared
+            return lambda contact: uncompared(of.model, [contact], requirement, known)[0]
         vary = None if requirement.varied else nowhere
-        return lambda contact: compare(of.model, [contact], requirement, of.patterns, vary)[0]
+        return lambda contact: compare(of.model, [contact], requirement, known, vary)[0]
 
     def _section(self, case: PinLoads, cells: float, requirement: Requirement) -> FoundSection:
         """The largest stress of sections of a case.

@@ -307,17 +307,7 @@ class PressedCases:
 
         finest: whether there are no finer cells. The joint is varied where these are not needed.
         """
-        at, of_case, which = list[JointContact](), list[str](), dict[str, list[int]]()
-        for case, links in self.instants.items():
-            instants = self._peaks(near[case], case, links)
-            # Surface and section may peak at one instant, which is then compared once.
-            distinct = dict.fromkeys(instants)
-            which[case] = [len(at) + list(distinct).index(t) for t in instants]
-            at += [self.joined(links, t) for t in distinct]
-            of_case += [case] * len(distinct)
-
-        def pairs(comparisons: Sequence[ResolutionComparison]) -> dict[str, Compared]:
-            return {case: Compared(*(comparisons[k] for k in both)) for case, both in which.items()}
+        at, of_case, pairs = self._at_peaks(near)
 
         def vary(comparisons: Sequence[ResolutionComparison]) -> list[bool]:
             of_cases = pairs(comparisons)
@@ -331,14 +321,37 @@ class PressedCases:
 
         return pairs(compare(self.model, at, requirement, self.patterns, vary))
 
-    def uncompared(self, near: Mapping[str, Candidates]) -> dict[str, Compared]:
-        """The instants that would be compared, without any comparison."""
-        return {
-            case: Compared(
-                *(uncompared(self.joined(links, t)) for t in self._peaks(near[case], case, links))
-            )
-            for case, links in self.instants.items()
-        }
+    def uncompared(
+        self, near: Mapping[str, Candidates], requirement: Requirement
+    ) -> dict[str, Compared]:
+        """The instants that would be compared, without any comparison of cells."""
+        assert self.patterns is not None
+        at, _, pairs = self._at_peaks(near)
+        return pairs(uncompared(self.model, at, requirement, self.patterns))
+
+    def _at_peaks(
+        self, near: Mapping[str, Candidates]
+    ) -> tuple[
+        list[JointContact],
+        list[str],
+        Callable[[Sequence[ResolutionComparison]], dict[str, Compared]],
+    ]:
+        """Contact at the instants of the largest stress of surface and sections, the case of each,
+        and what makes of their comparisons those of the cases.
+        """
+        at, of_case, which = list[JointContact](), list[str](), dict[str, list[int]]()
+        for case, links in self.instants.items():
+            instants = self._peaks(near[case], case, links)
+            # Surface and section may peak at one instant, which is then compared once.
+            distinct = dict.fromkeys(instants)
+            which[case] = [len(at) + list(distinct).index(t) for t in instants]
+            at += [self.joined(links, t) for t in distinct]
+            of_case += [case] * len(distinct)
+
+        def pairs(comparisons: Sequence[ResolutionComparison]) -> dict[str, Compared]:
+            return {case: Compared(*(comparisons[k] for k in both)) for case, both in which.items()}
+
+        return at, of_case, pairs
 
     def _peaks(self, near: Candidates, case: str, links: PinLoads) -> tuple[int, int]:
         """The instants of the largest stress of surface and sections."""

@@ -252,9 +252,28 @@ def _by_friction(
     return out
 
 
-def uncompared(contact: JointContact) -> ResolutionComparison:
-    """A comparison without content, where none was made."""
-    return ResolutionComparison(NOWHERE, NOWHERE, contact.loads.links, ())
+def uncompared(
+    model: ContactModel,
+    at: Sequence[JointContact],
+    requirement: Requirement,
+    known: PressureModes,
+) -> tuple[ResolutionComparison, ...]:
+    """Joints in contact, each at one instant, varied on the model's own cells where that is
+    wanted, and compared with nothing.
+
+    known: patterns of the pressures on them.
+    """
+    if not requirement.varied:
+        return tuple(ResolutionComparison(NOWHERE, NOWHERE, x.loads.links, ()) for x in at)
+    own = [PressedJoint(model.waves(x.contact), list(x.contact)) for x in at]
+    loads = [[loads_of(model, known, *both)] for both in zip(own, at, strict=True)]
+    stress = at_places(model, requirement, loads)
+    likes = [(x, NOWHERE, joint) for x, joint in zip(stress, own, strict=True)]
+    over = _over_joint(model, at, requirement, known, likes, (True,) * len(at))
+    return tuple(
+        ResolutionComparison(like, NOWHERE, x.loads.links, *varied)
+        for x, like, varied in zip(at, stress, over, strict=True)
+    )
 
 
 def _on_both_cells(

@@ -108,7 +108,8 @@ class SizedStudy:
         plan = self._plan(trial, cases)
         tolerance = plan.requirement.tolerance
         few = max(tolerance, QUICK_TOLERANCE)
-        requirement = replace(plan.requirement, goal="value", tolerance=few, compared=False)
+        requirement = replace(plan.requirement, goal="value", tolerance=few)
+        requirement = replace(requirement, compared=False, varied=False)
         if accuracy == "rough":
             requirement = replace(requirement, cells="rough")
         elif self.in_lugs:

@@ -171,19 +171,32 @@ def test_the_range_of_a_clearance_is_that_of_the_changed_one(engine: Engine) -> 
     assert row.joint.range is not None
     lengths = [v.length for v in row.joint.range.variations if v.length is not None]
     assert max(lengths) == pytest.approx(0.06)
+    assert SCALED_CODE in row.maximum.reasons
+    assert row.joint.range.max_von_mises[1] > 1.5 * (row.max_von_mises or 0.0)
 
 
-@pytest.mark.seconds
-@pytest.mark.parametrize(("required", "scaled"), [(2, True), (12, False), (50, True)])
-def test_a_row_that_is_just_safe_under_less_load_is_not_scaled(
-    engine: Engine, required: float, scaled: bool
-) -> None:
-    """Its arcs are narrower: with clearances of 0.25 % of the diameter the range over the joint was
-    1.12 times the stress of half the load, where it is 1.86 times. Its factor is 20.
+@pytest.mark.slow
+def test_a_row_that_is_just_safe_under_less_load_has_a_range_of_its_own(engine: Engine) -> None:
+    """Its arcs are narrower: with clearances of 0.2 % of the diameter, and lugs twice as stiff, the
+    range was 1.12 times the stress of half the load, where a run has 1.4 times. Its factor is 20.
     """
     half = {"left": [0, 2500], "middle": [0, -5000], "right": [0, 2500]}
-    changes = {"case.pull.forces": half, "analysis.required_safety_factor": required}
-    assert (SCALED_CODE in quick(engine, changes).maximum.reasons) == scaled
+    changes = {"case.pull.forces": half, "analysis.required_safety_factor": 12}
+    ours = quick(engine, changes)
+    assert SCALED_CODE in ours.maximum.reasons
+    assert ours.outcome == "depends"
+    assert ours.joint is not None
+    assert ours.joint.range is not None
+    stiff = STUDY.split("[pin.P]")[0].split("[material.steel]")[1].replace("205", "410")
+    text = STUDY.replace("[pin.P]", f"[material.stiff]{stiff}[pin.P]", 1)
+    for lug in half:
+        named = f"[pin.P.lug.{lug}]\n"
+        text = text.replace(named, f'{named}clearance = 0.04\nmaterial = "stiff"\n')
+    loose = run(changed_study(study_from(text), changes))["P", "pull"]
+    assert loose.max_von_mises is not None
+    assert loose.max_von_mises > 1.4 * (ours.max_von_mises or 0.0)
+    top = ours.joint.range.max_von_mises[1]
+    assert loose.max_von_mises + (loose.error_estimate or 0.0) <= top <= 1.4 * loose.max_von_mises
 
 
 @pytest.mark.seconds
