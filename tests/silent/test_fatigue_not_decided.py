@@ -23,6 +23,7 @@ import pinstress
 from assess.fatigue.fkm import FkmMaterial, p_ram_life
 from fea.harmonic.evaluate import SECTION_MESHES
 from pinstress.analysis.results import RunResults
+from reports.data.requirements import requirement_rows
 from reports.tables.json_results import to_json
 from reports.tables.strength.fatigue import fatigue_sentence, shown_fatigue
 
@@ -145,6 +146,58 @@ def test_a_pin_that_has_too_much_damage_already_fails(run: Run) -> None:
     assert margin is not None
     assert margin < 0.0
     assert not needs
+
+
+CORNER = """
+title = "A step"
+units = "mm-N-s"
+[material.steel]
+youngs_modulus = "206 GPa"
+poisson_ratio = 0.3
+yield_strength = "800 MPa"
+[material.steel.fatigue]
+knee_stress = "395 MPa"
+knee_cycles = 1e6
+slope = 5
+mean_stress_sensitivity = 0.25
+[pin.P]
+material = "steel"
+profile = [{ length = 20, diameter = 30, connection = "A" },
+           { length = 10, diameter = 30, fillet = 0 },
+           { length = 40, diameter = 20, connection = "B" },
+           { length = 10, diameter = 20, connection = "C" }]
+[case.pull]
+kind = "given"
+forces = { A = [-500, 0], B = [1300, 0], C = [-800, 0] }
+[analysis]
+tolerance = 0.1
+[fatigue]
+life = LIFE
+[fatigue.occurrences]
+pull = 1
+[[require]]
+check = "fatigue"
+factor = 1
+"""
+
+
+def test_a_sharp_corner_leaves_the_pin_undecided(run: Run) -> None:
+    """A crack starts there first. Its zone was left out: "no damage at any critical point", and
+    the pin was safe in fatigue over all cases.
+    """
+    text = CORNER.replace("LIFE", "1e6")
+    sharp, filleted = run(text), run(text.replace("fillet = 0", "fillet = 3"))
+    assert sharp["P", "pull"].verdict == "singular"
+    assert sharp.fatigue is not None
+    assert filleted.fatigue is not None
+    reason = "cracks may start at a sharp corner, where the stress has no maximum (case pull)"
+    assert sharp.fatigue.not_decided == {"P": reason}
+    assert not filleted.fatigue.not_decided
+    asked = [
+        next(r for r in requirement_rows(x) if r.check == "fatigue") for x in (sharp, filleted)
+    ]
+    assert [x.outcome for x in asked] == ["not decided", "met"]
+    assert asked[0].needs == "a maximum of the stress"
 
 
 def _broken(*_: object) -> None:

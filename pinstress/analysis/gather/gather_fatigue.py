@@ -170,7 +170,9 @@ def _points(
 
 
 def _missing(plan: Plan, outcomes: list[PinOutcome], pin: str, table: FatigueTable) -> _Open | None:
-    """Return the part of the spectrum for which no stress of the pin, or no error, is known."""
+    """Return the part of the spectrum for which no stress of the pin, no error, or no maximum is
+    known.
+    """
     sequences = plan.study.table.sequence
     cases: dict[str, None] = {}
     for name in table.occurrences:
@@ -197,10 +199,15 @@ def _missing(plan: Plan, outcomes: list[PinOutcome], pin: str, table: FatigueTab
         )
         text = f"no history of stress in {_named([row.case for row in rows], verb='')}"
         return _Open(f"{text} ({reason})" if reason else text, "a history of stress")
-    every = (row for outcome in pin_outcomes for row in outcome.rows if row.case in cases)
+    every = [row for outcome in pin_outcomes for row in outcome.rows if row.case in cases]
     if unknown := [row.case for row in every if not row.maximum.bounded]:
         text = f"the error of the stress is unknown in {_named(unknown, verb='')}"
         return _Open(text, "a known error of the stress")
+    if singular := [row for row in every if row.verdict == "singular"]:
+        kinds = dict.fromkeys(z.kind for row in singular for z in row.singular_at if z.governs)
+        text = f"cracks may start at {' and '.join(kinds)}, where the stress has no maximum"
+        where = _named([row.case for row in singular], verb="")
+        return _Open(f"{text} ({where})", "a maximum of the stress")
     tasks = [t for t in plan.tasks if t.pin.name == pin and any(x.case in cases for x in t.loads)]
     if len(tasks) > 1:
         what = "clamps" if len({t.clamps for t in tasks}) > 1 else "fits at their temperatures"
