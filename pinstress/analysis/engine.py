@@ -14,7 +14,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from types import MappingProxyType
 from typing import Any, Literal, TypeVar, get_args
 
@@ -228,14 +228,15 @@ class Engine:
         # Cases at other temperatures are tasks of their own, with other clearances.
         cases = {loads.case for loads in task.loads}
         same = all(same_ranges(x, task) for x in tasks if cases & {y.case for y in x.loads})
-        as_is, now = self._as_is[name].rows, self._coarse(plan, task, varied=not same)
+        varied = () if same else [loads.case for loads in task.loads]
+        as_is, now = self._as_is[name].rows, self._coarse(plan, task, varied)
         if not now or not {row.case for row in now} <= as_is.keys():
             return None
         if any(contact_changed(as_is[x.case][1], x) for x in now):
             return self._solve(plan, [task])[0]
         rows = self._judged(plan, task, now)
-        if same and any(range_may_widen(as_is[x.case][0], x) for x in rows):
-            rows = self._judged(plan, task, self._coarse(plan, task, varied=True))
+        if same and (widened := [x.case for x in rows if range_may_widen(as_is[x.case][0], x)]):
+            rows = self._judged(plan, task, self._coarse(plan, task, widened))
         return PinOutcome(rows) if rows else None
 
     def _judged(self, plan: Plan, task: Task, now: tuple[PinResult, ...]) -> tuple[PinResult, ...]:
@@ -261,25 +262,33 @@ class Engine:
                 out[row.case] = full, row
         return AsIs(plan.tasks, out)
 
-    def _coarse(self, plan: Plan, task: Task, varied: bool = False) -> tuple[PinResult, ...]:
+    def _coarse(
+        self, plan: Plan, task: Task, varied: Collection[str] = ()
+    ) -> tuple[PinResult, ...]:
         """The rows of a task whose ratios are taken; none where they cannot be solved.
 
-        varied: whether the range over the joint is wanted, too.
+        varied: the cases whose range over the joint is wanted, too.
         """
-        known = self._as_is.get(task.pin.name)  # None while it is being made
-        lasting = known is None or any(same_shape(x, task) for x in known.tasks)
-        requirement = coarse(plan.requirement, lasting, varied)
-        plan = replace(plan, requirement=requirement, explained=False)
-        task = elastic_task(task)
-
-        def make() -> tuple[PinResult, ...]:
-            try:
-                return unjudged(plan, task, self._memo)
-            except ArithmeticError:  # MeshError, SolveError and what numpy raises
+        as_is = self._as_is.get(task.pin.name)  # None while it is being made
+        lasting = as_is is None or any(same_shape(x, task) for x in as_is.tasks)
+        task, rows = elastic_task(task), list[PinResult]()
+        # By unit pressures each case is solved alone, and again only where its own loads change.
+        for one in map(task.of_case, task.loads) if lasting else [task]:
+            vary = any(loads.case in varied for loads in one.loads)
+            requirement = coarse(plan.requirement, lasting, vary)
+            of_one = replace(plan, requirement=requirement, explained=False)
+            content = hashlib.sha256(pack(cache_key(of_one, one))).digest()
+            known = self._answers.get(("coarse", content), partial(self._unjudged, of_one, one))
+            if not known:
                 return ()
+            rows += known
+        return tuple(rows)
 
-        content = hashlib.sha256(pack(cache_key(plan, task))).digest()
-        return self._answers.get(("coarse", content), make)
+    def _unjudged(self, plan: Plan, task: Task) -> tuple[PinResult, ...]:
+        try:
+            return unjudged(plan, task, self._memo)
+        except ArithmeticError:  # MeshError, SolveError and what numpy raises
+            return ()
 
 
 def _quick(requirement: Requirement) -> Requirement:

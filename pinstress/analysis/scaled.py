@@ -119,9 +119,12 @@ def _shape(task: Task) -> object:
 
 
 def elastic_task(task: Task) -> Task:
-    """Return a task whose coarse solution serves for any strengths and names of its materials."""
+    """Return a task whose coarse solution serves for any strengths and names of its materials, and
+    for any ranges of its loads.
+    """
     lugs, given = (tuple(x.with_materials(_elastic) for x in of) for of in (task.lugs, task.given))
-    return replace(task, material=_elastic(task.material), lugs=lugs, given=given)
+    task = replace(task, material=_elastic(task.material), lugs=lugs, given=given)
+    return replace(task, ranges={}, impulses={}, shared={})
 
 
 def _elastic(material: Material) -> Material:

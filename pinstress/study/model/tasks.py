@@ -92,6 +92,10 @@ class Task:
         """The loads under which stress is needed besides those of the case itself, by case."""
         return {case: x.loads for case, x in self.shared.items()} | self.ranges
 
+    def of_case(self, loads: PinLoads) -> Task:
+        """The same pin with the loads of one of its cases alone."""
+        return replace(self, loads=(loads,))
+
 
 def tasks(study: Study, pins: list[PinLike], loads: dict[str, CaseLoads]) -> list[Task]:
     """Return the tasks of the pins that any case loads.
