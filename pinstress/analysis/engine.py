@@ -29,6 +29,7 @@ from pinstress.analysis.results import RunResults, run_results, solve
 from pinstress.analysis.reused_loads import reused_loads
 from pinstress.analysis.scaled import (
     coarse,
+    comparable,
     contact_changed,
     elastic_task,
     range_may_widen,
@@ -224,12 +225,14 @@ class Engine:
         name = task.pin.name
         if name not in self._as_is:
             self._as_is[name] = self._both(name)
-        tasks = self._as_is[name].tasks
+        tasks, as_is = self._as_is[name].tasks, self._as_is[name].rows
+        if not all(comparable(as_is[x.case][0]) for x in task.loads if x.case in as_is):
+            return None
         # Cases at other temperatures are tasks of their own, with other clearances.
         cases = {loads.case for loads in task.loads}
         same = all(same_ranges(x, task) for x in tasks if cases & {y.case for y in x.loads})
         varied = () if same else [loads.case for loads in task.loads]
-        as_is, now = self._as_is[name].rows, self._coarse(plan, task, varied)
+        now = self._coarse(plan, task, varied)
         if not now or not {row.case for row in now} <= as_is.keys():
             return None
         if any(contact_changed(as_is[x.case][1], x) for x in now):

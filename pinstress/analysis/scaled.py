@@ -197,6 +197,11 @@ def too_rough(row: PinResult) -> bool:
     return uneven or narrow_arcs(row)
 
 
+def comparable(row: PinResult) -> bool:
+    """Return whether a row has bounded stresses of all places, as contact gives them."""
+    return _comparable(row) is not None
+
+
 def _comparable(row: PinResult) -> dict[str, float] | None:
     """Return the stresses of a row's places, Pa; None where one is missing or has no bound."""
     places = row.places

@@ -84,7 +84,9 @@ class ContactSupport:
             refused = _refused(problem)
             left = tuple(case for case in left if case.case not in refused)
         model, contact = self._pressed(problem, cells, left, progress)
-        if not contact.instants.keys() <= near.keys():
+        if self.alone and not requirement.varied:
+            near = contact.all_instants()
+        elif not contact.instants.keys() <= near.keys():
             near = contact.near(requirement)
         contact.follow(near)
         # More cells than memory allows are none; and on the last ones all cases are answered.

@@ -233,12 +233,17 @@ class PressedCases:
             rings = [self.on_rings(instants)]
             self.sections[case.case] = SectionField(model.pin, model.material, (), rings)
 
+    def all_instants(self) -> dict[str, Candidates]:
+        """The candidates of each case, if every instant may govern."""
+        every = self.instants.items()
+        return {case: Candidates(0, np.ones(len(links), bool)) for case, links in every}
+
     def near(self, requirement: Requirement) -> dict[str, Candidates]:
         """The candidates of each case, by the approximate stress of all instants on the first
         mesh.
         """
         if all(len(links) == 1 for links in self.instants.values()):  # nothing to choose from
-            return {case: Candidates(0, np.ones(1, dtype=bool)) for case in self.instants}
+            return self.all_instants()
         # Rough patterns of all instants, since it is not known yet which may govern.
         self.follow(
             {case: Candidates(0, np.zeros(len(x), bool)) for case, x in self.instants.items()}
