@@ -190,7 +190,7 @@ def test_a_sharp_corner_leaves_the_pin_undecided(run: Run) -> None:
     assert sharp["P", "pull"].verdict == "singular"
     assert sharp.fatigue is not None
     assert filleted.fatigue is not None
-    reason = "cracks may start at a sharp corner, where the stress has no maximum (case pull)"
+    reason = "cracks may start at a sharp corner, where the stress has no maximum"
     assert sharp.fatigue.not_decided == {"P": reason}
     assert not filleted.fatigue.not_decided
     asked = [

@@ -205,9 +205,8 @@ def _missing(plan: Plan, outcomes: list[PinOutcome], pin: str, table: FatigueTab
         return _Open(text, "a known error of the stress")
     if singular := [row for row in every if row.verdict == "singular"]:
         kinds = dict.fromkeys(z.kind for row in singular for z in row.singular_at if z.governs)
-        text = f"cracks may start at {' and '.join(kinds)}, where the stress has no maximum"
-        where = _named([row.case for row in singular], verb="")
-        return _Open(f"{text} ({where})", "a maximum of the stress")
+        reason = f"cracks may start at {' and '.join(kinds)}, where the stress has no maximum"
+        return _Open(reason, "a maximum of the stress")
     tasks = [t for t in plan.tasks if t.pin.name == pin and any(x.case in cases for x in t.loads)]
     if len(tasks) > 1:
         what = "clamps" if len({t.clamps for t in tasks}) > 1 else "fits at their temperatures"
