@@ -19,6 +19,8 @@ from pinstress.study.schema.mechanism import MechanismTable
 # Of a study with a mechanism: its loads are computed on points, the pins' joints, whose shapes and
 # materials count only where they give a joint its weight, and links their places along it.
 TABLES_WITHOUT_LOADS = "pin", "material", "analysis", "vary", "published", "report", "size"
+# Of a load in a case: what no other case depends on.
+AMOUNTS = "force", "impulse"
 
 
 def reused_loads(raw: Mapping[str, Any], memo: Memo) -> LoadsOf:
@@ -29,8 +31,8 @@ def reused_loads(raw: Mapping[str, Any], memo: Memo) -> LoadsOf:
     """
 
     def loads_of(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
-        content = content_of_loads(study, raw)
-        keys = {name: ("loads", name, content) for name in cases if _reusable(study, name)}
+        reusable = [name for name in cases if _reusable(study, name)]
+        keys = {name: ("loads", name, content_of_loads(study, raw, name)) for name in reusable}
         known: dict[str, CaseLoads] = {}
         for name, key in keys.items():
             if (loads := memo.read(key)) is not None:
@@ -46,6 +48,12 @@ def reused_loads(raw: Mapping[str, Any], memo: Memo) -> LoadsOf:
     return loads_of
 
 
+def _without_amounts(case: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return a case with the places of its loads, which a mechanism may depend on, alone."""
+    loads = [{k: v for k, v in load.items() if k not in AMOUNTS} for load in case.get("apply", ())]
+    return {**case, "apply": loads}
+
+
 def _reusable(study: Study, case: str) -> bool:
     """Return whether the loads of a case take a mechanism: given ones take no time, and are checked
     against the pins.
@@ -53,15 +61,18 @@ def _reusable(study: Study, case: str) -> bool:
     return study.table.mechanism is not None and not isinstance(study.table.case[case], GivenCase)
 
 
-def content_of_loads(study: Study, raw: Mapping[str, Any]) -> bytes:
+def content_of_loads(study: Study, raw: Mapping[str, Any], case: str | None = None) -> bytes:
     """Return a hash of all on which the loads of a mechanism depend; empty without one.
 
-    raw: the content of the study.
+    raw: the content of the study. case: whose loads, by default those of all.
     """
     mechanism, table = study.table.mechanism, study.table
     if mechanism is None:
         return b""
     tables = {key: value for key, value in raw.items() if key not in TABLES_WITHOUT_LOADS}
+    if case is not None and not isinstance(table.case[case], GroundCase):  # which is of a drop
+        cases = raw["case"].items()
+        tables["case"] = {name: x if name == case else _without_amounts(x) for name, x in cases}
     joints = [(name, study.connections(name)) for name in table.pin]
     weighed = [  # by their shape
         name

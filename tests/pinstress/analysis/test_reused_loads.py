@@ -96,6 +96,23 @@ def test_a_side_load_depends_on_where_links_bear_on_their_pins(computed: list[li
         assert len(computed) == k
 
 
+def test_amounts_of_other_cases_leave_the_loads_of_a_case(computed: list[list[str]]) -> None:
+    """A motion was solved again for another impulse of a landing."""
+    study, memo = load_study(shipped_studies()[GEAR]), Memo()
+    both = ["retract", "landing"]
+    reused_loads(raw_study(study), memo)(study, both)
+    changed = changed_study(study, {"case.landing.apply[1].impulse.impulse_time": 0.2})
+    loads = reused_loads(raw_study(changed), memo)(changed, both)
+    assert computed == [both, ["landing"]]
+    anew = all_loads(changed, both)
+    for name in both:
+        assert np.array_equal(loads[name].reactions.forces, anew[name].reactions.forces)
+    text, folder = study.text + SIDE, shipped_studies()[GEAR].parent  # moves links apart in all
+    aside = study_from(text, folder)
+    loads = reused_loads(raw_study(aside), memo)(aside, both)
+    assert computed[2:] == [both]
+
+
 def _require_same(study: Study, memo: Memo) -> Any:
     """The forces, which are the same as without a memo."""
     reused = reused_loads(raw_study(study), memo)(study, ["landing"])["landing"].reactions
