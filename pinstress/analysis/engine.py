@@ -32,6 +32,7 @@ from pinstress.analysis.scaled import (
     comparable,
     contact_changed,
     elastic_task,
+    has_own_range,
     range_may_widen,
     same_ranges,
     same_shape,
@@ -237,6 +238,8 @@ class Engine:
             return None
         if any(contact_changed(as_is[x.case][1], x) for x in now):
             return self._solve(plan, [task])[0]
+        if varied and not all(map(has_own_range, now)):
+            return None
         rows = self._judged(plan, task, now)
         if same and (widened := [x.case for x in rows if range_may_widen(as_is[x.case][0], x)]):
             rows = self._judged(plan, task, self._coarse(plan, task, widened))

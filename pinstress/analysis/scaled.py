@@ -21,7 +21,7 @@ from fea.core.places import BandPressure, ContactPlace, Place, Places
 from fea.core.requirement import MAX_ROUGH_ERROR, Requirement
 from fea.support.contact.contact_place import reached
 from fea.support.lugs.lug import LugRange
-from fea.support.records import FRICTION, JointRange, JointResult, Variation, range_ends
+from fea.support.records import FRICTION, JointResult, Variation, range_ends
 from geometry import Pin
 from pinbase.arrays import Floats
 from pinstress.analysis.gather.gather_landing import range_of
@@ -294,42 +294,50 @@ def _peak(full: Maximum, now: Maximum, places: Places, tolerance: float) -> Maxi
     )
 
 
+def has_own_range(row: PinResult) -> bool:
+    """Return whether the joint of a row was varied."""
+    return (
+        row.joint is not None and row.joint.range is not None and bool(row.joint.range.variations)
+    )
+
+
 def _joint(row: PinResult, now: PinResult, peak: Maximum, drift: float) -> JointResult:
     """Return the joint of a coarse solution with its range scaled to the maximum; where it has
     none, with that of the row of the study as it is.
 
     drift: the relative error of the ratios to the coarse solution.
     """
-    joint = now.joint
+    joint, of = now.joint, now if has_own_range(now) else row
     assert joint is not None
-    if joint.range is not None and joint.range.variations:
-        return replace(joint, range=_scaled_range(joint.range, now, peak, drift))
-    if row.joint is None or row.joint.range is None:
+    if of.joint is None or of.joint.range is None:
         return joint
-    return replace(joint, range=_scaled_range(row.joint.range, row, peak), remark=RANGE_REMARK)
-
-
-def _scaled_range(over: JointRange, of: PinResult, peak: Maximum, drift: float = 0.0) -> JointRange:
-    """Return the range of a row, scaled to another maximum and widened by a relative drift."""
     largest = peak.max_von_mises or 0.0
     by, deep = largest / (of.max_von_mises or 1.0), _beneath(peak) / _beneath(of.maximum)
+    drift, error = (drift, _error_taking_over(peak)) if of is now else (0.0, 0.0)
 
-    def interval(x: Variation) -> tuple[float, float] | None:
-        if x.what == FRICTION or not (drift or x.interval):
-            return x.interval
-        low, high = x.interval or (x.max_von_mises, x.max_von_mises)
-        return by * low * (1.0 - drift), by * high * (1.0 + drift)
+    def scaled(x: Variation) -> Variation:
+        interval = x.interval
+        if interval is None and error and x.what != FRICTION:
+            interval = (1.0 - error) * x.max_von_mises, (1.0 + error) * x.max_von_mises
+        if interval is not None:
+            interval = by * (1.0 - drift) * interval[0], by * (1.0 + drift) * interval[1]
+        beneath = None if x.beneath is None else x.beneath * deep * (1.0 + drift)
+        return replace(x, max_von_mises=by * x.max_von_mises, interval=interval, beneath=beneath)
 
-    variations = tuple(
-        replace(
-            x,
-            max_von_mises=x.max_von_mises * by,
-            interval=interval(x),
-            beneath=None if x.beneath is None else x.beneath * deep * (1.0 + drift),
-        )
-        for x in over.variations
-    )
-    return replace(over, max_von_mises=range_ends(largest, variations), variations=variations)
+    variations = tuple(map(scaled, of.joint.range.variations))
+    ends = range_ends(largest, variations)
+    over = replace(of.joint.range, max_von_mises=ends, variations=variations)
+    return replace(joint, range=over, remark=joint.remark if of is now else RANGE_REMARK)
+
+
+def _error_taking_over(peak: Maximum) -> float:
+    """Return the relative error of a surface that may take over from the section that governs,
+    which has hardly any; 0 where the surface governs, whose row has it.
+    """
+    places = peak.places
+    if places is None or places.governs != "section":
+        return 0.0
+    return places.surface.error_estimate / places.surface.max_von_mises
 
 
 def _beneath(peak: Maximum) -> float:
