@@ -148,18 +148,7 @@ def test_a_pin_that_has_too_much_damage_already_fails(run: Run) -> None:
     assert not needs
 
 
-CORNER = """
-title = "A step"
-units = "mm-N-s"
-[material.steel]
-youngs_modulus = "206 GPa"
-poisson_ratio = 0.3
-yield_strength = "800 MPa"
-[material.steel.fatigue]
-knee_stress = "395 MPa"
-knee_cycles = 1e6
-slope = 5
-mean_stress_sensitivity = 0.25
+CORNER = STUDY.partition("[pin.P]")[0] + """
 [pin.P]
 material = "steel"
 profile = [{ length = 20, diameter = 30, connection = "A" },
@@ -172,7 +161,7 @@ forces = { A = [-500, 0], B = [1300, 0], C = [-800, 0] }
 [analysis]
 tolerance = 0.1
 [fatigue]
-life = LIFE
+life = 1e6
 [fatigue.occurrences]
 pull = 1
 [[require]]
@@ -185,8 +174,7 @@ def test_a_sharp_corner_leaves_the_pin_undecided(run: Run) -> None:
     """A crack starts there first. Its zone was left out: "no damage at any critical point", and
     the pin was safe in fatigue over all cases.
     """
-    text = CORNER.replace("LIFE", "1e6")
-    sharp, filleted = run(text), run(text.replace("fillet = 0", "fillet = 3"))
+    sharp, filleted = run(CORNER), run(CORNER.replace("fillet = 0", "fillet = 3"))
     assert sharp["P", "pull"].verdict == "singular"
     assert sharp.fatigue is not None
     assert filleted.fatigue is not None
