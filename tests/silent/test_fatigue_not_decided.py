@@ -148,7 +148,9 @@ def test_a_pin_that_has_too_much_damage_already_fails(run: Run) -> None:
     assert not needs
 
 
-CORNER = STUDY.partition("[pin.P]")[0] + """
+CORNER = (
+    STUDY.partition("[pin.P]")[0]
+    + """
 [pin.P]
 material = "steel"
 profile = [{ length = 20, diameter = 30, connection = "A" },
@@ -168,6 +170,7 @@ pull = 1
 check = "fatigue"
 factor = 1
 """
+)
 
 
 def test_a_sharp_corner_leaves_the_pin_undecided(run: Run) -> None:
