@@ -19,7 +19,13 @@ from pinbase.arrays import Floats
 def rigid(motion: Floats, x: Floats) -> Floats:
     """Displacements (P, 3, L) of points (P, 3) by a shift and a turn about the origin, (6, L)."""
     shift, turn = np.split(motion, 2)
-    return np.asarray(shift + np.cross(turn[None], x[:, :, None], axis=1))
+    out = np.empty((len(x), 3, motion.shape[1]))
+    for k in range(3):  # the cross product by components, since these arrays may be large
+        after, before = (k + 1) % 3, (k + 2) % 3
+        np.multiply(turn[after], x[:, [before]], out=out[:, k])
+        out[:, k] -= turn[before] * x[:, [after]]
+        out[:, k] += shift[k]
+    return out
 
 
 def axis_kept(moved: Floats, length: float) -> Floats:

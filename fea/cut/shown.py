@@ -69,20 +69,20 @@ def shown(
     parts = [uncut, *map(_piece, pieces, own_ends(pieces))]
     starts = np.cumsum([0, *(len(part.points) for part in parts)])
     points = np.concatenate([p.points for p in parts])
-    displacement = np.concatenate([p.displacement for p in parts])
+    displacement = np.concatenate([p.displacement for p in parts])  # the largest array: in place
     # Displacements add up: what lies above a piece moves with its upper end.
     for piece, start in zip(pieces, starts[1:], strict=False):
-        here = np.arange(len(points)) - start
-        other = (here < 0) | (here >= len(piece.points))
-        displacement[other] += moved_by(piece, points[other])
-        displacement[~other] += piece.displaced
+        end = start + len(piece.points)
+        displacement[:start] += moved_by(piece, points[:start])
+        displacement[end:] += moved_by(piece, points[end:])
+        displacement[start:end] += piece.displaced
     length = float(fields.points[:, 1].max())
-    motion = support_motion(pieces, held, length)
+    displacement -= rigid(support_motion(pieces, held, length), points)
     return ShownCut(
         points,
         np.concatenate([p.triangles + i for p, i in zip(parts, starts, strict=False)]),
         np.concatenate([p.stress for p in parts]),
-        displacement - rigid(motion, points),
+        displacement,
         np.concatenate([p.read for p in parts]),
         np.concatenate([p.outline for p in parts]),
         uncut.between,
