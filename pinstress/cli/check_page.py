@@ -12,6 +12,7 @@ from pinstress.analysis.gather.gather import shape_of_task, units_of
 from pinstress.analysis.mechanics.gather_motion import linkage_motion
 from pinstress.analysis.mechanics.gather_space import skeleton_in_space
 from pinstress.cli.check import Examination, support_of
+from pinstress.cli.new_file import file_start
 from pinstress.study.model.balance import given_warnings
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.errors import InputError
@@ -29,11 +30,7 @@ def require_page(path: Path) -> None:
 
     Raises: InputError.
     """
-    try:
-        with path.open("rb") as file:
-            start = file.read(len(HTML_HEAD))
-    except OSError:  # nothing there, or what writing will find
-        return
+    start = file_start(path, "--out", len(HTML_HEAD))
     if start and start.lower() != HTML_HEAD:
         text = f"--out: {path} exists and is not a page; choose another file"
         raise InputError(text, code="exists")

@@ -5,6 +5,7 @@ of JUnit results.
 from __future__ import annotations
 
 import os
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -56,32 +57,47 @@ def _created(path: Path) -> Iterator[BinaryIO]:
         raise
 
 
-def require_junit(path: Path, directory: Path) -> None:
+def file_start(path: Path, option: str, size: int) -> bytes:
+    """Return the first bytes, `size` at most, of the file that an option names; none where there is
+    no file.
+
+    Raises: InputError for all but a regular file: reading a pipe may never end, and a device would
+    be replaced by a file.
+    """
+    try:
+        mode = path.stat().st_mode
+        if not stat.S_ISREG(mode):
+            what = "folder" if stat.S_ISDIR(mode) else "pipe or a device"
+            raise InputError(f"{option}: {path} is a {what}; give a file", code="not-a-file")
+        with path.open("rb") as file:
+            return file.read(size)
+    except (FileNotFoundError, NotADirectoryError):
+        return b""
+    except OSError as error:
+        raise InputError(f"{option}: {path}: {error.strerror}", code="cannot-read") from None
+
+
+def require_junit(path: Path, directory: Path) -> Path:
     """Check that JUnit results can be written: into a folder that exists, over nothing but such
-    results, and not into the output folder, which has no files but its own.
+    results, and not into the output folder, which has no files but its own; return their file, to
+    which `path` may be a link.
 
     Raises: InputError.
     """
-    if path.resolve().is_relative_to(directory.resolve()):
+    file = Path(os.path.realpath(path))
+    if file.is_relative_to(os.path.realpath(directory)):
         raise InputError(
             f"--junit: {path} is inside the output folder {directory}, which is replaced as a "
             "whole; choose another place",
             code="inside-output",
         )
-    if not path.parent.is_dir():
-        raise InputError(f"--junit: there is no folder {path.parent}", code="no-folder")
-    if os.path.isdir(path):
-        raise InputError(f"--junit: {path} is a folder; give a file", code="not-a-file")
-    if not os.access(path if os.path.exists(path) else path.parent, os.W_OK):
+    if not os.path.isdir(file.parent):
+        raise InputError(f"--junit: there is no folder {file.parent}", code="no-folder")
+    if not all(os.access(p, os.W_OK) for p in (file, file.parent) if os.path.exists(p)):
         raise InputError(f"--junit: {path} cannot be written", code="cannot-write")
-    try:
-        with path.open("rb") as file:
-            start = file.read(JUNIT_HEAD_SIZE)
-    except FileNotFoundError:
-        return
-    except OSError as error:
-        raise InputError(f"--junit: {path}: {error.strerror}", code="cannot-read") from None
+    start = file_start(path, "--junit", JUNIT_HEAD_SIZE)
     if start.strip() and b"<testsuite" not in start:
         raise InputError(
             f"--junit: {path} exists and has no JUnit results; choose another file", code="exists"
         )
+    return file

@@ -122,8 +122,7 @@ def run_and_write(
     if wanted.pdf:
         require_package("typst", "--pdf")
     require_replaceable(directory)
-    if wanted.junit is not None:
-        require_junit(wanted.junit, directory)
+    junit = None if wanted.junit is None else require_junit(wanted.junit, directory)
     also: Any = wanted.vtk if wanted.vtk in ("motion", "solid") else None
     most = processes(wanted.jobs)
     cache = user_cache() if wanted.cached else None
@@ -145,10 +144,10 @@ def run_and_write(
                 identify_files(results, files, staging / "vtk")
             progress("report", 1.0)
             _write(results, staging, most)
-    if wanted.junit is not None:
+    if junit is not None:
         from pinstress.explore.size.size_state import replace_file  # imports solvers
 
-        replace_file(wanted.junit, junit_xml(results))
+        replace_file(junit, junit_xml(results))
     if cache:
         cache.trim()
     _print_results(results, directory, study, wanted)
