@@ -34,6 +34,7 @@ def main() -> None:
         if not interrupts.came():
             raise
         status = interrupts.EXIT_INTERRUPTED  # in the middle of an import
+        print(f"Interrupted; {interrupts.left()}.", file=sys.stderr)
     interrupts.ignore()  # it is done; an interrupt is no part of the answer now
     if why := lost():
         print(f"Error: {why}", file=sys.stderr)

@@ -250,6 +250,14 @@ def test_whatever_an_interrupt_becomes_the_status_is_130(
     interrupts.require_none()  # nor does anything that this process does later end for it
 
 
+def test_an_interrupt_before_the_command_line_is_there_is_told() -> None:
+    """On a slow machine its imports take a second, in which an interrupt was silent."""
+    begin = "import signal, pinstress.__main__ as m, pinstress.cli.streams as s\n"
+    late = "s.guard = lambda: signal.raise_signal(signal.SIGTERM)\nm.main()"
+    done = subprocess.run([sys.executable, "-c", begin + late], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (130, "Interrupted; nothing was written.\n")
+
+
 @pytest.mark.parametrize(
     "at",
     [
