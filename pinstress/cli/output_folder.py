@@ -75,7 +75,7 @@ def replacing(directory: Path, mark: str = RESULTS_JSON) -> Iterator[Path]:
 
     Raises: InputError if the folder cannot be created or written, or another run is writing it.
     """
-    directory = _resolved(directory)
+    directory = resolved(directory)
     partial, earlier = (directory.parent / f".{directory.name}.{x}" for x in ("partial", "earlier"))
     new_parents = [p for p in directory.parents if not p.exists()]
     release: Release | None = None
@@ -116,8 +116,11 @@ def replacing(directory: Path, mark: str = RESULTS_JSON) -> Iterator[Path]:
                 parent.rmdir()
 
 
-def _resolved(directory: Path) -> Path:
-    """Return the user's path with links resolved."""
+def resolved(directory: Path) -> Path:
+    """Return the user's path with links resolved.
+
+    Raises: InputError.
+    """
     try:
         return directory.resolve()
     except FileNotFoundError:  # only the current folder is looked up

@@ -17,7 +17,7 @@ import click
 from pinbase.processes.folder_lock import Release, lock
 from pinbase.processes.pool import cores
 from pinstress.cli import manifest
-from pinstress.cli.output_folder import require_replaceable
+from pinstress.cli.output_folder import require_replaceable, resolved
 from pinstress.cli.run import bar_on_stderr, console
 from pinstress.cli.shared import open_page, resumable, warn
 from pinstress.cli.streams import unneeded
@@ -191,7 +191,7 @@ def _claimed(directory: Path, parts: BatchFolder, resume: bool) -> Iterator[None
     existed = os.path.exists(directory)
     try:
         with _writing(directory):
-            directory.mkdir(parents=True, exist_ok=True)
+            resolved(directory).mkdir(parents=True, exist_ok=True)
             release = _locked(directory)
             if manifest.entries(directory) <= BEGINNINGS:
                 manifest.begin(directory)

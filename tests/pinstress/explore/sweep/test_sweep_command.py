@@ -61,6 +61,19 @@ def test_designs_that_all_fail_are_told(tmp_path: Path) -> None:
     assert "2 designs, 2 failed" in made.stdout
 
 
+def test_a_link_leads_to_a_folder_that_is_made(tmp_path: Path) -> None:
+    """As with every other command; a sweep said of such a link that the file exists."""
+    _study(tmp_path, f'"{DIAMETER}" = {{ from = 4.6, to = 4.7 }}', 2)
+    (tmp_path / "out").symlink_to("disk/designs")
+    (tmp_path / "loop").symlink_to("loop")
+    made = run_here("sweep", "study.toml", "--jobs", "1", "--out", "out", cwd=tmp_path)
+    assert made.returncode == 1, made.stderr
+    assert (tmp_path / "disk" / "designs" / "designs.parquet").is_file()
+    made = run_here("sweep", "study.toml", "--out", "loop", cwd=tmp_path)
+    assert made.returncode == 2
+    assert "loop is a link that leads back to itself" in made.stderr
+
+
 @each(
     ("prepare", "arguments", "message"),
     [
