@@ -44,16 +44,25 @@ class InputError(Exception):
 
 def cannot_write(path: object, error: OSError) -> InputError:
     """Return the error that a file cannot be written."""
-    files = [p for p in Path(str(path)).parents if os.path.isfile(p)]  # never raises
-    why = f"{files[0]} is a file, not a folder" if files else error.strerror
+    wrong = (f"{p} is {what}" for p in Path(str(path)).parents if (what := _no_folder(p)))
+    why = next(wrong, error.strerror)
     return InputError(f"{path}: cannot be written ({why})", code="cannot-write")
 
 
 def cannot_write_out(directory: Path, error: OSError) -> InputError:
     """Return the error that the folder of --out cannot be written to."""
-    why = "it is a file, not a folder" if os.path.isfile(directory) else error.strerror
+    why = f"it is {what}" if (what := _no_folder(directory)) else error.strerror
     text = f"--out: cannot write to {directory} ({why})"
     return InputError(text, code="cannot-write")
+
+
+def _no_folder(path: Path) -> str | None:
+    """Return the kind of an entry that is not a folder; None where there is none. Never raises."""
+    if os.path.isdir(path) or not os.path.lexists(path):
+        return None
+    if not os.path.exists(path):
+        return "a link that leads nowhere"
+    return f"a {'file' if os.path.isfile(path) else 'pipe or a device'}, not a folder"
 
 
 def clipped(line: str) -> str:

@@ -9,6 +9,7 @@ from threading import Thread
 
 import pytest
 
+from pinstress.cli.new_file import require_junit
 from tests.support.each import each
 from tests.support.programs.command_line import QUICK, run_here
 
@@ -49,11 +50,26 @@ def test_what_is_no_file_is_neither_read_nor_replaced(
     assert sorted(os.listdir(folder)) == ["loop", "pipe", "study.toml"]
 
 
-def test_junit_is_written_to_where_a_link_leads(folder: Path) -> None:
+def test_junit_is_written_to_where_a_link_leads(tmp_path: Path) -> None:
     """The link was replaced, and the file that another program reads stayed as it was."""
-    (folder / "disk").mkdir()
-    (folder / "junit.xml").symlink_to("disk/results.xml")
-    done = run_here(*JUNIT, "junit.xml", "--model", "beam", cwd=folder)
-    assert done.returncode < 2, done.stderr
-    assert (folder / "junit.xml").is_symlink()
-    assert "<testsuite" in (folder / "disk" / "results.xml").read_text()
+    (tmp_path / "disk").mkdir()
+    (tmp_path / "junit.xml").symlink_to("disk/results.xml")
+    file = require_junit(tmp_path / "junit.xml", tmp_path / "out")
+    assert file == tmp_path / "disk" / "results.xml"
+
+
+@each(
+    ("name", "of_file", "of_folder"),
+    [
+        ("pipe", "pipe is a pipe or a device, not a folder", "(it is a pipe or a device, not a"),
+        ("loop", "loop is a link that leads nowhere", "loop/new is a link that leads back"),
+    ],
+)
+def test_what_stands_in_the_place_of_a_folder_is_told(
+    folder: Path, name: str, of_file: str, of_folder: str
+) -> None:
+    """It was "File exists"."""
+    done = run_here("init", f"{name}/new", cwd=folder)
+    assert (done.returncode, of_file in done.stderr) == (2, True), done.stderr
+    done = run_here("loads", "study.toml", "--out", f"{name}/new", cwd=folder)
+    assert (done.returncode, of_folder in done.stderr) == (2, True), done.stderr
