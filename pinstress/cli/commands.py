@@ -5,6 +5,7 @@ Numeric libraries are imported inside the commands that need them, so that `chec
 
 from __future__ import annotations
 
+import logging
 import os
 from pathlib import Path
 from typing import Any
@@ -124,12 +125,14 @@ def _settle_environment() -> None:
     One thread per numeric library; plots without windows; no pydantic plugins, for which it
     searches all installed packages. An invalid SOURCE_DATE_EPOCH is removed, because libraries fail
     on it at import (our files contain no time), and so is a width of no columns, which terminals
-    of unknown size state, because rich prints no table in it.
+    of unknown size state, because rich prints no table in it. Matplotlib is imported for colours
+    alone: that it has no folder for its fonts concerns nobody.
     """
     hold_threads()
     if not os.environ.get("COLUMNS", "").strip("0"):
         os.environ.pop("COLUMNS", None)
     os.environ["MPLBACKEND"] = "agg"
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
     os.environ["PYDANTIC_DISABLE_PLUGINS"] = "__all__"
     stated = os.environ.get(EPOCH_VARIABLE)
     if stated is not None and not (stated.isdecimal() and int(stated[:20]) <= MAX_TIMESTAMP):

@@ -250,6 +250,14 @@ def test_whatever_an_interrupt_becomes_the_status_is_130(
     interrupts.require_none()  # nor does anything that this process does later end for it
 
 
+def test_a_home_that_cannot_be_written_is_no_news() -> None:
+    """Matplotlib, which keeps a list of fonts there, said so on every picture."""
+    load = "import pinstress.cli.commands as c; c._settle_environment(); import matplotlib"
+    command, nowhere = [sys.executable, "-c", load], {"MPLCONFIGDIR": f"{os.devnull}/nowhere"}
+    done = subprocess.run(command, env=os.environ | nowhere, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 def test_an_interrupt_before_the_command_line_is_there_is_told() -> None:
     """On a slow machine its imports take a second, in which an interrupt was silent."""
     begin = "import signal, pinstress.__main__ as m, pinstress.cli.streams as s\n"
