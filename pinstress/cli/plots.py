@@ -22,6 +22,7 @@ from pinbase.processes.apart import NO_MEMORY_REASON, Failed, apart
 from pinbase.processes.interrupts import Unfinished
 from pinbase.processes.pool import preload
 from pinstress.cli import manifest
+from pinstress.cli.output_folder import RESULTS_JSON
 from pinstress.study.reading.errors import InputError, cannot_write
 from pinstress.study.reading.extras import require_package
 from pinstress.study.reading.file_names import field_name
@@ -201,7 +202,10 @@ def add_pdf(directory: Path) -> dict[str, Failed]:
         content = document_of(page)
         shown = set() if content is None else set(shown_plots(content))
         drawings = {plot.name: plot for plot in plots_of(page) if plot.name in shown}
-    except FileNotFoundError:
+    except FileNotFoundError as error:
+        if Path(error.filename).name == RESULTS_JSON:
+            text = f"{directory}: {lacking(directory)}; run the study again"
+            raise InputError(text, code="no-results") from None
         content = None
     except (OSError, Damaged) as error:
         raise _unreadable(directory, error) from None
@@ -231,9 +235,9 @@ def _drawn(directory: Path, into: Path, quiet: bool) -> Drawn:
     work: list[tuple[str, Callable[[], Sequence[Path]]]] = [
         (f"{PLOTS_FOLDER}/{plot.name}.svg", partial(draw_plot, plot, into)) for plot in shown
     ]
-    rows = opened.content["pins"] if solid else []
-    problem = renderer_problem() if rows else None
-    if problem is not None and not quiet:
+    rows = opened.content["pins"]
+    problem = renderer_problem() if solid else "the folder has no fields (vtk/)"
+    if rows and problem is not None and not quiet:
         click.echo(f"No pictures of the pins: {problem}", err=True)
     if rows and problem is None:
         preload(*PICTURE_MODULES)

@@ -74,6 +74,15 @@ def test_a_file_of_another_is_left_alone(folder: Path, capsys: pytest.CaptureFix
 
 
 @pytest.mark.seconds
+def test_a_folder_without_results_is_not_said_to_have_no_page(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "results.json").unlink()
+    assert run_command_line(["pdf", str(folder)]) == 2
+    assert capsys.readouterr().err.endswith(": contains no results.json; run the study again\n")
+
+
+@pytest.mark.seconds
 def test_a_folder_without_a_page_is_refused(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from shutil import rmtree
 
 import pytest
 
@@ -58,7 +59,10 @@ def test_another_folder_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture
 
 
 @pytest.mark.slow
-def test_a_run_draws_plots_and_pins(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_draws_plots_and_pins(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Without the fields, which are large and may be deleted, the pins were left out silently."""
     (tmp_path / "study.toml").write_text(ONE_PIN)
     monkeypatch.chdir(tmp_path)
     options = ["--out", "out", "--plots", "--tolerance", "0.5", "--quiet"]
@@ -69,6 +73,10 @@ def test_a_run_draws_plots_and_pins(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     require_replaceable(tmp_path / "out")
     assert run_command_line(["plots", "out"]) == 0  # again
     assert names(tmp_path / "out") == drawn
+    assert "No pictures" not in capsys.readouterr().err
+    rmtree(tmp_path / "out" / "vtk")
+    assert run_command_line(["plots", "out"]) == 0
+    assert "No pictures of the pins: the folder has no fields (vtk/)" in capsys.readouterr().err
 
 
 def test_the_command_to_try_again_runs_as_printed(capsys: pytest.CaptureFixture[str]) -> None:
