@@ -203,7 +203,7 @@ def _replace(path: Path, content: bytes) -> None:
     try:
         partial.write_bytes(content)
         os.replace(partial, path)
-    except OSError:
+    except BaseException:
         with suppress(OSError):  # as of a name that is too long
             partial.unlink(missing_ok=True)
         raise

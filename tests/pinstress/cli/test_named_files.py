@@ -10,6 +10,7 @@ from threading import Thread
 import pytest
 
 from pinstress.cli.new_file import require_junit
+from pinstress.explore.size.size_state import replace_file
 from tests.support.each import each
 from tests.support.programs.command_line import QUICK, run_here
 
@@ -73,3 +74,15 @@ def test_what_stands_in_the_place_of_a_folder_is_told(
     assert (done.returncode, of_file in done.stderr) == (2, True), done.stderr
     done = run_here("loads", "study.toml", "--out", f"{name}/new", cwd=folder)
     assert (done.returncode, of_folder in done.stderr) == (2, True), done.stderr
+
+
+def test_a_file_that_is_replaced_leaves_no_part_where_that_is_interrupted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(os, "replace", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        replace_file(tmp_path / "sized.toml", b"whole")
+    assert not list(tmp_path.iterdir())
