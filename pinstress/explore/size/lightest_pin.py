@@ -13,25 +13,11 @@ import numpy as np
 
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.remedies.dimensions import dimensions_of
-from pinstress.analysis.remedies.secant import (
-    NoSizeError,
-    smallest,
-)
+from pinstress.analysis.remedies.secant import NoSizeError, smallest
 from pinstress.explore.size.contact_slopes import UndifferentiatedError
-from pinstress.explore.size.optimise import (
-    ImpossibleError,
-    Optimality,
-)
-from pinstress.explore.size.pin_shape import (
-    DIMENSION_KINDS,
-    VariedShape,
-    kind_of,
-)
-from pinstress.explore.size.pin_stress import (
-    PinStress,
-    SizingProblem,
-    SolvedPin,
-)
+from pinstress.explore.size.optimise import ImpossibleError, Optimality
+from pinstress.explore.size.pin_shape import DIMENSION_KINDS, VariedShape, kind_of
+from pinstress.explore.size.pin_stress import PinStress, SizingProblem, SolvedPin
 from pinstress.explore.size.scaled_study import resized_study
 from pinstress.explore.size.singular_places import decided
 from pinstress.explore.size.size_pin import why_fixed
@@ -44,9 +30,7 @@ from pinstress.explore.size.weight_search import (
     scaled,
     written,
 )
-from pinstress.explore.size.written_dimensions import (
-    binding,
-)
+from pinstress.explore.size.written_dimensions import binding
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
