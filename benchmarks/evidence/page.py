@@ -9,14 +9,7 @@ from itertools import groupby
 from pathlib import Path
 
 from benchmarks import ROOT
-from benchmarks.evidence.comparison import (
-    KINDS,
-    Comparison,
-    Fault,
-    Source,
-    records,
-    sources,
-)
+from benchmarks.evidence.comparison import KINDS, Comparison, Fault, Source, records, sources
 from benchmarks.timing import table
 
 PAGE = ROOT / "docs" / "evidence.md"

@@ -15,7 +15,7 @@ import pyarrow as pa
 from benchmarks.runs.page import chromium
 from benchmarks.timing import table
 from pinstress.explore.sweep.design_columns import designs_of
-from pinstress.explore.sweep.page import write_designs_page
+from pinstress.explore.sweep.page import render_designs
 from reports.format.template import VENDOR_FOLDER
 from tests.support.results.made_up_designs import made_up_designs
 
@@ -72,7 +72,8 @@ def designs_page() -> str:
 
 
 def _row(count: int, path: Path) -> tuple[object, ...]:
-    write_designs_page(made_up_designs(count, PARAMETERS), path)
+    designs = designs_of(made_up_designs(count, PARAMETERS))
+    path.write_text(render_designs(designs), encoding="utf-8")
     browser = _opened(path)
     try:
         ready = _until(browser) / 1e3

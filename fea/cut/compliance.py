@@ -26,7 +26,7 @@ from fea.core.pin_loads import Unit, UnitLoad
 from fea.cut.evaluate import fine_about
 from fea.cut.frames import cartesian, turn_of
 from fea.cut.local_model import LocalModel
-from fea.cut.local_solution import LocalFineness, LocalMesh, section_points
+from fea.cut.local_solution import LocalFineness, LocalMesh
 from fea.cut.movement import of_units
 from fea.cut.piece_system import combinations
 from fea.harmonic.fields import MeridianFields
@@ -117,16 +117,16 @@ def added_compliance(
     grades = [*(fine_about(piece, 0) for piece in pieces), *finer_at_rings(pin, rings)]
     section = HarmonicModel(pin, meridian_mesh(pin, FIRST_MESH_SIZE, (), grades), material, ())
     first_mesh, most = LocalFineness.of(0), most_unknowns(None, 1)
-    models = [LocalMesh(x, material, (), first_mesh, (), bands, most).model() for x in pieces]
-    points = np.concatenate([section_points(model) for model in models])
+    meshes = [LocalMesh(x, material, (), first_mesh, (), bands, most) for x in pieces]
+    points = np.concatenate([mesh.section_points for mesh in meshes])
     fields = [section.solve(x, points) for x in loads]
     units = [tuple((load, p) for load in x for p in load.phases) for x in loads]
     every = tuple(unit for part in units for unit in part)
     parts, first = [], 0
-    for model in models:
-        here = slice(first, first + len(section_points(model)))
+    for mesh in meshes:
+        here = slice(first, first + len(mesh.section_points))
         first = here.stop
-        parts += _of_piece(model, here, list(zip(fields, units, strict=True)))
+        parts += _of_piece(mesh.model, here, list(zip(fields, units, strict=True)))
     amounts, on = (np.concatenate(x) for x in zip(*parts, strict=True))
     return AddedCompliance(every, amounts, on)
 

@@ -16,8 +16,7 @@ from fea.core.pin_loads import PinLoads, Unit
 from fea.core.zone import DISTANCE_VARIATIONS, Zone
 from fea.cut.field import CutField, CutSolution
 from fea.cut.local_fields import LocalFields
-from fea.cut.local_solution import LOCAL_MESH_RATIO, LocalFineness, LocalMesh
-from fea.cut.posed_piece import PosedPiece
+from fea.cut.local_solution import LOCAL_MESH_RATIO, LocalFineness, LocalMesh, UncutPin
 from fea.cut.region import PIECE_REACH, REACH_FACTOR, pieces, surface_ends, zone
 from fea.cut.supports import ClampReaction, motions, reactions
 from fea.harmonic.evaluate import harmonic_result, section_problem
@@ -73,12 +72,12 @@ def cut_solution(
     finer = finer or LocalFineness.of(level)
     known = [next((k for k in reused if k.piece == piece), None) for piece in pieces]
     memo = problem.memo or Memo()
-    posed = [
-        PosedPiece(LocalMesh(piece, material, clamps, finer, high, bands, most), memo)
+    meshes = [
+        LocalMesh(piece, material, clamps, finer, high, bands, most, memo)
         for piece, reused_piece in zip(pieces, known, strict=True)
         if reused_piece is None
     ]
-    points = [one.section_points for one in posed]
+    points = [mesh.section_points for mesh in meshes]
     supports = _supports(problem)
     moved = motions(supports)
     section = harmonic_solution(
@@ -89,13 +88,10 @@ def cut_solution(
     at = np.split(section.elsewhere, np.cumsum([len(p) for p in points]))
     units = _units(cases) or tuple((load, load.phases[0]) for load in section.fields.loads[:1])
     units += moved
-    weight = _weight(cases, units, section.fields)
-    new = iter(
-        one.fields(section.fields, stress, units, problem.singularities, distance, weight)
-        for one, stress in zip(posed, at[:-1], strict=True)
-    )
+    uncut, weight = section.fields, _weight(cases, units, section.fields)
+    solved = UncutPin(uncut, units, problem.singularities, distance, weight)
+    new = iter(mesh.fields(solved, x) for mesh, x in zip(meshes, at[:-1], strict=True))
     local = tuple(reused_piece or next(new) for reused_piece in known)
-    uncut = section.fields
     fields = _without(uncut, [zone(piece) for piece in pieces])
     section = replace(section, fields=fields, elsewhere=NO_POINTS)
     held = next(iter(supports), None)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -23,6 +24,8 @@ from fea.harmonic.fields import MeridianFields
 from fea.singular.singularities import outside
 from geometry.mesh.cut_piece import Piece, Spots, piece_mesh
 from pinbase.arrays import Floats, Mask
+from pinbase.memo import Memo
+from pinbase.records import digest
 
 # Refinement, chosen by judgement; `python -m benchmarks cut-pins` checks the errors it leads to.
 LOCAL_MESH_RATIO = 2.0**0.75  # of element sizes from one mesh to the next, where stress is high
@@ -49,9 +52,33 @@ class LocalFineness:
 
 
 @dataclass(frozen=True)
-class LocalMesh:
-    """A piece with all that its mesh is made from.
+class UncutPin:
+    """The solved pin without cuts, from which the fields of pieces are made.
 
+    units: loads in the phases in which a piece is solved under them.
+    distance: as for inner_corners.
+    weight: of the units, as for LocalModel.solve.
+    """
+
+    fields: MeridianFields
+    units: tuple[Unit, ...]
+    singularities: tuple[Zone, ...]
+    distance: float
+    weight: Floats | float = 1.0
+
+    @property
+    def content(self) -> object:
+        """All on which the fields of a piece depend."""
+        of = self.fields
+        solved = of.points, of.stress, of.displacement, of.loads
+        return solved, self.units, self.singularities, self.distance, self.weight
+
+
+@dataclass(frozen=True)
+class LocalMesh:
+    """A piece to be solved on one mesh, which is made only where the memo lacks what follows.
+
+    Fields of unit loads serve all loads that lead to this mesh, such as those of other designs.
     finer: its fineness, finest about points where stress was high on the meshes before.
     high: these, m, in the pin's frame.
     bands: loaded ones of the pin, with cuts in them.
@@ -65,13 +92,9 @@ class LocalMesh:
     high: Sequence[Point] = ()
     bands: Sequence[tuple[float, float]] = ()
     most: float = math.inf
+    memo: Memo = field(default_factory=Memo)
 
-    @property
-    def content(self) -> object:
-        """All that its stress depends on."""
-        elastic, bands = self.material.elastic_part, tuple(self.bands)
-        return self.piece, elastic, self.clamps, self.finer, self._here, bands
-
+    @cached_property
     def model(self) -> LocalModel:
         """The mesh, with its equations.
 
@@ -86,8 +109,32 @@ class LocalMesh:
         return LocalModel(piece, mesh, self.material, held, loaded, finer.spots)
 
     @property
+    def section_points(self) -> Floats:
+        """The points (r, z), m, at which the stress of the uncut pin is needed.
+
+        Raises: MeshError.
+        """
+        return self.memo.get(("section points", self._key), lambda: _section_points(self.model))
+
+    def fields(self, uncut: UncutPin, at_points: Floats) -> LocalFields:
+        """The unit fields of the piece.
+
+        at_points: the stress (S, 6, K) of the uncut pin at the section_points.
+
+        Raises: MeshError, SolveError.
+        """
+        key = "local fields", self._key, digest((uncut.content, at_points))
+        return self.memo.get(key, lambda: _fields(self.model, uncut, at_points))
+
+    @property
     def _here(self) -> tuple[Point, ...]:
         return tuple(p for p in self.high if self.piece.z0 <= p[2] <= self.piece.z1)
+
+    @cached_property
+    def _key(self) -> str:
+        """All that its stress depends on."""
+        elastic, bands = self.material.elastic_part, tuple(self.bands)
+        return digest((self.piece, elastic, self.clamps, self.finer, self._here, bands))
 
 
 def _clamped(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
@@ -101,30 +148,17 @@ def _clamped(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
     )
 
 
-def section_points(model: LocalModel) -> Floats:
-    """The points (r, z), m, at which the stress of the uncut pin is needed."""
+def _section_points(model: LocalModel) -> Floats:
     x = model.faces.images[:, model.faces.cut].reshape(-1, 3)
     return np.stack([np.hypot(x[:, 0], x[:, 1]), x[:, 2] + model.piece.origin], axis=1)
 
 
-def local_fields(
-    model: LocalModel,
-    fields: MeridianFields,
-    at_points: Floats,
-    units: tuple[Unit, ...],
-    singularities: Sequence[Zone],
-    distance: float,
-    weight: Floats | float = 1.0,
-) -> LocalFields:
-    """The unit fields of a piece on one mesh.
-
-    fields: of the uncut pin.
-    at_points: its stress (S, 6, K) at the section_points.
-    distance: as for inner_corners.
-    weight: as for LocalModel.solve.
+def _fields(model: LocalModel, uncut: UncutPin, at_points: Floats) -> LocalFields:
+    """The unit fields of a piece on one mesh, as of LocalMesh.
 
     Raises: SolveError.
     """
+    fields, units, distance = uncut.fields, uncut.units, uncut.distance
     piece, x, turn = model.piece, model.faces.images, turn_of(model.piece.angle)
     r, z = np.hypot(x[..., 0], x[..., 1]), x[..., 2] + piece.origin
     columns = [fields.loads.index(load) for load, _ in units]
@@ -135,7 +169,7 @@ def local_fields(
     )
     # Step 2: the piece is solved under it.
     largest = np.abs(fields.stress[..., columns]).max(axis=(0, 1))
-    read = model.solve(stress, largest, [load.shears for load, _ in units], weight)
+    read = model.solve(stress, largest, [load.shears for load, _ in units], uncut.weight)
     # Step 3: back into the pin's frame.
     points = read.points @ turn.T + [0.0, 0.0, piece.origin]
     outer, flat_r, flat_z = np.flatnonzero(~read.cut), r.ravel(), z.ravel()
@@ -149,7 +183,7 @@ def local_fields(
         rotation(turn) @ read.stress,
         displacement(fields, flat_r, flat_z, np.arctan2(points[:, 1], points[:, 0]), units),
         displaced - rigid(moved[0], points),
-        outside(singularities, flat_r, flat_z),
+        outside(uncut.singularities, flat_r, flat_z),
         outer,
         read.difference[outer],
         _at_open_ends(piece, points[outer]),

@@ -11,11 +11,7 @@ import numpy as np
 
 from fea.core.material import Material
 from fea.lug.lug_load import LugLoad
-from fea.lug.lug_stress import (
-    BoreStress,
-    LugInPlane,
-    bore_stresses,
-)
+from fea.lug.lug_stress import BoreStress, LugInPlane, bore_stresses
 from fea.lug.slipping import SlippingBushing
 from fea.lug.through_thickness import EyeStress, eye_stress
 from fea.support.contact.bending import SAME_FORCE

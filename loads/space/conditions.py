@@ -229,7 +229,7 @@ def rows_of(linkage: SpaceLinkage) -> ConditionRows:
         if kind.meets:
             points += [_point(linkage, joint, e, 0.0) for e in np.eye(3)]
         points += [_point(linkage, joint, frame[key], 1.0) for key in kind.along]
-        square += [_square(linkage, joint, frame[a], frame[b]) for a, b in kind.square]
+        square += [_square(joint, frame[a], frame[b]) for a, b in kind.square]
     for k, m in enumerate(linkage.measured):
         if isinstance(m, PointDistance):
             spans.append(_span(linkage, m, k))
@@ -320,7 +320,7 @@ def _point(
     return _Row(name or joint.name, joint.base, joint.moving, k, *arms, first=e, turns=turns)
 
 
-def _square(linkage: SpaceLinkage, joint: SpaceJoint, a: Floats, b: Floats) -> _Row:
+def _square(joint: SpaceJoint, a: Floats, b: Floats) -> _Row:
     return _Row(joint.name, joint.base, joint.moving, first=a, other=b)
 
 

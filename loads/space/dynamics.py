@@ -19,13 +19,7 @@ from loads.space.acting import SpaceLoad, power
 from loads.space.conditions import axes_of
 from loads.space.linkage import SpaceLinkage
 from loads.space.motion import SpaceMotion
-from loads.space.sharing import (
-    RedundantSets,
-    groups,
-    others,
-    redundant_sets,
-    shared,
-)
+from loads.space.sharing import RedundantSets, groups, others, redundant_sets, shared
 from loads.space.teeth import pitch_points, tooth_forces
 from pinbase.arrays import Complex, Floats
 

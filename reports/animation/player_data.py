@@ -8,13 +8,7 @@ import numpy as np
 
 from pinbase.dimensions import Floats
 from reports.animation.frames import nice
-from reports.animation.scene import (
-    APPLIED_GAP,
-    AXIS_REACH,
-    JOINT_LABEL_GAP,
-    PIN_REACH,
-    Scene,
-)
+from reports.animation.scene import APPLIED_GAP, AXIS_REACH, JOINT_LABEL_GAP, PIN_REACH, Scene
 from reports.data.mechanics import DriveTable
 from reports.data.row import Units
 from reports.format.drawing.projection import three_views

@@ -13,13 +13,7 @@ from assess.strength.fatigue_life import FATIGUE_LIFE
 from assess.strength.model_stress import RUPTURE_METHOD, YIELD_METHOD
 from reports.data.decision import factor_ends, limit, utilisation
 from reports.data.lug_modes import lug_mode
-from reports.data.requirements import (
-    MET,
-    MISSED,
-    NOT_CHECKED,
-    RequirementRow,
-    requirement_rows,
-)
+from reports.data.requirements import MET, MISSED, NOT_CHECKED, RequirementRow, requirement_rows
 from reports.data.results import Results
 from reports.data.row import PinResult
 

@@ -14,15 +14,7 @@ from math import inf, prod, sqrt
 from typing import Literal
 
 from assess.fatigue.records import ERROR_OF_STRESS
-from assess.judgement import (
-    BELOW_YIELD,
-    DEPENDS,
-    FAILS,
-    NOT_DECIDED,
-    SAFE,
-    YIELDS,
-    against_yield,
-)
+from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS, against_yield
 from assess.margin import CLAMPED_LUG_PREFIX, CUTS_NEEDED, FORMULA_CHECKS, Level, Margin
 from assess.requirement import (
     REQUIRED_CHECKS,

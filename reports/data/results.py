@@ -18,17 +18,8 @@ from pinbase.dimensions import Force, Length
 from pinbase.records import Unit, in_units
 from reports.data.changes import Remedy
 from reports.data.drop import DropRecord
-from reports.data.mechanics import (
-    DriveTable,
-    PublishedValue,
-    ReactionTable,
-)
-from reports.data.motion import (
-    BodyMotion,
-    LinkageMotion,
-    MotionCheck,
-    SpacePosture,
-)
+from reports.data.mechanics import DriveTable, PublishedValue, ReactionTable
+from reports.data.motion import BodyMotion, LinkageMotion, MotionCheck, SpacePosture
 from reports.data.row import LandingRange, PinResult, Units
 from reports.data.sensitivities import PinSensitivities
 from reports.data.skeleton import Skeleton, planar_skeleton

@@ -17,7 +17,7 @@ from reports.format.words import headline
 from reports.page.joint import joint_part
 from reports.page.lets_go import lets_go_parts
 from reports.page.places import places_part
-from reports.tables.column import Column, Grid, Table, grid_of, texts
+from reports.tables.column import Table, grid_of, texts
 from reports.tables.published import published_maxima
 from reports.tables.strength.changes import REMEDIES_NOTE, change_notes, changes_table
 from reports.tables.strength.envelope import ENVELOPE_NOTE, cell_text, matrix
@@ -67,16 +67,15 @@ def document(
     drawings: of the pins, as SVG. overview: reports.page.overview.
     """
     everything, results = results, detailed_rows(results)
-    maxima = grid_of(published_maxima(results), results.units)
-    return {
+    content = {
         "title": results.title,
         "study": results.study,
         "sha256": results.study_sha256,
         "versions": dict(sorted(results.versions.items())),
-        "block": asdict(results.title_block),
+        "block": results.title_block,
         "headline": headline(everything),
         "overview": overview and _on_paper(overview),
-        "units": asdict(results.units),
+        "units": results.units,
         "factors": _factors(results),
         "reading": reading(shown_factors(results)),
         "envelope": _envelope(everything),
@@ -84,17 +83,19 @@ def document(
         "changes": _changes(results),
         "sensitivities": _sensitivities(results),
         "fatigue": _fatigue(results),
-        "maxima": None if maxima is None else asdict(maxima),
+        "maxima": grid_of(published_maxima(results), results.units),
         "published_source": results.published_source,
         "pins": [_pin(results, name, drawings) for name in drawings],
         "loads": [
-            {"case": part.case, "notes": part.notes, "grids": [asdict(g) for g in part.grids]}
+            {"case": part.case, "notes": part.notes, "grids": part.grids}
             for part in load_parts(results)
         ],
-        "provenance": asdict(_provenance(results)) if results.provenance else None,
+        "provenance": grid_of(_provenance(results), results.units),
         "assumptions": results.assumptions,
         "method": METHOD_NOTE,
     }
+    plain: Content = json.loads(json.dumps(content, default=asdict))
+    return plain
 
 
 def _on_paper(overview: Content) -> Content:
@@ -148,7 +149,7 @@ def _used(cell: EnvelopeCell | None) -> Content | None:
 
 def _margins(results: Results) -> Content | None:
     grid = grid_of(governing_table(results), results.units)
-    return None if grid is None else {"grid": asdict(grid), "notes": not_made_words(results)}
+    return None if grid is None else {"grid": grid, "notes": not_made_words(results)}
 
 
 def _fatigue(results: Results) -> Content | None:
@@ -156,7 +157,7 @@ def _fatigue(results: Results) -> Content | None:
         return None
     grid, notes = grid_of(shown_fatigue(results), results.units), results.fatigue.left_out
     said = fatigue_sentence(results.fatigue)
-    return {"sentence": said, "grid": grid and asdict(grid), "notes": notes}
+    return {"sentence": said, "grid": grid, "notes": notes}
 
 
 def _changes(results: Results) -> Content | None:
@@ -165,7 +166,7 @@ def _changes(results: Results) -> Content | None:
     notes = [REMEDIES_NOTE, *change_notes(results)]
     size = command(results.changes, results.study, largest_factor(results.pins))
     grid = changes_table(results).grid(results.units)
-    return {"grid": asdict(grid), "notes": notes, "command": size or None}
+    return {"grid": grid, "notes": notes, "command": size or None}
 
 
 def _sensitivities(results: Results) -> Content | None:
@@ -178,16 +179,15 @@ def _sensitivities(results: Results) -> Content | None:
     grid = grid_of(shown_sensitivities(of_worst, MAX_DIMENSIONS), results.units)
     if grid is None:
         return None
-    return {"grid": asdict(grid), "introduction": f"{SENSITIVE} Each pin is in its worst case."}
+    return {"grid": grid, "introduction": f"{SENSITIVE} Each pin is in its worst case."}
 
 
 def _pin(results: Results, name: str, drawings: dict[str, str]) -> Content:
     shape = next(s for s in results.shapes if s.pin == name)
     zoned = any(p.singular_at for p in results.pins if p.pin == name)
-    ladder = lets_go_parts(results).get(name)
     return {
         "pin": name,
-        "lets_go": None if ladder is None else asdict(ladder),
+        "lets_go": lets_go_parts(results).get(name),
         "drawing": drawings[name],
         "caption": drawing_caption(shape, results.units, zoned),
         "refinement": plot_name("refinement-pin", name),
@@ -196,7 +196,7 @@ def _pin(results: Results, name: str, drawings: dict[str, str]) -> Content:
 
 
 def _case(pin: PinResult, results: Results) -> Content:
-    joint, places = joint_part(pin, results.units), places_part(pin, results.units)
+    joint = joint_part(pin, results.units)
     return {
         "case": pin.case,
         "outcome": pin.outcome,
@@ -204,16 +204,11 @@ def _case(pin: PinResult, results: Results) -> Content:
         "model": pin.why,
         "held": pin.held,
         "plot": plot_name("surface", pin.case, pin.pin),
-        "places": None if places is None else asdict(places),
-        "bands": asdict(joint.bands) if joint and joint.bands else None,
-        "lugs": asdict(joint.lugs) if joint and joint.lugs else None,
+        "places": places_part(pin, results.units),
+        "bands": joint and joint.bands,
+        "lugs": joint and joint.lugs,
     }
 
 
-PROVENANCE_COLUMNS: list[Column[Provenance]] = [
-    *texts("input=key value source=kind note"),
-]
-
-
-def _provenance(results: Results) -> Grid:
-    return Table("provenance", PROVENANCE_COLUMNS, results.provenance).grid(results.units)
+def _provenance(results: Results) -> Table[Provenance]:
+    return Table("provenance", texts("input=key value source=kind note"), results.provenance)

@@ -42,7 +42,7 @@ def decisions(results: Results, lines: Sequence[PinLine]) -> str:
     if len(quiet) > MAX_NAMED_CASES:
         parts.append(_all_quiet(quiet))
     else:
-        parts += [_quiet(results, case, len(lines)) for case in quiet]
+        parts += [_quiet(case, len(lines)) for case in quiet]
     return " ".join(part for part in parts if part)
 
 
@@ -166,7 +166,7 @@ def _all_quiet(cases: Sequence[QuietCase]) -> str:
     return f"{text}, lowest {factor_range(row)} ({row.pin}, {row.case})."
 
 
-def _quiet(results: Results, case: QuietCase, pins: int) -> str:
+def _quiet(case: QuietCase, pins: int) -> str:
     low = case.lowest
     state = "safe" if low is not None and low.required else BELOW_YIELD
     every = "all are" if case.pins > 1 else "the pin is"

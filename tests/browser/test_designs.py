@@ -11,7 +11,8 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from pinstress.explore.sweep.page import write_designs_page
+from pinstress.explore.sweep.design_columns import designs_of
+from pinstress.explore.sweep.page import render_designs
 from reports.format.numbers import engineering, short
 from tests.browser.test_page import AXE, FAULTS
 from tests.support.each import sampled
@@ -52,7 +53,7 @@ def table() -> pa.Table:
 
 def shown(browser: Any, table: pa.Table, folder: Path) -> Any:
     path = folder / "designs.html"
-    write_designs_page(table, path)
+    path.write_text(render_designs(designs_of(table)), encoding="utf-8")
     browser.get_log("browser")
     browser.get(path.as_uri())
     wait(browser, lambda: browser.execute_script("return page !== null;"))

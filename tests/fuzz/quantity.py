@@ -13,6 +13,7 @@ from typing import Any
 import tomlkit
 
 from pinstress.study.schema.units import DIMENSIONS_NEEDING_UNIT, UNIT_SYSTEMS
+from tests.support.study_text import study_file
 
 Tree = dict[str, Any]
 INCH, POUND = 0.0254, 0.45359237
@@ -126,9 +127,7 @@ def write(tree: Tree, folder: Path, spelling: random.Random | None = None) -> Pa
             for row in table.rows
         ]
 
-    path = folder / "study.toml"
-    path.write_text(tomlkit.dumps(plain(tree)))
-    return path
+    return study_file(folder, tomlkit.dumps(plain(tree)))
 
 
 def _csv(rows: list[dict[str, Any]]) -> str:

@@ -13,12 +13,7 @@ from skfem import Basis, ElementTriP2
 
 from geometry import Arc, Edge, Pin, Segment, meridian
 from geometry.mesh.gmsh_tetrahedra import MIN_JACOBIAN_RATIO
-from geometry.mesh.section_mesh import (
-    MeridianMesh,
-    SectionSize,
-    Spot,
-    meridian_mesh,
-)
+from geometry.mesh.section_mesh import MeridianMesh, SectionSize, Spot, meridian_mesh
 from geometry.mesh.solid_mesh import MeshError
 from tests.support.each import each
 from tests.support.errors import raises

@@ -20,6 +20,7 @@ from pinstress.cli.commands import run_command_line
 from pinstress.explore.size.size_pin import CONTACT_FACTOR_TOLERANCE
 from tests.conftest import ROOT
 from tests.places.test_headline_again import violations
+from tests.support.study_text import edited
 
 pytestmark = pytest.mark.slow
 
@@ -43,15 +44,13 @@ sobol_samples = 0
 
 def stub(required: float = REQUIRED, more: str = "") -> str:
     text = (ROOT / "studies" / "clevis.toml").read_text(encoding="utf-8")
-    for old, new in (
+    changes = (
         ("length = 10, diameter", "length = 8, diameter"),
         ("length = 20, diameter", "length = 16, diameter"),
         ("length = 1, diameter", "length = 0.5, diameter"),
         ("required_safety_factor = 1.5", f'required_safety_factor = {required}\ngoal = "value"'),
-    ):
-        assert old in text
-        text = text.replace(old, new)
-    return text + more
+    )
+    return edited(text, changes) + more
 
 
 @pytest.fixture(scope="module")

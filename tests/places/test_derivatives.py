@@ -18,12 +18,7 @@ from assess.derivatives.in_lugs import JointDerivatives, JointParameter, joint_d
 from assess.derivatives.in_section import section_derivatives
 from assess.derivatives.reading_point import Continued, OnSkin, Relieved
 from assess.derivatives.records import SolvedCase
-from benchmarks.joints.joint_derivatives import (
-    WholeJoint,
-    parameters,
-    solved_in_lugs,
-    whole_joint,
-)
+from benchmarks.joints.joint_derivatives import WholeJoint, parameters, solved_in_lugs, whole_joint
 from benchmarks.pins.derivatives import moved_maximum, richardson
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads

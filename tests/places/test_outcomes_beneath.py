@@ -10,13 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fea.core.places import (
-    ContactEdge,
-    ContactPlace,
-    Places,
-    SectionPlace,
-    SurfacePlace,
-)
+from fea.core.places import ContactEdge, ContactPlace, Places, SectionPlace, SurfacePlace
 from fea.harmonic.beneath import stairs
 from fea.support.records import JointRange, Variation
 from pinbase.records import in_units

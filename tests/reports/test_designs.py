@@ -16,8 +16,8 @@ from pinstress.explore.sweep.page import (
     column_grid,
     page_data,
     reason_grid,
+    render_designs,
     summary,
-    write_designs_page,
 )
 from reports.format.packed import packed
 from tests.support.each import each
@@ -61,7 +61,7 @@ def column(data: dict[str, Any], key: str) -> dict[str, Any]:
 
 def write(table: pa.Table, folder: Path) -> Path:
     path = folder / "designs.html"
-    write_designs_page(table, path)
+    path.write_text(render_designs(designs_of(table)), encoding="utf-8")
     return path
 
 

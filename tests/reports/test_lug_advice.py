@@ -23,6 +23,7 @@ from tests.support.each import each
 from tests.support.pins.remembered import remembered
 from tests.support.results.made_up_run import make_results
 from tests.support.results.rows import with_values
+from tests.support.study_text import edited
 
 STRESS = Margin(
     "lug, von Mises stress at the bore", "14 CFR 25.305", "model", "limit", 2.0, 50e3, 80e3,
@@ -165,11 +166,8 @@ def clevis(folder: Path, required: float, **sizes: float) -> Results:
         "diameter = 20,": f"diameter = {size['pin']},",
         "diameter = 20 }": f"diameter = {size['pin']} }}",
     }
-    for old, new in changes.items():
-        assert old in text
-        text = text.replace(old, new)
     path = folder / "clevis.toml"
-    path.write_text(text, encoding="utf-8")
+    path.write_text(edited(text, changes.items()), encoding="utf-8")
     return remembered(pinstress.load_study(path))
 
 

@@ -17,6 +17,7 @@ from pinstress.explore.sweep.design_columns import designs_of
 from pinstress.explore.sweep.page import summary
 from reports.data.headline import worst_checks
 from tests.support.each import each
+from tests.support.study_text import study_file
 
 STUDY = """
 title = "A clevis with an eye that fails"
@@ -101,8 +102,7 @@ def test_what_judges_yield_alone_of_pins_alone_says_so(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], command: list[str]
 ) -> None:
     """Rows read "safe" while the run misses the required rupture."""
-    path = tmp_path / "study.toml"
-    path.write_text(f"{STUDY}{REQUIRED}")
+    path = study_file(tmp_path, f"{STUDY}{REQUIRED}")
     arguments = [command[0], str(path), *command[1:], "--out", str(tmp_path / "out"), "--quiet"]
     run_command_line([*arguments, "--jobs", "1"])
     said = " ".join(capsys.readouterr().out.split())
@@ -113,8 +113,7 @@ def test_what_judges_yield_alone_of_pins_alone_says_so(
 
 
 def test_the_run_judges_the_lugs(tmp_path: Path) -> None:
-    path = tmp_path / "study.toml"
-    path.write_text(STUDY)
+    path = study_file(tmp_path, STUDY)
     study = pinstress.load_study(path)
     (row,) = pinstress.run(study).pins
     assert row.meets_required is True
@@ -133,8 +132,7 @@ def test_what_a_run_judges_besides_yield_is_named(
     """Rows read "safe", and nothing said that a run of the same study fails by another check."""
     strong = 'yield_strength = "900 MPa"\n'
     alone = STUDY.replace('lug.M = { outer_diameter = 30, material = "weak" }\n', "")
-    path = tmp_path / "study.toml"
-    path.write_text(alone.replace(strong, f"{strong}{more}\n", 1))
+    path = study_file(tmp_path, alone.replace(strong, f"{strong}{more}\n", 1))
     worst = worst_checks(pinstress.run(pinstress.load_study(path)))["P"]
     assert (worst.outcome, worst.check) == ("fails", check)
     arguments = ["curve", str(path), KEY, "--points", "2", "--out", str(tmp_path / "out")]

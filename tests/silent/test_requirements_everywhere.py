@@ -23,6 +23,7 @@ from reports.text.summary import caveats
 from tests.conftest import ROOT
 from tests.pinstress.analysis.test_margins import STRENGTHS, study
 from tests.pinstress.explore.reliability.test_reliability import BAR
+from tests.support.study_text import edited
 
 STUDIES = ROOT / "studies"
 
@@ -30,10 +31,7 @@ STUDIES = ROOT / "studies"
 def shipped(name: str, require: str, *changes: tuple[str, str]) -> str:
     """The text of a study with requirements, and with other texts in it."""
     text = (STUDIES / f"{name}.toml").read_text(encoding="utf-8")
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new)
-    return f"{text}\n{require}"
+    return f"{edited(text, changes)}\n{require}"
 
 
 def require(**keys: Any) -> str:

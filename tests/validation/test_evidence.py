@@ -13,13 +13,7 @@ import statistics
 import pytest
 
 from assess.clauses.lug_collapse import ULTIMATE_SCATTER
-from benchmarks.evidence.comparison import (
-    STUDIES,
-    Comparison,
-    printed_numbers,
-    records,
-    sources,
-)
+from benchmarks.evidence.comparison import STUDIES, Comparison, printed_numbers, records, sources
 from benchmarks.evidence.figure import FOLDER, NAME
 from benchmarks.evidence.page import PAGE, bar_rows, source_rows
 from benchmarks.evidence.predict import IN_CONTACT, SLOW_STUDIES, broken_bars, in_print

@@ -202,12 +202,12 @@ def test_what_remains_is_michells_term(check: BeamCheck) -> None:
     """
     assert check.expected_offset == pytest.approx(-4.743, abs=2e-3)
     assert check.expected_offset_axis_load == pytest.approx(-8.189, abs=2e-3)
-    assert check.rms_beyond_offset < 0.01
-    assert check.rms_axis_load_beyond_offset < 0.015
-    assert check.rms > 3.0 * check.rms_beyond_offset
-    assert check.rms_axis_load > 3.0 * check.rms_axis_load_beyond_offset
+    assert check.on_surface_beyond_offset.rms < 0.01
+    assert check.on_axis_beyond_offset.rms < 0.015
+    assert check.on_surface.rms > 3.0 * check.on_surface_beyond_offset.rms
+    assert check.on_axis.rms > 3.0 * check.on_axis_beyond_offset.rms
 
 
 def test_the_largest_difference_is_at_the_root(check: BeamCheck) -> None:
-    assert check.largest_at < 0.1
-    assert check.largest_anywhere > 0.5
+    assert check.on_surface.largest_at < 0.1
+    assert check.on_surface.largest_anywhere > 0.5

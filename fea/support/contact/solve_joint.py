@@ -47,13 +47,7 @@ from fea.support.lugs.fit import fitted, on_structure
 from fea.support.lugs.links import link_forces, link_moments, link_numbers, tilting_bands
 from fea.support.lugs.lug import Bushing, Lug
 from geometry import CutPin, Pin
-from geometry.shape.rings import (
-    annulus,
-    beside_fillets,
-    ring_ends,
-    ringed,
-    rings,
-)
+from geometry.shape.rings import annulus, beside_fillets, ring_ends, ringed, rings
 from pinbase.arrays import Ints, Mask
 from pinbase.memo import Memo
 

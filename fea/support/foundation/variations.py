@@ -20,12 +20,7 @@ from fea.support.contact.bending import growth_across, growth_of_lugs
 from fea.support.foundation.bounds import StressBounds, band_forces, stress_bounds
 from fea.support.foundation.foundation_model import FoundationModel, JointFoundation
 from fea.support.foundation.stress import FoundationStress
-from fea.support.lugs.changes import (
-    JointChange,
-    joint_variations,
-    pressed_in,
-    with_stiffness,
-)
+from fea.support.lugs.changes import JointChange, joint_variations, pressed_in, with_stiffness
 from fea.support.lugs.fit import beyond_foundations
 from fea.support.lugs.lug import Lug
 from fea.support.records import JointRange, JointResult, Variation

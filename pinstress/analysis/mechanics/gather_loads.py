@@ -6,11 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from loads import (
-    Dynamics,
-    Slider,
-    energy,
-)
+from loads import Dynamics, Slider, energy
 from pinbase.arrays import Floats
 from pinstress.analysis.checks import motion_check
 from pinstress.analysis.mechanics.gather_drops import drop_record

@@ -47,13 +47,7 @@ from pinstress.study.model.lugs import with_given_lugs
 from pinstress.study.model.requirements import checks_besides_yield
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.vary import ReliabilityTable
-from reports.data.reliability import (
-    SYSTEM_ROW,
-    Driver,
-    FirstOrder,
-    Reliability,
-    Spread,
-)
+from reports.data.reliability import SYSTEM_ROW, Driver, FirstOrder, Reliability, Spread
 from reports.data.results import Results
 from reports.data.row import PinResult
 from reports.format.words import not_judged

@@ -9,13 +9,7 @@ from functools import partial
 
 from pinbase.processes.interrupts import Unfinished
 from pinstress.analysis.cache import Cache
-from pinstress.explore.sweep.batches import (
-    Batches,
-    DesignProblem,
-    Rows,
-    SolvedBatch,
-    evaluator_of,
-)
+from pinstress.explore.sweep.batches import Batches, DesignProblem, Rows, SolvedBatch, evaluator_of
 from pinstress.explore.sweep.cluster import Cluster
 from pinstress.explore.sweep.evaluate import DesignRow
 from pinstress.explore.sweep.laws import Floats

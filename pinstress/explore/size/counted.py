@@ -24,6 +24,13 @@ def surface_and_section(peak: Maximum) -> Iterator[tuple[Place, float]]:
         yield "section", places.section.max_von_mises + places.section.error_estimate
 
 
+def why_unsolved(peak: Maximum) -> str:
+    """Return why a pin has no maximum in a case; empty where it has one."""
+    reasons = {"rigid": "it is unconstrained", "failed": "the numerical solution failed"}
+    why = reasons.get(peak.verdict, "")
+    return why and f"{why} in case {peak.case}: {peak.note}"
+
+
 def beneath(peak: Maximum) -> float:
     """Return the stress beneath contact with its error, Pa; 0 without any."""
     contact = peak.places and peak.places.contact

@@ -13,27 +13,14 @@ import numpy as np
 
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.remedies.dimensions import dimensions_of
-from pinstress.analysis.remedies.secant import (
-    NoSizeError,
-    smallest,
-)
+from pinstress.analysis.remedies.secant import NoSizeError, smallest
 from pinstress.explore.size.contact_slopes import UndifferentiatedError
-from pinstress.explore.size.optimise import (
-    ImpossibleError,
-    Optimality,
-)
-from pinstress.explore.size.pin_shape import (
-    DIMENSION_KINDS,
-    VariedShape,
-    kind_of,
-)
-from pinstress.explore.size.pin_stress import (
-    PinStress,
-    SizingProblem,
-    SolvedPin,
-)
+from pinstress.explore.size.optimise import ImpossibleError, Optimality
+from pinstress.explore.size.pin_shape import DIMENSION_KINDS, VariedShape, kind_of
+from pinstress.explore.size.pin_stress import PinStress, SizingProblem, SolvedPin
 from pinstress.explore.size.scaled_study import resized_study
 from pinstress.explore.size.singular_places import decided
+from pinstress.explore.size.size_pin import why_fixed
 from pinstress.explore.size.weight_search import (
     SLOPE_RANGE,
     WeightGoal,
@@ -43,10 +30,7 @@ from pinstress.explore.size.weight_search import (
     scaled,
     written,
 )
-from pinstress.explore.size.written_dimensions import (
-    binding,
-)
-from pinstress.study.model.hardened import hardened_key, hardened_reason
+from pinstress.explore.size.written_dimensions import binding
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
@@ -214,13 +198,8 @@ def _only_scaled(stress: PinStress, aim: WeightGoal, start: Start) -> Lightest:
 
 def problem_of(study: Study, plan: Plan, pin: str, aim: WeightGoal) -> SizingProblem | str:
     """Return the problem that is posed for a pin, or the reason why there is none."""
-    table = study.table.pin[pin]
-    if table.geometry is not None:
-        return "its shape comes from a file, which has no dimensions to change"
-    if key := hardened_key(study, pin):
-        return hardened_reason(key)
-    if study.table.material[table.material].yield_strength is None:
-        return f"its material {table.material} has no yield_strength"
+    if why := why_fixed(study, pin):
+        return why
     shaft = pin_of(study, pin)
     shape = VariedShape(study, shaft, aim.vary, aim.limits)
     if not shape.dimensions and shaft.revolved:

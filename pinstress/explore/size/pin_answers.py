@@ -15,7 +15,7 @@ from pinstress.analysis.remedies.secant import NoSizeError
 from pinstress.analysis.reused_loads import reused_loads
 from pinstress.analysis.solve import judged, solutions
 from pinstress.analysis.stored import PinOutcome
-from pinstress.explore.size.counted import beneath
+from pinstress.explore.size.counted import beneath, why_unsolved
 from pinstress.explore.size.scaled_study import resized_study
 from pinstress.explore.size.section_law import Accuracy, PinTrial
 from pinstress.explore.size.standard_diameters import StandardDiameters
@@ -185,10 +185,8 @@ def _answer(
     Raises: NoSizeError for a pin that is not solved.
     """
     for peak in peaks:
-        if peak.verdict == "rigid":
-            raise NoSizeError(f"it is unconstrained in case {peak.case}: {peak.note}")
-        if peak.verdict == "failed":
-            raise NoSizeError(f"the numerical solution failed in case {peak.case}: {peak.note}")
+        if why := why_unsolved(peak):
+            raise NoSizeError(why)
         if accuracy == "full" and not peak.bounded:
             raise NoSizeError(f"the error is unknown in case {peak.case}: {peak.note}")
     loaded = [peak for peak in peaks if peak.max_von_mises]

@@ -30,6 +30,7 @@ from pinbase.memo import Memo
 from pinstress.analysis.remedies.dimensions import dimensions_of
 from pinstress.analysis.solve import solutions
 from pinstress.explore.size.contact_slopes import UndifferentiatedError
+from pinstress.explore.size.counted import why_unsolved
 from pinstress.explore.size.optimise import ImpossibleError, StressPlace, worst
 from pinstress.explore.size.other_dimensions import paths_of, study_with
 from pinstress.explore.size.pin_shape import VariedShape
@@ -298,7 +299,8 @@ class PinStress:
         for solution in solutions(study, task, requirement, lambda _: None, self._memo):
             self.in_contact |= solution.rings is not None
             peak = solution.peak
-            _require_solved(peak)
+            if why := why_unsolved(peak):
+                raise ImpossibleError(why)
             if not peak.max_von_mises:
                 continue
             if task.lugs:
@@ -329,14 +331,3 @@ def _size(task: Task, loads: PinLoads) -> float:
     """
     arm = task.pin.length
     return float(max(np.abs(loads.forces).max(), np.abs(loads.moments).max(initial=0.0) / arm))
-
-
-def _require_solved(peak: Maximum) -> None:
-    """Check that a peak was solved.
-
-    Raises: ImpossibleError.
-    """
-    if peak.verdict == "rigid":
-        raise ImpossibleError(f"it is unconstrained in case {peak.case}: {peak.note}")
-    if peak.verdict == "failed":
-        raise ImpossibleError(f"the numerical solution failed in case {peak.case}: {peak.note}")

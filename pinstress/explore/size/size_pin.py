@@ -74,10 +74,10 @@ class SizingResult:
     """
 
     pin: str
-    scale: float | None
-    before: float | None
-    factor: float | None
-    verdict: Verdict | None
+    scale: float | None = None
+    before: float | None = None
+    factor: float | None = None
+    verdict: Verdict | None = None
     why: str = ""
     limited: bool = False
     judged: JudgedPin | None = None
@@ -165,14 +165,14 @@ def size_pin(
     Failures are reported in the answer.
     """
     more = goal.of_pin(pin)
-    problem = _problem(plan.study, pin)
+    problem = why_fixed(plan.study, pin)
     if more and not any(more.values()):
         problem = "no factor is required of it"
     if problem:
-        return SizingResult(pin, None, None, None, None, problem)
+        return SizingResult(pin, why=problem)
     sized = SizedStudy(plan, pin, goal.required, others, goal.standard, more=more)
     search = _Search(sized, tell, label or f"pin {pin}")
-    result = SizingResult(pin, None, None, None, None)
+    result = SizingResult(pin)
     try:
         first = search.solve(others.get(pin, 1.0), "rough")
         result = replace(result, before=_nominal(plan.study, first.worst))
@@ -350,7 +350,8 @@ def _nominal(study: Study, peak: Maximum) -> float:
     return factor
 
 
-def _problem(study: Study, pin: str) -> str:
+def why_fixed(study: Study, pin: str) -> str:
+    """Return why the diameters of a pin cannot be chosen; empty where they can."""
     table = study.table.pin[pin]
     if table.geometry is not None:
         return FROM_FILE

@@ -88,7 +88,7 @@ def _size(
     def done(number: int, outcome: SizingResult | ProcessDied) -> None:
         name = todo[number]
         if isinstance(outcome, ProcessDied):
-            outcome = SizingResult(name, None, None, None, None, outcome.reason)
+            outcome = SizingResult(name, why=outcome.reason)
         first = sized.get(name)
         sized[name] = outcome if first is None else replace(outcome, before=first.before)
         finished(sized[name])

@@ -8,10 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from pinbase.arrays import Floats
-from pinstress.analysis.remedies.secant import (
-    FACTOR_TOLERANCE,
-    MAX_SCALE_STEP,
-)
+from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE, MAX_SCALE_STEP
 from pinstress.explore.size.optimise import (
     ACTIVE_TOLERANCE,
     ImpossibleError,
@@ -20,16 +17,8 @@ from pinstress.explore.size.optimise import (
     least_weight,
     optimality,
 )
-from pinstress.explore.size.pin_shape import (
-    DIMENSION_KINDS,
-    MAX_DIMENSION_RATIO,
-    Proportions,
-)
-from pinstress.explore.size.pin_stress import (
-    PinStress,
-    SizingProblem,
-    SolvedPin,
-)
+from pinstress.explore.size.pin_shape import DIMENSION_KINDS, MAX_DIMENSION_RATIO, Proportions
+from pinstress.explore.size.pin_stress import PinStress, SizingProblem, SolvedPin
 from pinstress.explore.size.standard_diameters import StandardDiameters
 from pinstress.explore.size.written_dimensions import (
     LIMIT_ROUNDING_TOLERANCE,

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from pinstress.explore.sweep.design_columns import DesignColumn, Designs, designs_of
+from pinstress.explore.sweep.design_columns import DesignColumn, Designs
 from reports.format.numbers import DASH, short
 from reports.format.packed import packed
 from reports.format.script_json import script_json
@@ -17,18 +16,7 @@ from reports.format.words import VERDICT_MEANINGS, not_judged
 from reports.plots.theme import style_sheet
 from reports.tables.column import Grid
 
-if TYPE_CHECKING:
-    import pyarrow as pa
-
 MAX_REASONS = 20
-
-
-def write_designs_page(table: pa.Table, path: Path) -> None:
-    """Write the page of a table of designs as `pinstress sweep` makes it.
-
-    Raises: ValueError.
-    """
-    path.write_text(render_designs(designs_of(table)), encoding="utf-8", newline="\n")
 
 
 def render_designs(designs: Designs) -> str:

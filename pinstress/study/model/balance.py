@@ -28,7 +28,7 @@ def unheld(study: Study, task: Task) -> dict[str, str]:
     return {
         case.case: f"pin {task.pin.name} is {how} in case {case.case}: {balance.refusal}"
         + _closed_by(study, task.pin, case, balance)
-        for case, balance in _balances(study, task)
+        for case, balance in _balances(task)
         if balance.refusal
     }
 
@@ -57,7 +57,7 @@ def _stated(study: Study, pin: str, case: str) -> bool:
 def _reacted(study: Study, task: Task) -> dict[str, str]:
     return {
         case.case: str(study.error(_shared(study, task, case, balance)))
-        for case, balance in _balances(study, task)
+        for case, balance in _balances(task)
         if balance.notable and not balance.refusal
     }
 
@@ -93,7 +93,7 @@ def _quietly(warnings: Callable[[], list[str]]) -> list[str]:
         return []  # whoever needs the case or the pin says what is wrong with it
 
 
-def _balances(study: Study, task: Task) -> list[tuple[PinLoads, Balance]]:
+def _balances(task: Task) -> list[tuple[PinLoads, Balance]]:
     if task.clamps:
         return []
     density = task.material.density

@@ -8,18 +8,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from geometry import (
-    Bottom,
-    Cut,
-    Flat,
-    GeometryError,
-    Hole,
-    Passage,
-    Pin,
-    Recess,
-    Segment,
-    Slot,
-)
+from geometry import Bottom, Cut, Flat, GeometryError, Hole, Passage, Pin, Recess, Segment, Slot
 from geometry.imported.body_file import BodyFile
 from geometry.imported.recognise import NotTurnedError, RecognisedProfile
 from geometry.shape.drill import FLAT_TIP_ANGLE

@@ -5,18 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from fea.core.material import Material
-from geometry import (
-    Bottom,
-    CutPin,
-    Flat,
-    GeometryError,
-    Hole,
-    Passage,
-    Pin,
-    PinLike,
-    Segment,
-    Slot,
-)
+from geometry import Bottom, CutPin, Flat, GeometryError, Hole, Passage, Pin, PinLike, Segment, Slot
 from geometry.shape.drill import FLAT_TIP_ANGLE
 from geometry.shape.polyline import Bend, Stripe, pin_of_polyline, with_stripes
 from loads import on_disk

@@ -20,12 +20,7 @@ from pinstress.study.model.mechanism.forces import (
     require_centre,
     torsion_law,
 )
-from pinstress.study.model.mechanism.space import (
-    length_name,
-    place,
-    space_mechanism,
-    spring_name,
-)
+from pinstress.study.model.mechanism.space import length_name, place, space_mechanism, spring_name
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import ApplyTable, MechanismCase
 from pinstress.study.schema.drives import drive_name

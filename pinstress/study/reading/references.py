@@ -15,19 +15,12 @@ from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.mechanism_references import of_its_cases, of_pins, of_plane
 from pinstress.study.reading.names import known_name, known_names
 from pinstress.study.reading.space_references import of_space
-from pinstress.study.schema.cases import (
-    GivenCase,
-    InstantCase,
-    MotionCase,
-    StaticCase,
-)
+from pinstress.study.schema.cases import GivenCase, InstantCase, MotionCase, StaticCase
 from pinstress.study.schema.fatigue import FatigueTable
 from pinstress.study.schema.landing import DropCase, GroundCase
 from pinstress.study.schema.lugs import LugTable
 from pinstress.study.schema.materials import MaterialTable
-from pinstress.study.schema.mechanism import (
-    MechanismTable,
-)
+from pinstress.study.schema.mechanism import MechanismTable
 from pinstress.study.schema.pins import PinTable
 from pinstress.study.schema.require import level_of
 from pinstress.study.schema.shown import as_text, in_toml

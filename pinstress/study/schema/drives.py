@@ -6,14 +6,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import model_validator
 
 from pinbase.errors import ArgumentError
-from pinstress.study.schema.types import (
-    NOT_NEGATIVE,
-    Angle,
-    Duration,
-    Length,
-    StrictTable,
-    Time,
-)
+from pinstress.study.schema.types import NOT_NEGATIVE, Angle, Duration, Length, StrictTable, Time
 
 MAX_TURNS = 1000  # each is followed in steps of 0.25 rad
 

@@ -7,10 +7,7 @@ from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 from loads.linkage.parts import Sign
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.drives import RotaryDrive, SliderDrive
-from pinstress.study.schema.forces import (
-    LineSpringTable,
-    TorsionSpringTable,
-)
+from pinstress.study.schema.forces import LineSpringTable, TorsionSpringTable
 from pinstress.study.schema.gears import GearTable, RackTable
 from pinstress.study.schema.rules import both_or_none, exactly_one, require_one
 from pinstress.study.schema.types import (

@@ -15,12 +15,7 @@ from reports.data.results import Results
 from reports.data.row import PinResult, SharingRange, Units
 from reports.format.files import markdown
 from reports.format.numbers import finite, ratio, short
-from reports.format.ranges import (
-    error_range,
-    factor_range,
-    utilisation_range,
-    variation_range,
-)
+from reports.format.ranges import error_range, factor_range, utilisation_range, variation_range
 from reports.format.words import (
     BENEATH_CONTACT_NOTE,
     JOINT_RANGE_NOTE,

@@ -5,13 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from fea.core.places import (
-    ContactEdge,
-    ContactPlace,
-    PartPlace,
-    SectionPlace,
-    SurfacePlace,
-)
+from fea.core.places import ContactEdge, ContactPlace, PartPlace, SectionPlace, SurfacePlace
 from pinbase.records import plain
 from reports.data.results import Results
 from reports.data.row import PinResult, Units

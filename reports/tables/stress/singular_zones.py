@@ -10,15 +10,7 @@ from fea.core.peak import SingularZone
 from reports.data.results import Results
 from reports.data.row import PinResult, Units
 from reports.format.numbers import DASH, engineering
-from reports.tables.column import (
-    PIN_AND_CASE,
-    Column,
-    Table,
-    fields,
-    in_order,
-    texts,
-    unit_columns,
-)
+from reports.tables.column import PIN_AND_CASE, Column, Table, fields, in_order, texts, unit_columns
 
 
 @dataclass(frozen=True)

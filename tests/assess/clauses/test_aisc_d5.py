@@ -10,12 +10,7 @@ import numpy as np
 import pytest
 
 from assess.checks import margins_of
-from assess.clauses.aisc_d5 import (
-    RUPTURE_PHI,
-    effective_width,
-    proportions,
-    tensile_rupture,
-)
+from assess.clauses.aisc_d5 import RUPTURE_PHI, effective_width, proportions, tensile_rupture
 from assess.clauses.eye import PlateEye
 from assess.situation import Situation
 from fea.core.material import Material

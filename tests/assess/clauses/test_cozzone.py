@@ -8,11 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from assess.clauses.cozzone import (
-    cozzone_strength,
-    hardening_exponent,
-    trapezoid_stress,
-)
+from assess.clauses.cozzone import cozzone_strength, hardening_exponent, trapezoid_stress
 from fea.beam.round_section import Circle
 from fea.core.material import Material
 from geometry import ArgumentError

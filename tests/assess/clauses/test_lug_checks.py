@@ -13,11 +13,7 @@ from hypothesis import strategies as st
 
 from assess.clauses import lug_checks as of_lugs
 from assess.clauses.eye import PlateEye
-from assess.clauses.lug_checks import (
-    bearing_stress,
-    net_section_stress,
-    shear_out_stress,
-)
+from assess.clauses.lug_checks import bearing_stress, net_section_stress, shear_out_stress
 from assess.margin import Margin
 from assess.situation import Situation
 from assess.work import Work

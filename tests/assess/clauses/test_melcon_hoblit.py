@@ -17,11 +17,7 @@ import pytest
 from assess.checks import margins_of
 from assess.clauses.affdl_lugs import ULTIMATE_OVER_YIELD
 from assess.clauses.eye import PlateEye
-from assess.clauses.melcon_hoblit import (
-    oblique_ratio,
-    transverse_load,
-    yield_load,
-)
+from assess.clauses.melcon_hoblit import oblique_ratio, transverse_load, yield_load
 from assess.lug_factors import LugFactors
 from assess.margin import Margin
 from assess.situation import LoadFactors, Situation

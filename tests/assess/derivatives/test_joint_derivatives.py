@@ -12,12 +12,7 @@ import numpy as np
 import pytest
 
 from assess.derivatives.in_lugs import JointDerivatives, JointParameter, joint_derivatives
-from benchmarks.joints.joint_derivatives import (
-    WholeJoint,
-    parameters,
-    solved_in_lugs,
-    whole_joint,
-)
+from benchmarks.joints.joint_derivatives import WholeJoint, parameters, solved_in_lugs, whole_joint
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement

@@ -13,17 +13,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from loads import (
-    GROUND,
-    Applied,
-    Body,
-    Connection,
-    Joint,
-    Linkage,
-    Turn,
-    at_rest,
-    motion_reactions,
-)
+from loads import GROUND, Applied, Body, Connection, Joint, Linkage, Turn, at_rest, motion_reactions
 from loads.space.out_of_plane import Links, Offsets, OutOfPlane, SideLoad, over_stiffness
 from loads.space.stiffness import LinkStiffness, flat_link, round_link
 from loads.space.straight import straight

@@ -18,6 +18,7 @@ from reports.files import write_reports
 from tests.support.each import each
 from tests.support.mechanism.machines import STUDIES
 from tests.support.pins.remembered import MEMO, remembered
+from tests.support.study_text import edited
 
 CLEVIS = (STUDIES / "clevis.toml").read_text(encoding="utf-8")
 SHANK = "edge_radius = 0.5\nshank = {}"
@@ -25,11 +26,8 @@ SHANK = "edge_radius = 0.5\nshank = {}"
 
 def study(tmp_path: Path, *changes: tuple[str, str], shank: str = SHANK) -> pinstress.Study:
     text = CLEVIS.replace("edge_radius = 0.5", shank)
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new)
     path = tmp_path / "clevis.toml"
-    path.write_text(text, encoding="utf-8")
+    path.write_text(edited(text, changes), encoding="utf-8")
     return pinstress.load_study(path)
 
 

@@ -13,6 +13,7 @@ from pinstress.study.model.cases import at_time
 from pinstress.study.reading.file import Study, load_study, parse_study
 from reports.data.row import PinResult
 from tests.conftest import ROOT
+from tests.support.study_text import edited
 
 STUDY = ROOT / "studies" / "slider_crank.toml"
 SAMPLES = "samples = 241"
@@ -20,15 +21,12 @@ SAMPLES = "samples = 241"
 
 def study(samples: int, turns: int = 1) -> Study:
     """The slider-crank of the shipped study, over so many turns of as long each."""
-    text = STUDY.read_text(encoding="utf-8")
-    for old, new in (
+    changes = (
         (SAMPLES, f"samples = {samples}"),
         ('end = "380 deg"', f'end = "{20 + 360 * turns} deg"'),
         ("duration = 0.25", f"duration = {0.25 * turns}"),
-    ):
-        assert old in text
-        text = text.replace(old, new)
-    return parse_study(STUDY, text)
+    )
+    return parse_study(STUDY, edited(STUDY.read_text(encoding="utf-8"), changes))
 
 
 def solved(samples: int, turns: int = 1) -> PinResult:

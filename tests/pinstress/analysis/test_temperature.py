@@ -24,6 +24,7 @@ from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.pins.remembered import remembered
 from tests.support.pins.studies import DOUBLE_SHEAR
+from tests.support.study_text import edited
 
 LOADS = 'kind = "given"\nforces = { L = [-9000, 0], M = [18000, 0], R = [-9000, 0] }\n'
 STUDY = f"""
@@ -71,10 +72,7 @@ def tasks_of(text: str) -> dict[str, Task]:
 
 
 def changed(*changes: tuple[str, str], text: str = STUDY) -> str:
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new)
-    return text
+    return edited(text, changes)
 
 
 def test_a_temperature_changes_the_clearance_in_its_case_alone() -> None:

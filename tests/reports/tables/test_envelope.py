@@ -13,12 +13,7 @@ import pytest
 from rich.console import Console
 
 from reports.data.drop import DropRecord
-from reports.data.envelope import (
-    MAX_DETAILED_CASES,
-    detailed_rows,
-    governing_cases,
-    paragraphs,
-)
+from reports.data.envelope import MAX_DETAILED_CASES, detailed_rows, governing_cases, paragraphs
 from reports.data.overview import pin_lines
 from reports.data.results import Results
 from reports.data.row import Dependence

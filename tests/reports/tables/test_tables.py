@@ -22,10 +22,7 @@ from reports.tables.loads.motion import (
     reactions_table,
 )
 from reports.tables.published import published_reactions_table, write_published
-from reports.tables.strength.safety_factors import (
-    safety_factors_table,
-    write_safety_factors,
-)
+from reports.tables.strength.safety_factors import safety_factors_table, write_safety_factors
 from reports.text.safety_factors import print_safety_factors
 from reports.text.summary import summary
 from tests.support.each import each

@@ -25,11 +25,7 @@ from loads.motion.mobility import Mobility, mobility, require_determined
 from loads.space.linkage import SpaceLinkage
 from pinbase.keys import key_part
 from pinstress.study.model.mechanism.drawing import Drawing, joints_on, shown_length
-from pinstress.study.model.mechanism.drives import (
-    mechanism_of,
-    parallel_rules,
-    sharing_rules,
-)
+from pinstress.study.model.mechanism.drives import mechanism_of, parallel_rules, sharing_rules
 from pinstress.study.model.mechanism.fit import Fitting, reach
 from pinstress.study.model.mechanism.gears import gears, rack
 from pinstress.study.model.mechanism.joint_layout import Point, places
@@ -48,18 +44,13 @@ from pinstress.study.model.mechanism.parts import (
     turn_by_any_angle,
     turn_of,
 )
-from pinstress.study.model.mechanism.space import (
-    determined_in_space,
-    space_contradictions,
-)
+from pinstress.study.model.mechanism.space import determined_in_space, space_contradictions
 from pinstress.study.reading.damage import Damage
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import GivenCase
 from pinstress.study.schema.drives import RotaryDrive, drive_name
-from pinstress.study.schema.mechanism import (
-    MechanismTable,
-)
+from pinstress.study.schema.mechanism import MechanismTable
 
 A = TypeVar("A")
 B = TypeVar("B")

@@ -30,11 +30,7 @@ from pinbase.arrays import Floats
 from pinbase.keys import key_part
 from pinstress.study.model.clevis import middle_of
 from pinstress.study.model.mechanism.drives import mechanism_of, parallel_rules, sharing_rules
-from pinstress.study.model.mechanism.masses import (
-    STANDARD_GRAVITY,
-    friction_circle,
-    pin_mass,
-)
+from pinstress.study.model.mechanism.masses import STANDARD_GRAVITY, friction_circle, pin_mass
 from pinstress.study.model.mechanism.space_bodies import body_in_space
 from pinstress.study.model.mechanism.space_gears import gear_in_space, rack_of, teeth_axes
 from pinstress.study.model.mechanism.stiffness import RIGID, stated_stiffness

@@ -7,14 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from loads import LinkageError
-from loads.space.gears import (
-    Flanks,
-    GearWheel,
-    Mesh,
-    axes_distance,
-    gears_in_space,
-    rack_in_space,
-)
+from loads.space.gears import Flanks, GearWheel, Mesh, axes_distance, gears_in_space, rack_in_space
 from loads.space.linkage import ToothContact, unit
 from pinbase.arrays import Floats
 from pinstress.study.model.mechanism.drawing import shown_length

@@ -14,11 +14,7 @@ from fea.core.requirement import Requirement
 from fea.core.verdict import Evidence
 from fea.cut.region import RingedCutPin
 from fea.solve.solve import solve_in_lugs
-from fea.support.contact.cut_in_lugs import (
-    CUT_CONTACT_ERROR,
-    cuts_in_lugs,
-    with_cuts_in_lugs,
-)
+from fea.support.contact.cut_in_lugs import CUT_CONTACT_ERROR, cuts_in_lugs, with_cuts_in_lugs
 from fea.support.lugs.lug import Lug
 from fea.support.support import PinProblem
 from geometry import CutPin, Hole, Pin, Segment, Slot

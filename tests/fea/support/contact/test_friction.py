@@ -18,12 +18,7 @@ from fea.core.tractions import tractions_of
 from fea.solve.solve import solve_in_lugs
 from fea.support.bands import Bands
 from fea.support.contact.contact_state import ContactState
-from fea.support.contact.friction import (
-    band_torques,
-    coefficient_words,
-    opposed,
-    turning_traction,
-)
+from fea.support.contact.friction import band_torques, coefficient_words, opposed, turning_traction
 from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from fea.support.support import PinProblem, Solution

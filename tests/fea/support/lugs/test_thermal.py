@@ -9,11 +9,7 @@ from fea.core.material import Material
 from fea.lug.plane_fields import Elasticity, plane_fields
 from fea.support.lugs.changes import joint_variations
 from fea.support.lugs.lug import Bushing, Lug, LugRange
-from fea.support.lugs.thermal import (
-    at_temperature,
-    bore_widening,
-    bushing_opening_rise,
-)
+from fea.support.lugs.thermal import at_temperature, bore_widening, bushing_opening_rise
 from geometry import ArgumentError, Pin, Segment
 from geometry.shape.lug_outline import LugOutline
 from tests.support.each import each

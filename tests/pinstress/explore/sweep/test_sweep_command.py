@@ -25,15 +25,14 @@ from tests.support.each import each, sampled
 from tests.support.programs.command_line import QUICK, pinstress, run_here
 from tests.support.programs.process_group import started
 from tests.support.programs.swept import DIAMETER, FORCE, LONG_SWEEP, ONE_PIN, varied
+from tests.support.study_text import study_file
 
 LOADS = f'"{FORCE}" = {{ from = -1000, to = -500 }}'
 SHAPES = f'"{DIAMETER}" = {{ from = "1.5 in", to = "4.5 in" }}\n{LOADS}'
 
 
 def _study(folder: Path, parameters: str = SHAPES, count: int = 6, text: str = QUICK) -> Path:
-    path = folder / "study.toml"
-    path.write_text(varied(parameters, f'sample = "sobol"\ncount = {count}', text), "utf-8")
-    return path
+    return study_file(folder, varied(parameters, f'sample = "sobol"\ncount = {count}', text))
 
 
 def test_a_sweep_writes_its_table_and_says_what_is_in_it(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from tests.support.each import each
 from tests.support.programs.command_line import run_here
+from tests.support.study_text import study_file
 
 WEIGHT, CENTRE = 1000.0, 230.0  # N; mm along the coupler
 STUDY = """
@@ -59,8 +60,7 @@ def cross(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def written(folder: Path, fit: str = "", text: str = STUDY) -> Study:
-    path = folder / "study.toml"
-    path.write_text(text.replace("FIT", fit), encoding="utf-8")
+    path = study_file(folder, text.replace("FIT", fit))
     return load_study(path)
 
 

@@ -14,8 +14,9 @@ from pinstress import load_study
 from pinstress.analysis.mechanics.gather_space import skeleton_in_space
 from pinstress.analysis.plan import all_loads
 from pinstress.study.model.space_cases import InSpace
-from tests.pinstress.study.model.test_space import message, solved, written
+from tests.pinstress.study.model.test_space import message, solved
 from tests.support.each import each
+from tests.support.study_text import study_file
 
 HEAD = """
 title = "Gears"
@@ -326,7 +327,7 @@ def test_what_cannot_mesh_is_said(tmp_path: Path, old: str, new: str, words: str
 
 def test_gears_are_drawn_about_their_axes(tmp_path: Path) -> None:
     """The pitch circles lie square to their axes and pass through the pitch point."""
-    study = load_study(written(tmp_path, BEVEL_DIFFERENTIAL))
+    study = load_study(study_file(tmp_path, BEVEL_DIFFERENTIAL))
     found = all_loads(study, ["turn"])["turn"].space
     assert found is not None
     skeleton = skeleton_in_space(study, "turn", found)

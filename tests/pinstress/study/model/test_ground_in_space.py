@@ -15,6 +15,7 @@ from pinstress.study.model.cases import CaseLoads
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.published_tables import Published
 from tests.support.each import each
+from tests.support.study_text import edited_once
 
 LEG = """
 title = "A leg on the left of an aircraft"
@@ -66,16 +67,10 @@ IN_SPACE = (
 
 
 def _in_space(*changes: tuple[str, str]) -> str:
-    text = LEG
-    for old, new in IN_SPACE:
-        assert text.count(old) == 1, old
-        text = text.replace(old, new)
+    text = edited_once(LEG, IN_SPACE)
     text = re.sub(r"= \[(-?[\d.]+), (-?[\d.]+)\]", r"= [\1, \2, 0]", text)
     text = text.replace("\nconnections = { O1", "\naxis = [0, 0, 1]\nconnections = { O1")
-    for old, new in changes:
-        assert text.count(old) == 1, old
-        text = text.replace(old, new)
-    return text
+    return edited_once(text, changes)
 
 
 def _loads(folder: Path, text: str) -> dict[str, CaseLoads]:

@@ -13,6 +13,7 @@ from pinstress.analysis.plan import all_loads
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.reading.errors import InputError
 from tests.support.each import each
+from tests.support.study_text import edited_once, study_file
 
 # A leg about x, a jack to its knee line, and a stay of two links whose knee locks.
 LEG = """
@@ -66,13 +67,7 @@ force = [300, 1000, 0]
 
 
 def _loads(folder: Path, *changes: tuple[str, str]) -> CaseLoads:
-    text = LEG
-    for old, new in changes:
-        assert text.count(old) == 1, old
-        text = text.replace(old, new)
-    path = folder / "leg.toml"
-    path.write_text(text, encoding="utf-8")
-    study = load_study(path)
+    study = load_study(study_file(folder, edited_once(LEG, changes)))
     return all_loads(study, ["landing"])["landing"]
 
 

@@ -15,6 +15,7 @@ from pinstress.study.model.lugs import AssumedLugs
 from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.pins.studies import DOUBLE_SHEAR
+from tests.support.study_text import study_file
 
 STUDY = """
 title = "A pin in double shear"
@@ -45,9 +46,7 @@ profile = {profile}
 
 
 def study(folder: Path, pin: str = "", analysis: str = "") -> Path:
-    path = folder / "study.toml"
-    path.write_text(STUDY.format(profile=DOUBLE_SHEAR, pin=pin, analysis=analysis))
-    return path
+    return study_file(folder, STUDY.format(profile=DOUBLE_SHEAR, pin=pin, analysis=analysis))
 
 
 def lugs(folder: Path, pin: str = "", analysis: str = "") -> tuple[Lug, ...]:

@@ -16,6 +16,7 @@ from tests.conftest import ROOT
 from tests.support.described import describe
 from tests.support.each import each
 from tests.support.errors import raises
+from tests.support.study_text import study_file
 
 STUDIES = ROOT / "studies"
 BOWMAN = (STUDIES / "bowman2019.toml").read_text(encoding="utf-8").replace("bowman2019/", "")
@@ -24,9 +25,7 @@ CRANK = (STUDIES / "slider_crank.toml").read_text(encoding="utf-8")
 
 def write(tmp_path: Path, text: str) -> Path:
     (tmp_path / "published.csv").write_bytes((STUDIES / "bowman2019/published.csv").read_bytes())
-    path = tmp_path / "study.toml"
-    path.write_text(text, encoding="utf-8")
-    return path
+    return study_file(tmp_path, text)
 
 
 def every_case(path: Path) -> None:

@@ -21,6 +21,7 @@ from tests.support.described import describe
 from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.pins.pin_files import write_mesh, write_step
+from tests.support.study_text import study_file
 
 STUDY = """
 title = "A pin of any shape"
@@ -64,9 +65,7 @@ root = { z = [0.0, 10.0], connection = false }
 
 
 def write(folder: Path, shape: str) -> Path:
-    path = folder / "study.toml"
-    path.write_text(STUDY.replace("SHAPE", shape))
-    return path
+    return study_file(folder, STUDY.replace("SHAPE", shape))
 
 
 def test_holes_and_flats_are_read(tmp_path: Path) -> None:

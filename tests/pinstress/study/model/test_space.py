@@ -19,6 +19,7 @@ from pinstress.study.model.mechanism.space import pin_axes
 from pinstress.study.reading.errors import InputError
 from pinstress.study.schema.space import SpaceJointTable
 from tests.support.each import each
+from tests.support.study_text import edited_once, study_file
 
 RSSR = """
 title = "A crank, a coupler and a rocker about skew axes"
@@ -78,15 +79,9 @@ force = [0, 1000, 300]
 """  # fmt: skip
 
 
-def written(folder: Path, text: str) -> Path:
-    path = folder / "study.toml"
-    path.write_text(text, encoding="utf-8")
-    return path
-
-
 def solved(folder: Path, text: str) -> dict[str, CaseLoads]:
     """The loads of all cases of a study."""
-    study = load_study(written(folder, text))
+    study = load_study(study_file(folder, text))
     return all_loads(study, [*study.table.case])
 
 
@@ -98,11 +93,7 @@ def message(folder: Path, text: str) -> str:
 
 
 def edited(*changes: tuple[str, str]) -> str:
-    text = RSSR
-    for old, new in changes:
-        assert text.count(old) == 1, old
-        text = text.replace(old, new)
-    return text
+    return edited_once(RSSR, changes)
 
 
 def test_a_load_from_time_zero_acts_at_the_first_instant(tmp_path: Path) -> None:
@@ -125,7 +116,7 @@ def test_crank_and_rocker_obey_the_input_output_equation(tmp_path: Path) -> None
     """The coupler's length is constant: (C - B)^2, with B on the crank's circle about z and C on
     the rocker's about x.
     """
-    study = load_study(written(tmp_path, RSSR))
+    study = load_study(study_file(tmp_path, RSSR))
     case = all_loads(study, ["turn"])["turn"]
     assert case.space is not None
     motion = case.space.dynamics.motion
@@ -140,7 +131,7 @@ def test_crank_and_rocker_obey_the_input_output_equation(tmp_path: Path) -> None
 
 def test_power_of_the_drive_is_the_change_of_energy(tmp_path: Path) -> None:
     """Over a motion from rest to rest the work is that against gravity."""
-    study = load_study(written(tmp_path, RSSR))
+    study = load_study(study_file(tmp_path, RSSR))
     case = all_loads(study, ["turn"])["turn"]
     assert case.space is not None
     assert case.space.efforts is not None
@@ -153,7 +144,7 @@ def test_power_of_the_drive_is_the_change_of_energy(tmp_path: Path) -> None:
 
 def test_couple_of_the_crank_by_virtual_work(tmp_path: Path) -> None:
     """At rest the drive's couple times the crank's rate is minus the power of load and weights."""
-    study = load_study(written(tmp_path, RSSR))
+    study = load_study(study_file(tmp_path, RSSR))
     case = all_loads(study, ["rest"])["rest"]
     assert case.space is not None
     dynamics = case.space.dynamics
@@ -161,7 +152,7 @@ def test_couple_of_the_crank_by_virtual_work(tmp_path: Path) -> None:
     def work(theta: float) -> float:
         """The work of load and weights from the drawing to an angle of the crank."""
         text = edited(('position = "30 deg"', f'position = "{theta!r} rad"'))
-        moved = all_loads(load_study(written(tmp_path, text)), ["rest"])["rest"].space
+        moved = all_loads(load_study(study_file(tmp_path, text)), ["rest"])["rest"].space
         assert moved is not None
         end = moved.dynamics.motion.point("rocker", (0.3, 0.25, 0.2))[0][0]
         return float(end @ (0.0, 1000.0, 300.0)) - float(moved.energies[1][0])
@@ -173,7 +164,7 @@ def test_couple_of_the_crank_by_virtual_work(tmp_path: Path) -> None:
 
 
 def test_forces_on_the_coupler_are_in_equilibrium_with_its_weight(tmp_path: Path) -> None:
-    study = load_study(written(tmp_path, RSSR))
+    study = load_study(study_file(tmp_path, RSSR))
     r = all_loads(study, ["rest"])["rest"].reactions
     mass = 7850.0 * np.pi / 4.0 * 0.02**2 * np.linalg.norm([0.2, 0.25, 0.2])
     pushes = r.force("B1")[0] + r.force("C1")[0]  # of the coupler on its pins
@@ -184,7 +175,7 @@ def test_forces_on_the_coupler_are_in_equilibrium_with_its_weight(tmp_path: Path
 
 def test_pins_turn_with_their_carriers(tmp_path: Path) -> None:
     """The pin at B is fixed in the crank, of which the angle is 90 degrees at the end."""
-    study = load_study(written(tmp_path, RSSR))
+    study = load_study(study_file(tmp_path, RSSR))
     r = all_loads(study, ["turn"])["turn"].reactions
     x, y, z = r.force("B1")[-1]
     assert r.in_pin_axes("B1")[-1] == pytest.approx([y, -x, z], abs=1e-9)
@@ -215,7 +206,7 @@ def test_a_floating_pin_is_in_equilibrium(tmp_path: Path) -> None:
         ('kind = "spherical"\nfixed_in = "rocker"\nconnections = { C1 = "coupler" }',
          'kind = "spherical"\nweight = 20\nconnections = { C1 = "coupler", C2 = "rocker" }'),
     )  # fmt: skip
-    study = load_study(written(tmp_path, text))
+    study = load_study(study_file(tmp_path, text))
     cases = all_loads(study, ["rest", "turn"])
     r = cases["rest"].reactions
     assert r.force("C1") + r.force("C2") == pytest.approx(np.array([[0.0, 0.0, 20.0]]), abs=1e-8)
@@ -229,7 +220,7 @@ def test_a_floating_pin_is_in_equilibrium(tmp_path: Path) -> None:
 
 def test_inertia_of_a_skew_rectangular_bar(tmp_path: Path) -> None:
     """Against a sum over many particles of the bar."""
-    study = load_study(written(tmp_path, edited(("[0.3, 0.25, 0]", "[0.35, 0.2, 0]"))))
+    study = load_study(study_file(tmp_path, edited(("[0.3, 0.25, 0]", "[0.35, 0.2, 0]"))))
     linkage = any_linkage(study)
     bar = next(b for b in linkage.bodies if b.name == "rocker")
     assert isinstance(bar, RigidBody)

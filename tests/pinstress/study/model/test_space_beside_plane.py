@@ -18,7 +18,8 @@ from reports.plots.all import all_plots
 from reports.tables.all import load_tables
 from reports.tables.json_results import to_json
 from reports.text.loads import remarks
-from tests.pinstress.study.model.test_space import solved, written
+from tests.pinstress.study.model.test_space import solved
+from tests.support.study_text import edited, edited_once, study_file
 
 FOUR_BAR = """
 title = "A four-bar"
@@ -72,17 +73,15 @@ follows = true
 def _in_space(planar: str) -> str:
     """A planar study, stated with three coordinates."""
     text = re.sub(r"\[(-?[\d.]+), (-?[\d.]+)\]", r"[\1, \2, 0]", planar)
-    for old, new in (
+    changes = (
         ("[mechanism.joint.O]", '[mechanism]\ndimension = 3\ngravity = [0, "-9.80665 m/s^2", 0]\n'
          "[mechanism.joint.O]"),
         ("\nconnections", "\naxis = [0, 0, 1]\nconnections"),
         ("inertia = 0.05", "inertia = [0.02, 0.03, 0.05]"),
         ('body = "crank"\nstart', 'joint = "O"\nstart'),
         ("couple = 3", "couple = [0, 0, 3]"),
-    ):  # fmt: skip
-        assert old in text
-        text = text.replace(old, new)
-    return text
+    )  # fmt: skip
+    return edited(text, changes)
 
 
 # The crank turns fully, so that the rocker turns back twice, against friction; the spring's table
@@ -105,10 +104,7 @@ def test_largest_forces_are_resolved_where_friction_turns_back(tmp_path: Path) -
     """
     table = "length,force\n0.1,20\n0.35,10\n0.4,-40\n0.9,-50\n"
     (tmp_path / "spring.csv").write_text(table, encoding="utf-8")
-    text = FOUR_BAR
-    for old, new in TURNING:
-        assert text.count(old) == 1, old
-        text = text.replace(old, new)
+    text = edited_once(FOUR_BAR, TURNING)
     plane, space = solved(tmp_path, text)["move"], solved(tmp_path, _in_space(text))["move"]
     assert plane.peaks is not None
     assert space.peaks is not None
@@ -157,9 +153,9 @@ def test_a_case_says_how_near_the_linkage_comes_to_a_dead_point(tmp_path: Path) 
     """The crank turns towards the line of coupler and rocker, where it cannot drive them: the same
     transmission angle as in the plane, in tables, on the page and on the terminal.
     """
-    plane = load_study(written(tmp_path, FOUR_BAR))
+    plane = load_study(study_file(tmp_path, FOUR_BAR))
     made = mechanics(plane, all_loads(plane, ["move"]), Published())
-    study = load_study(written(tmp_path, _in_space(FOUR_BAR)))
+    study = load_study(study_file(tmp_path, _in_space(FOUR_BAR)))
     loads = all_loads(study, ["move"])
     parts = mechanics(study, loads, Published())
     (posture,), (flat,) = parts["space_postures"], made["motion"]

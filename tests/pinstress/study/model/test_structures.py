@@ -14,6 +14,7 @@ from reports.text.loads_summary import load_parts
 from tests.support.described import describe
 from tests.support.each import each
 from tests.support.errors import raises
+from tests.support.study_text import study_file
 
 ARCH = """
 title = "An arch"
@@ -105,15 +106,9 @@ tyre = { at = [0.12, 18000], exponent = 1.2 }
 """
 
 
-def written(tmp_path: Path, text: str) -> Path:
-    path = tmp_path / "study.toml"
-    path.write_text(text, encoding="utf-8")
-    return path
-
-
 def test_a_structure_needs_no_drive(tmp_path: Path) -> None:
     """P = 1200 N a quarter of the way along a span of 8 m, with a rise of 3 m."""
-    study = load_study(written(tmp_path, ARCH))
+    study = load_study(study_file(tmp_path, ARCH))
     summary, _, _ = describe(study)
     assert "no drive\nmobility 0\n" in summary
     results = loads_only(study)
@@ -137,8 +132,8 @@ def forces(path: Path) -> list[float]:
 def test_a_structure_at_rest_needs_no_inertia(text: str, tmp_path: Path) -> None:
     """Nor a mass, without gravity."""
     assert text != ARCH
-    stated = forces(written(tmp_path, ARCH))
-    assert forces(written(tmp_path, text)) == stated
+    stated = forces(study_file(tmp_path, ARCH))
+    assert forces(study_file(tmp_path, text)) == stated
 
 
 def test_a_body_without_mass_needs_no_centre(tmp_path: Path) -> None:
@@ -162,7 +157,9 @@ connections = ["A", "D", "B", "C1", "C2", "E1", "E2"]
 stiffness = [1, 1, 1, 1, 1, 1, 1]
 """
     stated = ARCH.replace("mass = 0", "mass = 0\ncentre = [1, 1]", 1)
-    assert forces(written(tmp_path, ARCH + strut)) == forces(written(tmp_path, stated + strut))
+    assert forces(study_file(tmp_path, ARCH + strut)) == forces(
+        study_file(tmp_path, stated + strut)
+    )
 
 
 def test_masses_count_under_gravity_and_in_motion(tmp_path: Path) -> None:
@@ -172,28 +169,28 @@ def test_masses_count_under_gravity_and_in_motion(tmp_path: Path) -> None:
         bare.replace('kind = "static"', 'kind = "instant"'),
     ):
         with raises(InputError, "give-one", "body left: give one of weight, mass or bar"):
-            describe(load_study(written(tmp_path, text)))
+            describe(load_study(study_file(tmp_path, text)))
     moving = ARCH.replace("inertia = 0\n", "").replace('kind = "static"', 'kind = "instant"')
     with raises(InputError, "particle", "a body without inertia is a particle"):
-        describe(load_study(written(tmp_path, moving)))
+        describe(load_study(study_file(tmp_path, moving)))
 
 
 def test_a_wrong_static_case_alone_is_told(tmp_path: Path) -> None:
     """Not that its bodies have no inertia, which it needs as little as the right one."""
     wrong = ARCH.replace(WITHOUT_MASS, "").replace('kind = "static"', 'kind = "statik"')
     with raises(InputError, "not-a-choice", "must be") as caught:
-        load_study(written(tmp_path, wrong))
+        load_study(study_file(tmp_path, wrong))
     assert len(caught.value.lines) == 1
 
 
 def test_a_locked_gear_needs_no_inertia(tmp_path: Path) -> None:
     bare = GEARS.replace("inertia = 0\n", "")
-    assert forces(written(tmp_path, bare)) == forces(written(tmp_path, GEARS))
+    assert forces(study_file(tmp_path, bare)) == forces(study_file(tmp_path, GEARS))
 
 
 def test_an_instant_of_a_structure_is_a_case_at_rest(tmp_path: Path) -> None:
     at_rest, instant = (
-        loads_only(load_study(written(tmp_path, text)))
+        loads_only(load_study(study_file(tmp_path, text)))
         for text in (ARCH, ARCH.replace('"static"', '"instant"'))
     )
     assert (at_rest.reactions[0].forces == instant.reactions[0].forces).all()
@@ -202,7 +199,7 @@ def test_an_instant_of_a_structure_is_a_case_at_rest(tmp_path: Path) -> None:
 def test_a_structure_lands_on_its_tyre(tmp_path: Path) -> None:
     """The ground's force is carried by both bars, 4 m wide and 3 m high: 5/6 of it in each."""
     heavy = ARCH.replace("gravity = [0, 0]\n", "")
-    results = loads_only(load_study(written(tmp_path, heavy + DROP)))
+    results = loads_only(load_study(study_file(tmp_path, heavy + DROP)))
     case = next(table for table in results.reactions if table.case == "landing")
     (drop,) = results.drops
     carried = {peak.connection: peak.force for peak in case.largest}
@@ -213,13 +210,13 @@ def test_what_can_move_needs_a_drive_or_a_hold(tmp_path: Path) -> None:
     loose = ARCH.replace('C1 = "left", C2 = "right"', 'C2 = "right", C3 = "spare"')
     loose += "\n[mechanism.body.spare]\nmass = 0\ninertia = 0\n"
     with raises(InputError, "underconstrained", "no drive", "3 degrees of freedom", "left, right"):
-        describe(load_study(written(tmp_path, loose)))
+        describe(load_study(study_file(tmp_path, loose)))
     with raises(InputError, "underconstrained", "no drive", "1 degree of freedom", "hold"):
-        describe(load_study(written(tmp_path, GEARS.replace('hold = ["lock"]\n', ""))))
+        describe(load_study(study_file(tmp_path, GEARS.replace('hold = ["lock"]\n', ""))))
 
 
 def test_a_lock_holds_a_gear_without_a_drive(tmp_path: Path) -> None:
-    results = loads_only(load_study(written(tmp_path, GEARS)))
+    results = loads_only(load_study(study_file(tmp_path, GEARS)))
     (lock,) = results.drive
     assert (lock.name, lock.force[0]) == ("lock", pytest.approx(100.0))
 
@@ -234,12 +231,12 @@ centre = [2, 2]
 welded_to = "left"
 """
     on_bracket = ARCH.replace('body = "left"\nat', 'body = "bracket"\nat') + bracket
-    results = loads_only(load_study(written(tmp_path, on_bracket)))
-    bare = loads_only(load_study(written(tmp_path, ARCH)))
+    results = loads_only(load_study(study_file(tmp_path, on_bracket)))
+    bare = loads_only(load_study(study_file(tmp_path, ARCH)))
     assert results.reactions[0].forces == pytest.approx(bare.reactions[0].forces)
     wrong = on_bracket.replace('welded_to = "left"', 'welded_to = "lefft"')
     with raises(InputError, "unknown-body", "mechanism.body.bracket.welded_to", "left"):
-        load_study(written(tmp_path, wrong))
+        load_study(study_file(tmp_path, wrong))
 
 
 def test_what_only_a_drive_has_is_refused_without_one(tmp_path: Path) -> None:
@@ -251,4 +248,4 @@ def test_what_only_a_drive_has_is_refused_without_one(tmp_path: Path) -> None:
     ):
         study = load_study if code == "unknown-stop" else lambda path: describe(load_study(path))
         with raises(InputError, code, named):
-            study(written(tmp_path, ARCH.replace(old, new)))
+            study(study_file(tmp_path, ARCH.replace(old, new)))

@@ -12,6 +12,7 @@ from pinstress.cli.commands import run_command_line
 from pinstress.study.model.pins import pin as pin_of
 from tests.support.described import describe
 from tests.support.errors import raises
+from tests.support.study_text import study_file
 
 STUDY = """
 title = "Equal lengths"
@@ -50,9 +51,7 @@ MIXED = shape(("0.7 in", "17.78 mm", "1.778 cm"), ("0.2 in", "5.08 mm", "0.508 c
 
 
 def write(folder: Path, text: str) -> Path:
-    path = folder / "study.toml"
-    path.write_text(STUDY.replace("SHAPE", text))
-    return path
+    return study_file(folder, STUDY.replace("SHAPE", text))
 
 
 def test_mixed_units_answer_as_one_does(tmp_path: Path) -> None:

@@ -20,6 +20,7 @@ from pinstress.study.reading.inputs import inputs
 from pinstress.study.reading.materials import library
 from pinstress.study.reading.shipped import shipped
 from tests.support.each import each
+from tests.support.study_text import study_file
 
 STUDY = """{head}
 title = "One pin"
@@ -53,9 +54,7 @@ KSI = 6.894757293168361e6  # Pa
 
 
 def written(folder: Path, material: str, head: str = "", tables: str = "") -> Path:
-    path = folder / "study.toml"
-    path.write_text(STUDY.format(head=head, tables=tables, material=material))
-    return path
+    return study_file(folder, STUDY.format(head=head, tables=tables, material=material))
 
 
 def steel(name: str = "S", modulus: str = "200 GPa", strength: str = "355 MPa") -> str:

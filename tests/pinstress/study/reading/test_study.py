@@ -19,14 +19,9 @@ from pinstress.study.schema.units import (
 from tests.conftest import INCH, LBF, PSI, ROOT
 from tests.support.each import each
 from tests.support.errors import raises
+from tests.support.study_text import study_file
 
 ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
-
-
-def write(tmp_path: Path, text: str) -> Path:
-    path = tmp_path / "study.toml"
-    path.write_text(text)
-    return path
 
 
 @each("name", ["one_pin", "grenier2008"])
@@ -159,7 +154,7 @@ def test_values_carry_their_provenance() -> None:
 )
 def test_each_mistake_is_told(tmp_path: Path, old: str, new: str, code: str, named: str) -> None:
     assert old in ONE_PIN
-    path = write(tmp_path, ONE_PIN.replace(old, new))
+    path = study_file(tmp_path, ONE_PIN.replace(old, new))
     with raises(InputError, code, str(path), named):
         pin_of(load_study(path), "B")
 
@@ -173,7 +168,7 @@ def test_moments_go_to_the_pin_with_the_forces(tmp_path: Path) -> None:
     text = text.replace("forces = { B = [0.0, -988.86] }", stated)
     text += '\n[case.table]\nkind = "given"\ntable = "t.csv"\n'
     (tmp_path / "t.csv").write_text("connection,fx,fy,my\nB,0,0,500\nR,7,8,0\n")
-    (task,) = prepare(load_study(write(tmp_path, text))).tasks
+    (task,) = prepare(load_study(study_file(tmp_path, text))).tasks
     assert task.left_out == {"landing": ("R",), "table": ("R",)}
     for loads in task.loads:
         assert loads.surfaces == ("B",)
@@ -187,7 +182,7 @@ def test_a_beam_check_is_for_forces_alone(tmp_path: Path) -> None:
     text = ONE_PIN.replace("forces =", "moments = { B = [0, 1] }\nforces =")
     text += '\n[beam_check]\npin = "B"\ncase = "landing"\naxis_bore = 0.1\n'
     with pytest.raises(InputError, match="on one band, by forces alone, to be a cantilever"):
-        prepare(load_study(write(tmp_path, text)))
+        prepare(load_study(study_file(tmp_path, text)))
 
 
 @each(
@@ -207,7 +202,7 @@ def test_a_wrong_force_is_the_only_error(tmp_path: Path, force: str) -> None:
     text = ONE_PIN.replace("[0.0, -988.86]", force)
     assert text != ONE_PIN
     with pytest.raises(InputError) as caught:
-        load_study(write(tmp_path, text))
+        load_study(study_file(tmp_path, text))
     assert len(caught.value.lines) == 1, caught.value.lines
     assert "case.landing.forces.B" in caught.value.lines[0]
 
@@ -249,7 +244,7 @@ def test_each_mistake_in_a_mechanism_is_told(
     from pinstress.analysis.plan import prepare
 
     assert old in GEAR
-    path = write(tmp_path, GEAR.replace(old, new, 1))
+    path = study_file(tmp_path, GEAR.replace(old, new, 1))
     with raises(InputError, code, named):
         prepare(load_study(path))
 
@@ -257,7 +252,7 @@ def test_each_mistake_in_a_mechanism_is_told(
 def test_the_pivot_of_a_motion_check_must_be_fixed(tmp_path: Path) -> None:
     from pinstress.analysis.plan import prepare
 
-    study = load_study(write(tmp_path, GEAR.replace('pivot = "D"', 'pivot = "C"', 1)))
+    study = load_study(study_file(tmp_path, GEAR.replace('pivot = "D"', 'pivot = "C"', 1)))
     with pytest.raises(InputError, match=r": motion_check\.pivot: C "):
         prepare(study)
 
@@ -267,7 +262,7 @@ def test_without_a_sharing_rule_the_connections_are_named(tmp_path: Path) -> Non
     from tests.support.described import describe
 
     start, end = GEAR.index("[[mechanism.sharing]]"), GEAR.index("[mechanism.joint.A]")
-    study = load_study(write(tmp_path, GEAR[:start] + GEAR[end:]))
+    study = load_study(study_file(tmp_path, GEAR[:start] + GEAR[end:]))
     for ask in (lambda: all_loads(study, ["landing"]), lambda: describe(study)):
         with raises(InputError, "statically-indeterminate", "D1, D2, G1, G3"):
             ask()
