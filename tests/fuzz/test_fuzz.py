@@ -67,7 +67,7 @@ def test_valid_studies_have_results(first: int, count: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("first", sampled([1, 26, 51, 76], every=2))
+@pytest.mark.parametrize("first", [1, 26, 51, 76])
 def test_valid_studies_are_accepted(first: int, tmp_path: Path) -> None:
     """As `check` does, which computes their loads and shapes: none is refused without a reason that
     is listed in the grammar, and no pin is unheld. To solve them takes a quarter of an hour.
