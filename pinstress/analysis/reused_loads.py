@@ -31,8 +31,15 @@ def reused_loads(raw: Mapping[str, Any], memo: Memo) -> LoadsOf:
     """
 
     def loads_of(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
-        reusable = [name for name in cases if _reusable(study, name)]
-        keys = {name: ("loads", name, content_of_loads(study, raw, name)) for name in reusable}
+        alone = content_of_loads(study, _without_amounts(raw))
+        keys = {
+            # A case on the ground may follow from a drop, which is another case.
+            name: ("loads", name, content_of_loads(study, raw))
+            if isinstance(study.table.case[name], GroundCase)
+            else ("loads", name, alone, json.dumps(raw["case"][name], default=str))
+            for name in cases
+            if _reusable(study, name)
+        }
         known: dict[str, CaseLoads] = {}
         for name, key in keys.items():
             if (loads := memo.read(key)) is not None:
@@ -48,10 +55,21 @@ def reused_loads(raw: Mapping[str, Any], memo: Memo) -> LoadsOf:
     return loads_of
 
 
-def _without_amounts(case: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return a case with the places of its loads, which a mechanism may depend on, alone."""
-    loads = [{k: v for k, v in load.items() if k not in AMOUNTS} for load in case.get("apply", ())]
-    return {**case, "apply": loads}
+def _without_amounts(raw: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the content of a study with the places of the loads of its cases alone, on which a
+    mechanism may depend.
+    """
+    cases = {
+        name: {
+            **case,
+            "apply": [
+                {key: value for key, value in load.items() if key not in AMOUNTS}
+                for load in case.get("apply", ())
+            ],
+        }
+        for name, case in raw.get("case", {}).items()
+    }
+    return {**raw, "case": cases}
 
 
 def _reusable(study: Study, case: str) -> bool:
@@ -61,18 +79,15 @@ def _reusable(study: Study, case: str) -> bool:
     return study.table.mechanism is not None and not isinstance(study.table.case[case], GivenCase)
 
 
-def content_of_loads(study: Study, raw: Mapping[str, Any], case: str | None = None) -> bytes:
+def content_of_loads(study: Study, raw: Mapping[str, Any]) -> bytes:
     """Return a hash of all on which the loads of a mechanism depend; empty without one.
 
-    raw: the content of the study. case: whose loads, by default those of all.
+    raw: the content of the study.
     """
     mechanism, table = study.table.mechanism, study.table
     if mechanism is None:
         return b""
     tables = {key: value for key, value in raw.items() if key not in TABLES_WITHOUT_LOADS}
-    if case is not None and not isinstance(table.case[case], GroundCase):  # which is of a drop
-        cases = raw["case"].items()
-        tables["case"] = {name: x if name == case else _without_amounts(x) for name, x in cases}
     joints = [(name, study.connections(name)) for name in table.pin]
     weighed = [  # by their shape
         name
