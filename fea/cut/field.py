@@ -18,7 +18,7 @@ from fea.cut.local_fields import MAX_REFINED_RISE, LocalFields, point_of
 from fea.cut.shown import ShownCut, shown
 from fea.cut.shown_free import free_picture, stress_points
 from fea.cut.supports import ClampMotions, ClampReaction
-from fea.harmonic.beneath import Beneath, Steps, beneath, depths, stairs
+from fea.harmonic.beneath import Beneath, Steps, beneath, depths, maxima_beneath, stairs
 from fea.harmonic.field import HarmonicField
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.section_solution import HarmonicSolution
@@ -111,6 +111,14 @@ class CutField:
             if value[t] > deepest.value:
                 deepest = Beneath(float(value[t]), point_of(piece.points[point[t]]), t)
         return deepest
+
+    def maxima_beneath(self, loads: PinLoads) -> Floats:
+        """The same (T,) Pa at every instant."""
+        pressed = loads.pressed
+        assert pressed is not None
+        about = [piece.beneath(loads, pressed)[0] for piece in self.solution.pieces]
+        uncut = maxima_beneath(self.solution.uncut, loads, self.singularities)
+        return np.asarray(np.max([uncut, *about], axis=0))
 
     def depths(self, loads: PinLoads, instant: int, least: float) -> Steps:
         """The distances from pressed cells at which stress is reached at an instant

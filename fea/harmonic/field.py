@@ -13,7 +13,7 @@ from fea.core.solution import Picture, StressPoints
 from fea.core.unit_surface import UnitSurface
 from fea.core.voigt import VON_MISES_ROOT
 from fea.core.zone import Zone
-from fea.harmonic.beneath import Beneath, Steps, beneath, depths
+from fea.harmonic.beneath import Beneath, Steps, beneath, depths, maxima_beneath
 from fea.harmonic.fatigue_points import stress_points
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.five_numbers import EVEN_COUNT
@@ -65,6 +65,10 @@ class HarmonicField:
     def beneath(self, loads: PinLoads) -> Beneath:
         """The largest stress beneath contact."""
         return beneath(self.fields, loads, self.singularities)
+
+    def maxima_beneath(self, loads: PinLoads) -> Floats:
+        """The same (T,) Pa at every instant."""
+        return maxima_beneath(self.fields, loads, self.singularities)
 
     def depths(self, loads: PinLoads, instant: int, least: float) -> Steps:
         """The distances from pressed cells at which stress is reached at an instant

@@ -24,7 +24,7 @@ from fea.support.lugs.lug import LugRange
 from fea.support.records import FRICTION, JointResult, Variation, range_ends
 from geometry import Pin
 from pinbase.arrays import Floats
-from pinstress.analysis.gather.gather_landing import range_of
+from pinstress.analysis.gather.gather_landing import StressOverRange, range_of
 from pinstress.study.model.impulses import ImpulseLoads
 from pinstress.study.model.tasks import Task
 from reports.data.row import LandingRange, PinResult
@@ -348,17 +348,23 @@ def _beneath(peak: Maximum) -> float:
 
 
 def _landing(full: LandingRange, over: ImpulseLoads, peak: Maximum, task: Task) -> LandingRange:
-    """Return the results over a landing's ranges: the stress over the force of the study as it is,
-    by the force, times a factor that gives the maximum at the nominal force.
+    """Return the results over a landing's ranges: each stress over the force of the study as it is,
+    by the force, times a factor that gives that of the row at the nominal force.
 
     Without gaps stress over force does not change but for the weights.
     """
     order = np.argsort(full.force)
-    per_force = full.max_von_mises[order] / full.force[order]
 
-    def at(force: Floats) -> Floats:
-        return np.asarray(force * np.interp(force, full.force[order], per_force))
+    def scaled(stress: Floats, nominal: float) -> Floats:
+        force, per_force = full.force[order], (stress / full.force)[order]
+        here = np.append(over.forces, over.nominal_force)
+        at = here * np.interp(here, force, per_force)
+        return np.asarray(at[:-1] * (nominal / at[-1]))
 
     assert peak.max_von_mises is not None
-    maxima = at(over.forces) * (peak.max_von_mises / float(at(np.array(over.nominal_force))))
-    return range_of(task, peak, over, maxima, task.material.yield_strength)
+    maxima = scaled(full.max_von_mises, peak.max_von_mises)
+    upper_ends = scaled((1.0 + full.error) * full.max_von_mises, peak.upper_end)
+    deep = None if full.beneath is None else scaled(full.beneath, _beneath(peak))
+    row = peak.upper_end / peak.max_von_mises
+    stress = StressOverRange(maxima, np.maximum(upper_ends, row * maxima), deep)
+    return range_of(task, peak, over, stress, task.material.yield_strength)

@@ -10,7 +10,14 @@ from assess.judgement import BELOW_YIELD, NOT_DECIDED, SAFE
 from fea.core.places import ContactPlace
 from fea.support.records import FRICTION, TOGETHER, JointRange, JointResult, LostFit, Variation
 from reports.data.decision import factor_ends
-from reports.data.over_loads import BENEATH_CONTACT, JudgedStress, over_landings, over_links
+from reports.data.over_loads import (
+    BENEATH_CONTACT,
+    JudgedStress,
+    over_landings,
+    over_links,
+    ratios_over_loads,
+    upper_end_beneath,
+)
 from reports.data.row import Dependence, PinResult
 
 WITH_ERROR = "with its error"  # of what lies beneath, which exceeds what is permitted only with it
@@ -139,20 +146,16 @@ def _together(
     exact where stress is proportional to the loads.
     """
     extreme, over = max if judged.safe else min, joint.range if joint else None
-    loads = {"landing": pin.landing, "links": pin.sharing}
-    ratios = {
-        what: float(extreme(judged.maximum, *each.max_von_mises)) / judged.maximum
-        for what, each in loads.items()
-        if each is not None
-    }
+    ratios = dict(ratios_over_loads(judged, contact, pin.landing, pin.sharing))
     if len(ratios) + (over is not None) < 2:
         return
-    more, variations = math.prod(ratios.values()), over.variations if over else ()
+    more, more_beneath = (math.prod(x) for x in zip(*ratios.values(), strict=True))
+    variations = over.variations if over else ()
     counted = [v for v in variations if judged.safe or v.what != FRICTION]
     most = _largest_over_joint(judged, over) if over and judged.safe else judged.high
     beneath = [contact.upper_end if contact else 0.0, *(_upper_end(contact, v) for v in counted)]
     tops = [most] if judged.safe else [_top(judged, v) for v in counted]
-    top, deep = (more * extreme(x) for x in ([judged.high, *tops], beneath))
+    top, deep = more * extreme(judged.high, *tops), more_beneath * extreme(beneath)
     if (max(top, deep) > judged.permitted) == judged.safe:
         ends = over.max_von_mises if over else ()
         stress = more * extreme((judged.maximum, *ends))
@@ -260,9 +263,7 @@ def _upper_end(contact: ContactPlace | None, v: Variation) -> float:
 
     Its relative error is that of the joint as the study has it.
     """
-    if contact is None or not contact.beneath or v.beneath is None:
-        return 0.0
-    return v.beneath * contact.upper_end / contact.beneath
+    return upper_end_beneath(contact, v.beneath or 0.0)
 
 
 def _counted(judged: JudgedStress, v: Variation) -> float:

@@ -46,40 +46,86 @@ class JudgedStress:
 def over_links(
     judged: JudgedStress, contact: ContactPlace | None, shared: SharingRange
 ) -> Iterator[Dependence]:
-    """Yield the stiffness of the links that changes the outcome, with stress beneath contact, which
-    scales too.
-    """
-    deep = contact.upper_end if contact else 0.0
+    """Yield the stiffness of the links that changes the outcome, with stress beneath contact."""
+    at_low, most = (upper_end_beneath(contact, x) for x in shared.beneath or (0.0, 0.0))
     low, high = shared.max_von_mises
-    for what, stress in ((shared.lowest, low), (shared.highest, high)):
-        beneath = deep * stress / judged.maximum
-        if not what:
-            continue
-        if judged.turns(stress) and (judged.safe or beneath <= judged.permitted):
-            yield Dependence(what, "", "links", judged.strength / stress)
-        elif judged.safe and deep <= judged.permitted < beneath:
-            yield Dependence(BENEATH_CONTACT, what, "links", judged.strength / beneath)
+    if judged.safe:
+        if shared.highest and highest_over_links(judged, shared) > judged.permitted:
+            yield Dependence(shared.highest, "", "links", judged.strength / high)
+        elif contact is not None and contact.upper_end <= judged.permitted < most:
+            yield Dependence(BENEATH_CONTACT, shared.deepest, "links", judged.strength / most)
+    elif shared.lowest and judged.turns(low) and at_low <= judged.permitted:
+        yield Dependence(shared.lowest, "", "links", judged.strength / low)
+
+
+def highest_over_links(judged: JudgedStress, shared: SharingRange) -> float:
+    """Return the largest stress over the stiffness of the links with its error."""
+    return max(shared.upper_end, shared.max_von_mises[1] * judged.high / judged.maximum)
+
+
+def ratios_over_loads(
+    judged: JudgedStress,
+    contact: ContactPlace | None,
+    landing: LandingRange | None,
+    shared: SharingRange | None,
+) -> Iterator[tuple[str, tuple[float, float]]]:
+    """Yield the ranges of loads that a row has, each with its ratios to the row's stress: of the
+    maximum, for a safe row with its error, where it is farthest, and of that beneath contact.
+    """
+    deep = contact.beneath if contact and contact.beneath else 1.0
+
+    def ratio(stress: Sequence[float], ends: Sequence[float]) -> float:
+        if judged.safe:
+            return max(1.0, max(stress) / judged.maximum, max(ends) / judged.high)
+        return min(1.0, min(stress) / judged.maximum)
+
+    if landing is not None:
+        stress, ends = landing.max_von_mises.tolist(), upper_ends(judged, landing).tolist()
+        beneath = [deep] * len(stress) if landing.beneath is None else landing.beneath.tolist()
+        most = max(deep, *beneath) if judged.safe else beneath[int(np.argmin(stress))]
+        yield "landing", (ratio(stress, ends), most / deep)
+    if shared is not None:
+        at_low, largest = shared.beneath or (deep, deep)
+        most = max(deep, largest) if judged.safe else at_low
+        ends = [highest_over_links(judged, shared)]
+        yield "links", (ratio(shared.max_von_mises, ends), most / deep)
+
+
+def upper_end_beneath(contact: ContactPlace | None, stress: float) -> float:
+    """Return a stress beneath contact under other loads with its error, relatively that of the
+    row's.
+    """
+    if contact is None or not contact.beneath:
+        return 0.0
+    return stress * contact.upper_end / contact.beneath
 
 
 def over_landings(
     judged: JudgedStress, contact: ContactPlace | None, r: LandingRange
 ) -> list[Dependence]:
-    """Return the dependences over a landing's range, with stress beneath contact, which scales too.
+    """Return the dependences over a landing's range, with stress beneath contact.
 
     A row that fails is safe at another value only if the stress beneath contact is safe, too.
     """
-    if contact is None or contact.beneath <= 0.0:
-        return list(_over_landing(judged, r))
+    ends = upper_ends(judged, r)
+    if contact is None or contact.beneath <= 0.0 or r.beneath is None:
+        return list(_over_landing(judged, r, ends))
+    deep_ends = r.beneath * (contact.upper_end / contact.beneath)
     if not judged.safe:
-        return list(_over_landing(replace(judged, high=max(judged.high, contact.upper_end)), r))
-    if (over_landing := list(_over_landing(judged, r))) or contact.upper_end > judged.permitted:
+        return list(_over_landing(judged, r, np.maximum(ends, deep_ends)))
+    over_landing = list(_over_landing(judged, r, ends))
+    if over_landing or contact.upper_end > judged.permitted:
         return over_landing
     deep = replace(judged, low=contact.beneath, maximum=contact.beneath, high=contact.upper_end)
-    scaled = replace(r, max_von_mises=r.max_von_mises * (contact.beneath / judged.maximum))
     return [
         replace(d, what=BENEATH_CONTACT, value=f"{d.what} {d.value}".strip())
-        for d in _over_landing(deep, scaled)
+        for d in _over_landing(deep, replace(r, max_von_mises=r.beneath), deep_ends)
     ]
+
+
+def upper_ends(judged: JudgedStress, r: LandingRange) -> Floats:
+    """Return the maxima (P,) over a landing's range with their errors."""
+    return r.max_von_mises * np.maximum(1.0 + r.error, judged.high / judged.maximum)
 
 
 LandingAxis = tuple[str, str, Floats, float, Mask]
@@ -102,17 +148,22 @@ def landing_axes(r: LandingRange) -> tuple[tuple[LandingAxis, LandingAxis], Mask
     return axes, time & velocity
 
 
-def _over_landing(judged: JudgedStress, r: LandingRange) -> Iterator[Dependence]:
-    """Yield the ranges that change the outcome alone, or all ranges together if none does."""
+def _over_landing(judged: JudgedStress, r: LandingRange, ends: Floats) -> Iterator[Dependence]:
+    """Yield the ranges that change the outcome alone, or all ranges together if none does.
+
+    ends: the stresses (P,) with their errors.
+    """
     axes, other_pulses = landing_axes(r)
-    turned = np.array([judged.turns(float(stress)) for stress in r.max_von_mises])
+    turned = (ends > judged.permitted) == judged.safe
     any_alone = False
     for what, dimension, values, given, alone in axes:
         here = _nearest(values, given, alone & turned)
         if here is not None:
             any_alone = True
             at, stress = float(values[here]), float(r.max_von_mises[here])
-            flips = _between(judged, (given, judged.maximum), (at, stress))
+            end = float(ends[here]) if judged.safe else stress * judged.low / judged.maximum
+            first = judged.high if judged.safe else judged.low
+            flips = _between(judged.permitted, (given, first), (at, end))
             yield Dependence(
                 what, "", "landing", judged.strength / stress,
                 given=given, at=at, flips_at=flips, dimension=dimension,
@@ -138,10 +189,8 @@ def _nearest(values: Floats, given: float, which: Sequence[bool] | Floats) -> in
     return int(places[np.argmin(away)])
 
 
-def _between(judged: JudgedStress, one: tuple[float, float], other: tuple[float, float]) -> float:
-    """Return where the stress, a power law between two points, reaches the permitted one."""
-    end = judged.high if judged.safe else judged.low
-    wanted = judged.permitted * judged.maximum / end
+def _between(wanted: float, one: tuple[float, float], other: tuple[float, float]) -> float:
+    """Return where a stress, a power law between two points, is as large as wanted."""
     (x, a), (y, b) = one, other
     if not (a > 0.0 and b > 0.0 and a != b):
         return y

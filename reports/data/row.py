@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
+from functools import partial
 from typing import Annotated
+
+import numpy as np
 
 from assess.diameter_law import BENDING_EXPONENT
 from assess.judgement import BELOW_YIELD, DEPENDS, SAFE, Judgement
@@ -93,6 +96,9 @@ class LandingRange:
     nominal, nominal_pulse: of the case itself. verdict: of the case, valid for all points.
     spread: for a `singular` verdict the ends of the interval of the factor, over the factor.
     largest_load: the most by which a demand grows, as a force on a band or the stress, at least 1.
+    error: of the maxima, relative: of whichever place has the largest stress with its error there.
+    beneath: the largest stress beneath contact (P,), of a pin with a hardened surface as if it had
+    the strength of the row; None without contact.
     """
 
     pin: str
@@ -107,22 +113,30 @@ class LandingRange:
     spread: tuple[float, float] | None = None
     pulses: tuple[str, ...] = ()
     nominal_pulse: str = ""
-    error: float = 0.0
+    error: Floats = field(default_factory=partial(np.zeros, 1))
     largest_load: float = 1.0
+    beneath: Stresses | None = None
 
 
 @dataclass(frozen=True)
 class SharingRange:
     """The range of a maximum over the stiffness of links that share what statics leaves open.
 
-    max_von_mises: its ends. lowest, highest: what is different there; empty where it is the row's.
+    max_von_mises: its ends. lowest: what is different at the lower one, highest: where the stress
+    with its error is largest; empty where it is the row's.
     largest_load: as of a landing's range.
+    upper_end: the largest stress with its error.
+    beneath: the stress beneath contact at `lowest`, and the largest, at `deepest`, as of a
+    landing's range.
     """
 
     max_von_mises: tuple[Stress, Stress]
     lowest: str
     highest: str
     largest_load: float = 1.0
+    upper_end: Stress = 0.0
+    beneath: tuple[Stress, Stress] | None = None
+    deepest: str = ""
 
 
 @dataclass(frozen=True, repr=False)

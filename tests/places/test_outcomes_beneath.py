@@ -187,6 +187,7 @@ def test_what_lies_beneath_goes_with_the_impulse() -> None:
     over = LandingRange(
         "A", "x", times, np.full(2, 25.0), stress, stress, 118000.0 / stress, (0.15, 25.0),
         "converged", pulses=("rectangular",) * 2, nominal_pulse="rectangular",
+        beneath=75000.0 * 0.15 / times,
     )  # fmt: skip
     made = pin(75000.0, 0.0)
     assert made.depends_on == ()
@@ -196,7 +197,8 @@ def test_what_lies_beneath_goes_with_the_impulse() -> None:
     assert found.factor == pytest.approx(118000.0 / 75000.0 * 0.13 / 0.15)
     text = headline(only(replace(made, depends_on=(found,))))
     assert "range of the landing (beneath contact at impulse time below 0.143 s)" in text
-    assert depends_on(pin(50000.0, 0.0, landing=over)) == ()
+    less = replace(over, beneath=50000.0 * 0.15 / times)
+    assert depends_on(pin(50000.0, 0.0, landing=less)) == ()
 
 
 def test_a_row_that_fails_is_safe_at_a_longer_impulse_only_if_what_lies_beneath_is() -> None:
@@ -208,6 +210,7 @@ def test_a_row_that_fails_is_safe_at_a_longer_impulse_only_if_what_lies_beneath_
         "converged", pulses=("rectangular",) * 2, nominal_pulse="rectangular",
     )  # fmt: skip
     for beneath, expected in ((75000.0, ["impulse time"]), (90000.0, [])):
+        over = replace(over, beneath=beneath * 0.15 / times)
         failing = row("x", "converged", 1.4, False, places=pin(beneath, 0.0).places, landing=over)
         assert [d.what for d in depends_on(failing)] == expected
 

@@ -47,7 +47,11 @@ def test_the_open_range_of_the_factor_has_that_over_links() -> None:
 def _with_links(made: PinResult, most: float) -> PinResult:
     """A row whose stress is up to `most` times as large over the stiffness of its links."""
     stress = made.max_von_mises or 0.0
-    changed = replace(made, sharing=SharingRange((stress, most * stress), "", "AE stiffer"))
+    over = SharingRange((stress, most * stress), "", "AE stiffer")
+    if made.places is not None and made.places.contact is not None:
+        deep = made.places.contact.beneath
+        over = replace(over, beneath=(deep, most * deep), deepest="AE stiffer")
+    changed = replace(made, sharing=over)
     return replace(changed, depends_on=depends_on(changed))
 
 

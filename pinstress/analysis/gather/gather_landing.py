@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
+from fea.core.places import PartPlace, SectionPlace, SurfacePlace
+from fea.cut.field import CutField
 from fea.harmonic.field import HarmonicField
 from fea.harmonic.part_field import PartField
 from fea.section.section_stress import SectionField
@@ -24,6 +26,19 @@ from reports.data.row import LandingRange, SharingRange
 NEGLIGIBLE_LOAD = 0.01
 
 
+@dataclass(frozen=True)
+class StressOverRange:
+    """The stress of a pin at T instants of other loads of a case, (T,) Pa each.
+
+    maxima: the larger of surface and section. upper_ends: the largest of them with their errors.
+    beneath: contact, None without any.
+    """
+
+    maxima: Floats
+    upper_ends: Floats
+    beneath: Floats | None = None
+
+
 def landing_range(
     loads: Mapping[str, CaseLoads], task: Task, solution: Solution
 ) -> LandingRange | None:
@@ -31,9 +46,9 @@ def landing_range(
     case, over = solution.peak.case, loads[solution.peak.case].range
     if over is None or solution.answer is None:
         return None
-    maxima = _maxima(task, solution, task.ranges[case])
+    stress = _stresses(task, solution, task.ranges[case])
     strength = solution.peak.yield_strength(task.material.yield_strength)
-    nominal = range_of(task, solution.peak, over, maxima, strength)
+    nominal = range_of(task, solution.peak, over, stress, strength)
     return replace(nominal, spread=_spread(solution.peak))
 
 
@@ -61,25 +76,40 @@ def sharing_range(task: Task, solution: Solution) -> SharingRange | None:
     over, peak = task.shared.get(solution.peak.case), solution.peak.max_von_mises
     if over is None or solution.answer is None or peak is None:
         return None
-    stress: dict[str, float] = {}
-    maxima = _maxima(task, solution, over.loads)
-    for what, value in zip(over.what, maxima.tolist(), strict=True):
-        stress[what] = max(stress.get(what, 0.0), value)
-    low, high = min(stress, key=stress.__getitem__), max(stress, key=stress.__getitem__)
-    ends = min(peak, stress[low]), max(peak, stress[high])
-    most = _largest_load(task, solution.peak, over.loads, maxima)
-    return SharingRange(
-        ends, low if stress[low] < peak else "", high if stress[high] > peak else "", most
+    found = _stresses(task, solution, over.loads)
+    stress, top = (_largest_by(over.what, x) for x in (found.maxima, found.upper_ends))
+    low, high = min(stress, key=stress.__getitem__), max(top, key=top.__getitem__)
+    ends = min(peak, stress[low]), max(peak, *stress.values())
+    range_ = SharingRange(
+        ends,
+        low if stress[low] < peak else "",
+        high if top[high] > solution.peak.upper_end else "",
+        _largest_load(task, solution.peak, over.loads, found.maxima),
+        top[high],
     )
+    if found.beneath is None:
+        return range_
+    deep = _largest_by(over.what, found.beneath)
+    deepest = max(deep, key=deep.__getitem__)
+    return replace(range_, beneath=(deep[low], deep[deepest]), deepest=deepest)
+
+
+def _largest_by(what: Sequence[str], stress: Floats) -> dict[str, float]:
+    """Return the largest stress of each change of the links, Pa."""
+    return {
+        name: max(x for one, x in zip(what, stress.tolist(), strict=True) if one == name)
+        for name in dict.fromkeys(what)
+    }
 
 
 def range_of(
-    task: Task, peak: Maximum, over: ImpulseLoads, maxima: Floats, strength: float | None
+    task: Task, peak: Maximum, over: ImpulseLoads, stress: StressOverRange, strength: float | None
 ) -> LandingRange:
     """Return the results over a landing's ranges, without a spread of the joint.
 
-    peak: the maximum under the nominal force. maxima: Pa, under each force of `over`.
+    peak: the maximum under the nominal force. stress: under each force of `over`.
     """
+    maxima = stress.maxima
     return LandingRange(
         pin=peak.pin,
         case=peak.case,
@@ -92,44 +122,65 @@ def range_of(
         nominal=over.nominal,
         nominal_pulse=over.nominal_pulse,
         verdict=peak.verdict,
-        error=(peak.error_estimate or 0.0) / (peak.max_von_mises or 1.0),
+        error=stress.upper_ends / np.where(maxima > 0.0, maxima, 1.0) - 1.0,
         largest_load=_largest_load(task, peak, task.ranges[peak.case], maxima),
+        beneath=stress.beneath,
     )
 
 
-def _maxima(task: Task, solution: Solution, loads: PinLoads) -> Floats:
-    """Return the larger of the stresses of surface and section, Pa, at each instant of other loads
-    of a case.
-    """
+def _stresses(task: Task, solution: Solution, loads: PinLoads) -> StressOverRange:
+    """Return the stress at each instant of other loads of a case."""
     acting, clamps = solution.pressed(loads), tuple[str, ...]()
     if task.lugs:
         pin = solution.rings
     else:
         pin = body_of_revolution(task.pin)
         clamps = tuple(task.pin.surface(name) for name in task.clamps)
-    assert solution.answer is not None
-    surface, places = solution.answer.maxima(acting), solution.peak.places
+    peak, answer = solution.peak, solution.answer
+    assert answer is not None
+    surface, places = answer.maxima(acting), peak.places
+    row, deep = peak.upper_end / (peak.max_von_mises or 1.0), None
+    if places is not None and places.contact is not None and not task.material.hardened:
+        assert isinstance(answer, HarmonicField | CutField)
+        deep = answer.maxima_beneath(acting)
     if places is None or places.section is None or pin is None:
-        return surface
+        return StressOverRange(surface, row * surface, deep)
     sections = SectionField(pin, task.material, clamps, (acting.on_rings,))
     if task.material.hardened:
         return _as_of_row(task, solution, acting, sections)
-    return np.maximum(surface, sections.maxima(acting.on_rings))
+    in_section = sections.maxima(acting.on_rings)
+    maxima = np.maximum(surface, in_section)
+    ends = [_over(places.surface) * surface, _over(places.section) * in_section, row * maxima]
+    return StressOverRange(maxima, np.max(ends, axis=0), deep)
 
 
-def _as_of_row(task: Task, solution: Solution, acting: PinLoads, sections: SectionField) -> Floats:
-    """Return the largest stress, Pa, of a hardened pin at each instant, of all of its parts as if
+def _over(place: SurfacePlace | SectionPlace | PartPlace) -> float:
+    """Return the stress of a place with its error over the stress."""
+    return 1.0 + place.error_estimate / (place.max_von_mises or 1.0)
+
+
+def _as_of_row(
+    task: Task, solution: Solution, acting: PinLoads, sections: SectionField
+) -> StressOverRange:
+    """Return the stress of a hardened pin at each instant, the largest of all of its parts as if
     they had the strength of the row.
     """
-    strength, answer = solution.peak.strength, solution.answer
-    assert strength is not None
+    peak, answer, pin = solution.peak, solution.answer, sections.pin
+    assert peak.strength is not None
+    assert peak.places is not None
     assert isinstance(answer, HarmonicField)
-    out = np.zeros(len(acting))
-    for part in task.material.strength_parts(sections.pin.length):
-        field, along = PartField(answer, sections.pin, part), sections.of_part(part)
+    maxima, deep = np.zeros(len(acting)), np.zeros(len(acting))
+    for part in task.material.strength_parts(pin.length):
+        scale = peak.strength / part.strength
+        field, along = PartField(answer, pin, part), sections.of_part(part)
         stress = np.maximum(field.maxima(acting), along.maxima(acting.on_rings))
-        out = np.maximum(out, stress * (strength / part.strength))
-    return out
+        maxima = np.maximum(maxima, scale * stress)
+        if part.part != "case" and peak.places.contact is not None:
+            beneath = PartField(answer, pin, part, "beneath").maxima(acting)
+            deep = np.maximum(deep, scale * beneath)
+    row = peak.upper_end / (peak.max_von_mises or 1.0)
+    most = max(row, *map(_over, peak.places.hardened))
+    return StressOverRange(maxima, most * maxima, deep if peak.places.contact else None)
 
 
 def _spread(peak: Maximum) -> tuple[float, float] | None:

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from reports.data.decision import limit
 from reports.data.results import Results
 from reports.data.row import LandingRange
@@ -40,7 +42,7 @@ class LandingPoint:
         """Return whether the required factor is met with the error."""
         if self.factor is None or self.required is None:
             return None
-        return _meets(self.of, self.factor / self.required)
+        return _meets(self.of, self.factor / self.required, self.k)
 
     def end(self, k: int) -> float | None:
         """Return an end of the interval of a singular row's factor."""
@@ -140,8 +142,8 @@ def _at(i: int, heading: str, required: Mapping[tuple[str, str], float]) -> Colu
     return read_only(heading, text)
 
 
-def _meets(r: LandingRange, part: float) -> bool | None:
-    """Return whether a factor, here divided by the required one, is met with its error.
+def _meets(r: LandingRange, part: float, k: int) -> bool | None:
+    """Return whether a factor at point k, here divided by the required one, is met with its error.
 
     A singular row can only fail, with its whole interval.
     """
@@ -149,6 +151,7 @@ def _meets(r: LandingRange, part: float) -> bool | None:
         return None if (r.spread or (1.0, 1.0))[1] * part >= 1.0 else False
     if r.verdict != "converged":
         return None
-    if part >= 1.0 + r.error:
+    error = float(np.broadcast_to(r.error, r.force.shape)[k])
+    if part >= 1.0 + error:
         return True
-    return False if part < 1.0 - r.error else None
+    return False if part < 1.0 - error else None
