@@ -24,6 +24,7 @@ from pinbase.processes.threads import one_thread
 from pinbase.records import pack, unpack
 from pinstress.analysis.assessed.situations import assessed
 from pinstress.analysis.gather.gather import rows_of
+from pinstress.analysis.landing_scales import landing_scales
 from pinstress.analysis.plan import Plan, for_task, needs_fine_cells, prepare
 from pinstress.analysis.results import RunResults, run_results, solve
 from pinstress.analysis.reused_loads import reused_loads
@@ -229,6 +230,8 @@ class Engine:
         tasks, as_is = self._as_is[name].tasks, self._as_is[name].rows
         if not all(comparable(as_is[x.case][0]) for x in task.loads if x.case in as_is):
             return None
+        if not all(self._landing_scales(plan, task, case) for case in task.ranges):
+            return None
         # Cases at other temperatures are tasks of their own, with other clearances.
         cases = {loads.case for loads in task.loads}
         same = all(same_ranges(x, task) for x in tasks if cases & {y.case for y in x.loads})
@@ -244,6 +247,17 @@ class Engine:
         if same and (widened := [x.case for x in rows if range_may_widen(as_is[x.case][0], x)]):
             rows = self._judged(plan, task, self._coarse(plan, task, widened))
         return PinOutcome(rows) if rows else None
+
+    def _landing_scales(self, plan: Plan, task: Task, case: str) -> bool:
+        """Whether the range of a landing follows from that of the study as it is."""
+        tasks, rows = self._as_is[task.pin.name].tasks, self._as_is[task.pin.name].rows
+        before = next((x for x in tasks if case in x.ranges), None)
+        over, known = plan.loads[case].range, rows[case][0].landing if case in rows else None
+        if before is None or known is None or over is None:
+            return False
+        return landing_scales(
+            (before, before.ranges[case], known.force), (task, task.ranges[case], over.forces)
+        )
 
     def _judged(self, plan: Plan, task: Task, now: tuple[PinResult, ...]) -> tuple[PinResult, ...]:
         """The rows of a task scaled by its coarse ones; none where one cannot be scaled."""

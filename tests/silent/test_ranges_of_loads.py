@@ -7,10 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pinstress import run
+from fea.core.pin_loads import PinLoads
+from pinstress import Engine, run
+from pinstress.analysis.landing_scales import Ranged, landing_scales
+from pinstress.analysis.plan import prepare
+from pinstress.study.model.tasks import Task
 from pinstress.study.reading.in_python import study_from
 from reports.data.dependence import depends_on
 from reports.data.row import LandingRange, PinResult, SharingRange
+from tests.pinstress.analysis.test_scaled import STUDY as CLEVIS
 from tests.places.test_outcomes_beneath import pin
 
 # Two arms on a pin in two lugs of a structure: one bends it by 8 kN, far from both lugs; the other,
@@ -152,3 +157,44 @@ def test_both_together_multiply_what_each_place_has() -> None:
     assert [(d.what, d.over) for d in made.depends_on] == [("together", "landing and links")]
     less = replace(links, beneath=(60000.0, 65000.0))
     assert depends_on(replace(made, sharing=less)) == ()
+
+
+@pytest.mark.slow
+def test_a_quick_row_has_the_range_of_the_changed_study() -> None:
+    """Less force on the long arm eases the row, and not the short one that governs at the end of
+    the range: its stress was scaled with the row, to 250 of 274 MPa, and the pin was safe.
+    """
+    change = {"case.landing.apply[1].force[2]": 7000.0}
+    gear = Engine(study_from(STUDY.replace("TIME", "1.0")))
+    quick = gear.row(change, "O", "landing", accuracy="quick")
+    full = gear.row(change, "O", "landing")
+    assert quick.landing is not None
+    assert quick.landing.beneath is not None
+    assert full.landing is not None
+    assert full.landing.beneath is not None
+    contact = quick.places and quick.places.contact
+    assert contact
+    error = contact.beneath_error / contact.beneath
+    assert quick.landing.beneath[1] * (1.0 + error) >= full.landing.beneath[1]
+    assert full.outcome == "depends"
+    assert quick.outcome in ("depends", "not decided")
+
+
+def test_a_range_is_scaled_only_where_its_loads_tell_nothing_new() -> None:
+    """Loads of two links, of an impulse on one and a constant force on the other."""
+    (task,) = prepare(study_from(CLEVIS)).tasks
+    force = np.array([1.0, 4.0, 20.0])
+
+    def ranged(pin: Task, constant: float, factor: float = 1.0) -> Ranged:
+        forces = np.zeros((3, 2, 3))
+        forces[:, 0, 0], forces[:, 1, 1] = factor * force, constant
+        return pin, PinLoads("landing", ("left", "middle"), forces), factor * force
+
+    other = replace(task, lugs=tuple(replace(x, tilt=0.0) for x in task.lugs))
+    stronger = replace(task, material=replace(task.material, yield_strength=1e9))
+    for same in (task, stronger):
+        assert landing_scales(ranged(task, 5.0), ranged(same, 5.0, 1.5))
+    assert landing_scales(ranged(task, 0.0), ranged(other, 0.1))  # weights
+    assert not landing_scales(ranged(task, 5.0), ranged(other, 5.0))
+    assert not landing_scales(ranged(task, 5.0), ranged(task, 4.0))
+    assert not landing_scales(ranged(task, 0.0), ranged(task, 4.0))
