@@ -1,7 +1,8 @@
-"""Von Mises stress over the circumference from samples of the five numbers of several harmonics.
+"""The von Mises stress over the circumference from samples of the five numbers of several
+harmonics.
 
-Arguments: n, (W,) harmonics; back and forth, (J, 5, W), factors of cos n theta and sin n theta in
-the five numbers, Pa.
+Arguments of all functions: n, (W,) harmonics; back and forth, (J, 5, W), Pa, the factors of cos n
+theta and sin n theta in the five numbers.
 """
 
 from __future__ import annotations
@@ -19,19 +20,20 @@ from fea.harmonic.trigonometric_maximum import (
 from pinbase.arrays import Floats, Ints, Mask
 
 SAMPLES_PER_WAVE = 5  # per degree of the polynomial; more than 2 determine it
-# rad, between samples about a crest: a parabola through those of whole arcs would be 1e-4 off.
+# rad, between samples about a crest: a parabola through samples one arc apart would err by 1e-4.
 CREST_SAMPLE_STEP = 0.1 * float(ARC_ANGLES[1])
-# As fine as the grid of fea.harmonic.trigonometric_maximum: D h / 2 is 0.16, from where Newton's
-# method takes so many steps to round-off.
+# As fine as the grid of fea.harmonic.trigonometric_maximum: D h / 2 is 0.16, so that Newton's
+# method reaches round-off in STEADY_STEPS.
 STEADY_SAMPLES_PER_WAVE, STEADY_STEPS = 20, 6
-CACHED_BATCH = 32  # rows that are sampled at once, in the cache: half the time of thousands
-ON_SAMPLE_TOLERANCE = 1e-9  # of an arc: a nearer angle is that of a sample
+CACHED_BATCH = 32  # rows sampled together, within the cache: half the time of thousands together
+ON_SAMPLE_TOLERANCE = 1e-9  # of an arc: an angle this near to a sample's is that of the sample
 
 
 def crest_all_round(n: Ints, back: Floats, forth: Floats, beat: Floats) -> tuple[Floats, Floats]:
     """The largest von Mises stress (J,), Pa, over the circumference, and its angle (J,), rad.
 
-    beat: (J,) Pa; where stress cannot exceed it, any value below it may be returned.
+    beat: (J,) Pa, the value to exceed. Where stress cannot exceed it, any value below it may be
+    returned.
     """
     if len(n) < 2:
         return one_wave(n, back, forth)
@@ -41,7 +43,7 @@ def crest_all_round(n: Ints, back: Floats, forth: Floats, beat: Floats) -> tuple
 
 
 def _five(n: Ints, back: Floats, forth: Floats, angle: Floats) -> Floats:
-    """The five numbers (J, 5) at an angle (J,), rad, each."""
+    """The five numbers (J, 5), each row at its own angle (J,), rad."""
     turns = n * angle[:, None]
     five = np.einsum("jiw,jw->ji", back, np.cos(turns))
     five += np.einsum("jiw,jw->ji", forth, np.sin(turns))
@@ -49,7 +51,8 @@ def _five(n: Ints, back: Floats, forth: Floats, angle: Floats) -> Floats:
 
 
 def steady_crests(n: Ints, back: Floats, forth: Floats) -> tuple[Floats, Floats]:
-    """Return what `crest_all_round` does, to the last bit the same whatever rows are given with it.
+    """Return what `crest_all_round` does. Each row is the same to the last bit whatever rows are
+    given with it.
 
     Each row takes the same operations in the same order: sums over its own samples, and a fixed
     number of Newton's steps from all of its samples that may be next to the highest crest.
@@ -74,9 +77,10 @@ def steady_crests(n: Ints, back: Floats, forth: Floats) -> tuple[Floats, Floats]
 def _climbed(
     n: Ints, back: Floats, forth: Floats, angle: Floats, most: float
 ) -> tuple[Floats, Floats]:
-    """Von Mises stress (J,), Pa, at crests near angles (J,), rad, and the angles of these crests.
+    """The von Mises stress (J,), Pa, at crests near angles (J,), rad, and the angles (J,) of these
+    crests.
 
-    most: rad, of a step.
+    most: rad, the largest step.
     """
     for _ in range(STEADY_STEPS):
         turns = n * angle[:, None]
@@ -91,7 +95,9 @@ def _climbed(
 
 
 def crest_where_read(n: Ints, back: Floats, forth: Floats, read: Mask) -> tuple[Floats, Floats]:
-    """The largest von Mises stress (J,), Pa, over arcs (J, ARC_COUNT), and its angle."""
+    """The largest von Mises stress (J,), Pa, over the arcs of a mask (J, ARC_COUNT), and its angle
+    (J,), rad.
+    """
     square = at_angles(n, back, forth, ARC_ANGLES)
     square[~read] = -1.0
     value, angle = crest_of_samples(square)
@@ -104,7 +110,10 @@ def crest_where_read(n: Ints, back: Floats, forth: Floats, read: Mask) -> tuple[
 
 
 def sampled(n: Ints, back: Floats, forth: Floats, degree: int) -> Floats:
-    """Von Mises squared (J, A), Pa^2, at equally spaced angles; degree: of that polynomial."""
+    """Von Mises squared (J, A), Pa^2, at equally spaced angles.
+
+    degree: of von Mises squared as a trigonometric polynomial.
+    """
     angles = np.linspace(0.0, 2.0 * np.pi, SAMPLES_PER_WAVE * degree, endpoint=False)
     return at_angles(n, back, forth, angles)
 
@@ -125,9 +134,10 @@ def at_angles(n: Ints, back: Floats, forth: Floats, angles: Floats) -> Floats:
 def closer_crest(
     n: Ints, back: Floats, forth: Floats, angle: Floats, apart: float
 ) -> tuple[Floats, Floats]:
-    """Von Mises stress (J,), Pa, at crests near angles (J,), rad, and the angles of these crests.
+    """The von Mises stress (J,), Pa, at crests near angles (J,), rad, and the angles (J,) of these
+    crests.
 
-    A parabola goes through samples at the angle and `apart`, rad, before and after it.
+    A parabola is put through samples at the angle and at `apart`, rad, before and after it.
     """
     before, here, after = (
         np.square(_five(n, back, forth, angle + step)).sum(axis=1) for step in (-apart, 0.0, apart)
