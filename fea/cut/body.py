@@ -1,5 +1,7 @@
-"""The whole body of a pin with cuts at one instant: its local solids, and the uncut pin between
-them, which is turned about its axis.
+"""The whole body of a pin with cuts at one instant: its local solids and the uncut pin between
+them.
+
+The uncut pin is a section that is turned about its axis.
 """
 
 from __future__ import annotations

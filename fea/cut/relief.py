@@ -1,5 +1,7 @@
-"""The nodal forces that relieve the cuts of a piece. They are those of the tractions -s . n on the
-surfaces of the cuts, s being the stress of the uncut pin there.
+"""The nodal forces that relieve the cuts of a piece.
+
+They are those of the tractions -s . n on the surfaces of the cuts, s being the stress of the uncut
+pin there.
 """
 
 from __future__ import annotations

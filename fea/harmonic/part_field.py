@@ -1,10 +1,10 @@
-"""The stress of a part of a pin with a hardened surface (its case, its core), which has one yield
-strength (fea.core.hardened).
+"""The stress of a part (case or core) of a pin with a hardened surface.
 
-If loads are prescribed, all points of the part are read. If lugs press on the pin, its case is read
-at the surface (fea.harmonic.free_surface), and its core beneath the free surface and in bores,
-which are not hardened. Beneath lugs, bending stress is that of sections, and the rest belongs to
-contact (fea.harmonic.beneath).
+Each part has one yield strength (fea.core.hardened). If loads are prescribed, all points of the
+part are read. If lugs press on the pin, its case is read at the surface
+(fea.harmonic.free_surface), and its core beneath the free surface and in bores, which are not
+hardened. Beneath lugs, bending stress is that of sections, and the rest belongs to contact
+(fea.harmonic.beneath).
 """
 
 from __future__ import annotations
