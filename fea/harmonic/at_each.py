@@ -102,7 +102,7 @@ class EachOnMesh:
         far, far_point = self.around.each(felt)
         near, near_point = self.around.each(within & ~felt, far)
         point = np.where(near > far, near_point, far_point)
-        angle = self.around.round(point, np.arange(len(point)))[1]
+        angle = self.around.largest_over_angle(point, np.arange(len(point)))[1]
         x, y = zone.r * np.cos(angle), zone.r * np.sin(angle)
         acts = zone in self._acting
         every = zip(*(a.tolist() for a in (near, far, x, y)), strict=True)
@@ -113,7 +113,7 @@ class EachOnMesh:
         if self._loads.distribution != "cosine" or self.around.highest != self._loads.terms:
             return np.zeros(len(self._loads))
         instants = np.arange(len(self._loads))
-        return SERIES_REMAINDER_RATIO * self.around.last_at(self.top.point, instants)
+        return SERIES_REMAINDER_RATIO * self.around.highest_harmonic_at(self.top.point, instants)
 
     def with_growth(self, result: MeshMaximum, k: int) -> MeshMaximum:
         """The result of one instant, with the growth of stress measured in the zones that govern.
@@ -144,7 +144,7 @@ class EachOnMesh:
             now = np.flatnonzero(highest == one)
             apart = np.hypot(*(points[rows] - points[one]).T) > MIN_SPACING * points[rows, 0]
             i, t = self._above(rows[apart], some[now], least[now])
-            value, _ = self.around.round(i, some[now][t])
+            value, _ = self.around.largest_over_angle(i, some[now][t])
             order = np.argsort(-value, kind="stable")
             for k in now:
                 out[k].append(points[one])

@@ -149,7 +149,7 @@ def high_places(
     now = slice(top.instant, top.instant + 1)
     for bound in (around.reach, around.bound):
         rows = rows[bound(rows, now)[:, 0] >= least * top.value]
-    value, _ = around.round(rows, np.full(len(rows), top.instant))
+    value, _ = around.largest_over_angle(rows, np.full(len(rows), top.instant))
     places: list[Floats] = []
     for k in np.argsort(-value, kind="stable"):
         if value[k] < least * top.value or len(places) == MAX_PLACES:
@@ -168,5 +168,5 @@ def _left_out(around: Circumference, loads: PinLoads, top: Crest) -> float:
     """
     if loads.distribution != "cosine" or around.highest != loads.terms:
         return 0.0
-    largest = around.last_at(np.array([top.point]), np.array([top.instant]))
+    largest = around.highest_harmonic_at(np.array([top.point]), np.array([top.instant]))
     return SERIES_REMAINDER_RATIO * float(largest[0])

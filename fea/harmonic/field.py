@@ -117,7 +117,7 @@ class MeridianSurface:
     def largest(self, loads: PinLoads, instant: int) -> Floats:
         """The largest von Mises stress (P,), Pa, about the axis where it is read at an instant."""
         skin = np.arange(self.field.fields.skin)
-        largest, _ = self.field.reader(loads).round(skin, np.full(len(skin), instant))
+        largest, _ = self.field.reader(loads).largest_over_angle(skin, np.full(len(skin), instant))
         return largest
 
     def location(self, loads: PinLoads, instant: int) -> Point:

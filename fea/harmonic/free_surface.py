@@ -25,7 +25,6 @@ import numpy as np
 from fea.core.pin_loads import Loads
 from fea.core.pressed import ARC_ANGLES, ARC_COUNT, RING_END_TOLERANCE, PressedArcs, Rings
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.superposed_stress import ALL_INSTANTS
 from fea.harmonic.superposition import Circumference
 from fea.harmonic.surface_stress import EDGE_STATIONS
 from pinbase.arrays import Floats, Ints, Mask
@@ -39,6 +38,7 @@ MIN_CUSP_DISTANCE_RATIO = 2.0  # least distance of the farthest point over that 
 # its lug, where the maximum of some meshes was 8 to 25 % above that of the others.
 MIN_CUSP_SHARE = 0.25
 MAX_KEPT_INSTANTS = 512  # largest number of instants whose arcs are kept: about 30 MB
+ALL_ARCS = slice(None)
 
 
 @dataclass(frozen=True)
@@ -256,7 +256,7 @@ class FreeSurface:
         """A mask (J,) of the points (J,) that are read on part of the circumference only."""
         return np.asarray(self._masked[points])
 
-    def read(self, points: Ints, instants: Ints, arcs: Ints | slice = ALL_INSTANTS) -> Mask:
+    def read(self, points: Ints, instants: Ints, arcs: Ints | slice = ALL_ARCS) -> Mask:
         """The arcs (J, A) on which pairs of points and instants are read; all arcs by default."""
         out = np.empty((len(points), len(ARC_ANGLES[arcs])), dtype=bool)
         for instant, here in _by_instant(instants):

@@ -210,7 +210,7 @@ class HarmonicModel(HarmonicBody):
         tractions = np.zeros((*self.outline.nodes.shape, 3, len(loads)))
         for n, (here, on_nodes, on_edges) in forces.items():
             harmonics[here] = n
-            moved = self._shifted(n, loads, here)
+            moved = self._clamp_motions(n, loads, here)
             if solvers is None or moved is not None:
                 u[:, :, here] = polar(self.displace(n, on_nodes, moved))
             else:
@@ -245,7 +245,7 @@ class HarmonicModel(HarmonicBody):
             )
         return self._readings[key]
 
-    def _shifted(self, n: int, loads: tuple[UnitLoad, ...], here: Ints) -> Floats | None:
+    def _clamp_motions(self, n: int, loads: tuple[UnitLoad, ...], here: Ints) -> Floats | None:
         """The motions of clamps (unknowns, K) that the loads of harmonic n prescribe; None if there
         are none.
 

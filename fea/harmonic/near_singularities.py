@@ -84,7 +84,7 @@ def growth(
         return None, None
     # The largest stress over the circumference, at points of the skin that are resolved and near
     # enough to the singularity.
-    value, _ = around.round(near, np.full(len(near), instant))
+    value, _ = around.largest_over_angle(near, np.full(len(near), instant))
     first = int(np.argmin(skin))
     sides = [near < first, near > first]
     side = max(sides, key=lambda s: float(np.median(value[s])) if s.any() else 0.0)

@@ -124,17 +124,17 @@ class SuperposedStress:
         first, second = self._first[instants, wave].T, self._second[instants, wave].T
         flat = np.ascontiguousarray(five).reshape(-1, five.shape[2])
         shape = (len(five), 5, first.shape[1])
-        one, other = ((flat @ x).reshape(shape) for x in (first, second))
+        phase_0, phase_1 = ((flat @ x).reshape(shape) for x in (first, second))
         if self._n[wave.start] == 0:
             # Nothing varies over the circumference, so the square itself is the maximum.
-            square = np.square(one[:, COS]).sum(axis=1) + np.square(other[:, SIN]).sum(axis=1)
+            square = np.square(phase_0[:, COS]).sum(axis=1) + np.square(phase_1[:, SIN]).sum(axis=1)
         else:
             # The sine parts lag by a quarter wave. So their phases swap places, one of them with
-            # its sign changed. Then `one` multiplies cos n theta and `other` multiplies sin n theta
-            # in all five numbers.
-            one[:, SIN], other[:, SIN] = -other[:, SIN], one[:, SIN].copy()
-            A, C = np.square(one).sum(axis=1), np.square(other).sum(axis=1)
-            square = form_maximum(A + C, A - C, np.einsum("jit,jit->jt", one, other))
+            # its sign changed. Then `phase_0` multiplies cos n theta and `phase_1` multiplies
+            # sin n theta in all five numbers.
+            phase_0[:, SIN], phase_1[:, SIN] = -phase_1[:, SIN], phase_0[:, SIN].copy()
+            A, C = np.square(phase_0).sum(axis=1), np.square(phase_1).sum(axis=1)
+            square = form_maximum(A + C, A - C, np.einsum("jit,jit->jt", phase_0, phase_1))
         return np.asarray(np.sqrt(np.maximum(square, 0.0, out=square)))
 
     def reach(self, points: Ints, instants: Instants = ALL_INSTANTS) -> Floats:
@@ -151,7 +151,7 @@ class SuperposedStress:
         """The amounts (K, T) of the unit loads, both phases combined."""
         return np.ascontiguousarray(np.hypot(self._first, self._second).T)
 
-    def round(
+    def largest_over_angle(
         self, points: Ints, instants: Ints, beat: Floats | None = None
     ) -> tuple[Floats, Floats]:
         """The largest von Mises stress (J,), Pa, over the circumference, and its angle (J,), rad.
@@ -171,28 +171,29 @@ class SuperposedStress:
                 if not len(rows):
                     continue
                 at = points[rows], instants[rows]
-                back, forth = self._pair_waves(*at, self._waves)  # (J, 5, W)
+                cosine, sine = self._pair_waves(*at, self._waves)  # (J, 5, W)
                 if region is None:
-                    crests = crest_all_round(self._orders, back, forth, beat[rows])
+                    crests = crest_all_round(self._orders, cosine, sine, beat[rows])
                 else:
-                    crests = crest_where_read(self._orders, back, forth, region.read(*at))
+                    crests = crest_where_read(self._orders, cosine, sine, region.read(*at))
                 value[rows], angle[rows] = crests
         return value, angle
 
     def crests(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
-        """Return what `round` does, at points that are read all round. Each value is the same to
-        the last bit whichever other pairs are evaluated with it.
+        """Return what `largest_over_angle` does, at points that are read all round.
+
+        Each value is the same to the last bit whichever other pairs are evaluated with it.
         """
         return steady_crests(self._orders, *self._waves_apart(points, instants))
 
-    def last_at(self, points: Ints, instants: Ints) -> Floats:
+    def highest_harmonic_at(self, points: Ints, instants: Ints) -> Floats:
         """The largest von Mises stress (J,), Pa, of the highest harmonic alone, at pairs of points
         and instants (J,). It does not depend on the other pairs, as in `crests`.
         """
         if not self._waves:
             return np.zeros(len(points))
-        back, forth = (np.array(x[:, :, -1:]) for x in self._waves_apart(points, instants))
-        return one_wave(self._n[-1:], back, forth)[0]
+        cosine, sine = (np.array(x[:, :, -1:]) for x in self._waves_apart(points, instants))
+        return one_wave(self._n[-1:], cosine, sine)[0]
 
     def _waves_apart(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
         """Return the factors of `_pair_waves` for all harmonics, each pair summed independently of
@@ -205,9 +206,9 @@ class SuperposedStress:
         )
         # In C order, so that later sums run along memory however many pairs there are.
         a, b = (np.ascontiguousarray(x) for x in summed)
-        back, forth = a.copy(), b.copy()
-        back[:, SIN], forth[:, SIN] = -b[:, SIN], a[:, SIN]
-        return back, forth
+        cosine, sine = a.copy(), b.copy()
+        cosine[:, SIN], sine[:, SIN] = -b[:, SIN], a[:, SIN]
+        return cosine, sine
 
     def _samples(self, points: Ints, instants: Ints, waves: Sequence[slice], degree: int) -> Floats:
         """Von Mises squared (J, A), Pa^2, of some harmonics together at equally spaced angles."""
@@ -222,16 +223,16 @@ class SuperposedStress:
         points, instants: (J,) each, which make J pairs.
         waves: W harmonics.
         """
-        back, forth = (np.empty((len(points), 5, len(waves))) for _ in range(2))
+        cosine, sine = (np.empty((len(points), 5, len(waves))) for _ in range(2))
         one, i = np.unique(points, return_inverse=True)
         now, t = np.unique(instants, return_inverse=True)
         for w, wave in enumerate(waves):
             five = np.ascontiguousarray(self._five[one, :, wave])
             a, b = ((five @ x[now, wave].T)[i, :, t] for x in (self._first, self._second))
             # As in `_of_harmonic`: the sine parts lag by a quarter wave.
-            back[:, COS, w], back[:, SIN, w] = a[:, COS], -b[:, SIN]
-            forth[:, COS, w], forth[:, SIN, w] = b[:, COS], a[:, SIN]
-        return back, forth
+            cosine[:, COS, w], cosine[:, SIN, w] = a[:, COS], -b[:, SIN]
+            sine[:, COS, w], sine[:, SIN, w] = b[:, COS], a[:, SIN]
+        return cosine, sine
 
     def envelope(self, points: Ints, angles: Floats, read: Mask | None = None) -> Floats:
         """The largest von Mises stress (J, A), Pa, over all instants, to seven digits.

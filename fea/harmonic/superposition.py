@@ -13,9 +13,9 @@ evaluated. A few instants ("anchors") are sampled with all harmonics. The stress
 exceeds that of the nearest anchor by no more than what the difference of their loads can cause, by
 `reach`.
 
-Pairs of a point and an instant that no bound rules out are evaluated (`round`). Points come in
-falling order of `reach`, so the search ends at the first batch that cannot exceed the maximum found
-so far (the incumbent).
+Pairs of a point and an instant that no bound rules out are evaluated (`largest_over_angle`). Points
+come in falling order of `reach`, so the search ends at the first batch that cannot exceed the
+maximum found so far (the incumbent).
 """
 
 from __future__ import annotations
@@ -65,9 +65,9 @@ class Circumference(SuperposedStress):
         least: Pa, one for all instants or one (T,) for each.
         """
         value, point = self._search(among, together=False, least=least)
-        return value, self._first_there(point, among)
+        return value, self._first_coinciding(point, among)
 
-    def _first_there(self, points: Ints, among: Mask) -> Ints:
+    def _first_coinciding(self, points: Ints, among: Mask) -> Ints:
         """The first points of a mask (S,) at the same places as the given ones and with the same
         stress.
 
@@ -78,10 +78,10 @@ class Circumference(SuperposedStress):
         if self.region is not None:
             return points
         one, i = np.unique(points, return_inverse=True)
-        first = [next((x for x in self._like(int(k)) if among[x]), k) for k in one]
+        first = [next((x for x in self._coinciding(int(k)) if among[x]), k) for k in one]
         return np.array(first, dtype=np.int64)[i]
 
-    def _like(self, point: int) -> list[int]:
+    def _coinciding(self, point: int) -> list[int]:
         """The numbers, rising, of the points with the same place and the same stress as a point."""
         known: dict[tuple[object, ...], list[int]] = self.fields.derived
         key = "like", self._at, point
@@ -99,8 +99,8 @@ class Circumference(SuperposedStress):
         least: Pa, the value of the result where no point exceeds it.
         """
         reached, point = self._search(among, together=True, least=least)
-        point, instant = self._first_there(point, among), int(reached.argmax())
-        find = self.round if self.region is not None else self.crests
+        point, instant = self._first_coinciding(point, among), int(reached.argmax())
+        find = self.largest_over_angle if self.region is not None else self.crests
         value, angle = find(point[[instant]], np.array([instant]))
         most = float(value[0]) if reached[instant] > least else least
         return Crest(most, int(point[instant]), instant, float(angle[0]))
@@ -120,7 +120,9 @@ class Circumference(SuperposedStress):
         # others.
         if len(self._waves) > 1 and len(rows):
             i, t = self._likely_pairs(rows[:POINT_BATCH], together)
-            _update_best(best, point, t, self.round(i, t, np.full(len(t), least))[0], i)
+            _update_best(
+                best, point, t, self.largest_over_angle(i, t, np.full(len(t), least))[0], i
+            )
         # Step 2: go through the points, batch by batch, in falling order of what they can reach.
         for k in range(0, len(rows), POINT_BATCH):
             # No later point reaches more than this one, so the search is complete.
@@ -146,7 +148,7 @@ class Circumference(SuperposedStress):
             # and rules out more of them.
             for i, t in self._pairs_above(bound, best, together):
                 beat = np.full(len(t), best.max()) if together else best[t]
-                value = self.round(here[i], t, beat)[0]
+                value = self.largest_over_angle(here[i], t, beat)[0]
                 bound[i, t] = -1.0
                 _update_best(best, point, t, value, here[i])
         return best, point

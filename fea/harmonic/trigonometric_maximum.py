@@ -131,14 +131,16 @@ def form_maximum(total: Floats, apart: Floats, mixed: Floats) -> Floats:
     return np.asarray(total / 2.0 + np.sqrt(apart * apart / 4.0 + mixed * mixed))
 
 
-def one_wave(n: Ints, back: Floats, forth: Floats) -> tuple[Floats, Floats]:
+def one_wave(n: Ints, cosine: Floats, sine: Floats) -> tuple[Floats, Floats]:
     """The largest von Mises stress (J,), Pa, and its angle (J,), rad, where one harmonic acts, or
     none.
 
     n: (1,) or (0,) the harmonic.
-    back, forth: (J, 5, 1) the factors of cos n theta and sin n theta.
+    cosine, sine: (J, 5, 1) the factors of cos n theta and sin n theta.
     """
-    A, B, C = ((x * y).sum(axis=(1, 2)) for x, y in ((back, back), (back, forth), (forth, forth)))
+    A, B, C = (
+        (x * y).sum(axis=(1, 2)) for x, y in ((cosine, cosine), (cosine, sine), (sine, sine))
+    )
     if not n.any():
         return np.sqrt(A), np.zeros(len(A))
     largest = np.maximum(form_maximum(A + C, A - C, B), 0.0)
