@@ -57,7 +57,7 @@ class BodyPart:
 def body(
     fields: MeridianFields,
     pieces: Sequence[LocalFields],
-    held: ClampReaction | None,
+    first_clamp: ClampReaction | None,
     loads: PinLoads,
     instant: int,
 ) -> Picture:
@@ -65,7 +65,7 @@ def body(
 
     fields: of the uncut pin.
     pieces: the local solids about the cuts.
-    held: the first clamp, as for fea.cut.shown.shown.
+    first_clamp: stays in place, as for fea.cut.shown.shown.
     loads: together with the motions of clamps that they cause.
     """
     amounts = pieces[0].coefficients(loads)[instant]
@@ -85,7 +85,7 @@ def body(
             uncut.displacement[:] += moved_by(piece, uncut.points)[..., 0]
         parts.append(uncut)
     points = np.concatenate([part.points for part in parts])
-    motion = support_motion(now, held, length)
+    motion = support_motion(now, first_clamp, length)
     moved = np.concatenate([part.displacement for part in parts]) - rigid(motion, points)[..., 0]
     (cell_type, cells), *more = _joined(parts).items()
     return Picture(

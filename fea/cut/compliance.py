@@ -88,12 +88,13 @@ class AddedCompliance:
 
     units: K unit loads, in all their phases.
     amounts: (B, K) of the relieving forces under each unit load.
-    on: (B, K) N m, the work of the relieving forces on the displacement under each unit load.
+    relief_work: (B, K) N m, the work of the relieving forces on the displacement under each unit
+    load.
     """
 
     units: tuple[Unit, ...]
     amounts: Floats
-    on: Floats
+    relief_work: Floats
 
     def work(self, loads: Floats) -> Floats:
         """The work (U, U), N m, of U sums of the unit loads on the displacements that cuts add
@@ -101,7 +102,7 @@ class AddedCompliance:
 
         loads: (K, U) amounts of the unit loads in the sums.
         """
-        work = (self.amounts @ loads).T @ (self.on @ loads)
+        work = (self.amounts @ loads).T @ (self.relief_work @ loads)
         # Iteration and interpolation leave a small asymmetry.
         return np.asarray(0.5 * (work + work.T))
 
@@ -125,8 +126,8 @@ def added_compliance(
     rings = tuple(dict.fromkeys(name for x in loads for load in x for name in load.surfaces))
     grades = [*(fine_about(piece, 0) for piece in pieces), *finer_at_rings(pin, rings)]
     section = HarmonicModel(pin, meridian_mesh(pin, FIRST_MESH_SIZE, (), grades), material, ())
-    first_mesh, most = LocalFineness.of(0), most_unknowns(None, 1)
-    meshes = [LocalMesh(x, material, (), first_mesh, (), bands, most) for x in pieces]
+    first_mesh, max_unknowns = LocalFineness.of(0), most_unknowns(None, 1)
+    meshes = [LocalMesh(x, material, (), first_mesh, (), bands, max_unknowns) for x in pieces]
     points = np.concatenate([mesh.section_points for mesh in meshes])
     fields = [section.solve(x, points) for x in loads]
     units = [tuple((load, p) for load in x for p in load.phases) for x in loads]
@@ -136,8 +137,8 @@ def added_compliance(
         here = slice(first, first + len(mesh.section_points))
         first = here.stop
         parts += _of_piece(mesh.model, here, list(zip(fields, units, strict=True)))
-    amounts, on = (np.concatenate(x) for x in zip(*parts, strict=True))
-    return AddedCompliance(every, amounts, on)
+    amounts, relief_work = (np.concatenate(x) for x in zip(*parts, strict=True))
+    return AddedCompliance(every, amounts, relief_work)
 
 
 def _of_piece(

@@ -54,7 +54,7 @@ def cut_solution(
     distance: float = 0.1,
     finer: LocalFineness | None = None,
     reused: Sequence[LocalFields] = (),
-    most: float = math.inf,
+    max_unknowns: float = math.inf,
 ) -> CutSolution:
     """Solve all unit loads on mesh number `level` of the section and of the pieces.
 
@@ -63,7 +63,7 @@ def cut_solution(
     distance: the excluded distance, as in fea.cut.inner_corners.
     finer: fineness of the pieces, instead of that of the level.
     reused: fields of pieces that need no finer mesh.
-    most: largest number of unknowns of a piece.
+    max_unknowns: largest number of unknowns of a piece.
 
     Raises: MeshError, SolveError.
     """
@@ -73,7 +73,7 @@ def cut_solution(
     known = [next((k for k in reused if k.piece == piece), None) for piece in pieces]
     memo = problem.memo or Memo()
     meshes = [
-        LocalMesh(piece, material, clamps, finer, high, bands, most, memo)
+        LocalMesh(piece, material, clamps, finer, high, bands, max_unknowns, memo)
         for piece, reused_piece in zip(pieces, known, strict=True)
         if reused_piece is None
     ]
@@ -81,7 +81,7 @@ def cut_solution(
     supports = _supports(problem)
     moved = motions(supports)
     section = harmonic_solution(
-        replace(problem, besides=tuple(dict.fromkeys(load for load, _ in moved))),
+        replace(problem, extra_loads=tuple(dict.fromkeys(load for load, _ in moved))),
         level, LOCAL_MESH_RATIO, before,
         np.concatenate([NO_POINTS, *points]), [fine_about(piece, level) for piece in pieces],
     )  # fmt: skip
@@ -94,8 +94,8 @@ def cut_solution(
     local = tuple(reused_piece or next(new) for reused_piece in known)
     fields = _without(uncut, [zone(piece) for piece in pieces])
     section = replace(section, fields=fields, elsewhere=NO_POINTS)
-    held = next(iter(supports), None)
-    return CutSolution(section, local, uncut, reactions(supports, local), held)
+    first_clamp = next(iter(supports), None)
+    return CutSolution(section, local, uncut, reactions(supports, local), first_clamp)
 
 
 def _supports(problem: SectionProblem) -> list[ClampReaction]:
@@ -235,10 +235,11 @@ class LocalSolids:
                 reach *= REACH_FACTOR
         local = pieces(self._cut, problem.clamps, reach, self._bands, spacing)
         posed = section_problem(problem, self._memo, self._first)
-        most = most_unknowns(problem.memory, len({load for load, _ in _units(problem.cases)}) or 1)
+        count = len({load for load, _ in _units(problem.cases)}) or 1
         solution = cut_solution(
-            posed, local, level, results, self._bands, problem.distance, reused=reused, most=most
-        )
+            posed, local, level, results, self._bands, problem.distance, reused=reused,
+            max_unknowns=most_unknowns(problem.memory, count),
+        )  # fmt: skip
         return CutMesh(problem, solution, reach, spacing)
 
 
@@ -254,9 +255,9 @@ def cut_result(
     singularities: those of the uncut pin in all cases.
     case_zones: those that this case makes singular; all by default.
     """
-    held = solution.reactions.held(loads)
-    assert isinstance(held, PinLoads)
-    loads = held
+    all_loads = solution.reactions.with_motions(loads)
+    assert isinstance(all_loads, PinLoads)
+    loads = all_loads
     result = harmonic_result(solution.section, singularities, loads, case_zones)
     high: list[tuple[float, float, float]] = []
     highest, whole = None, result.maximum

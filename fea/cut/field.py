@@ -33,14 +33,14 @@ class CutSolution:
     section: the uncut pin, which is not read where it is cut.
     uncut: its fields without that restriction.
     reactions: the motions of redundant clamps that loads cause.
-    held: the first clamp, if any.
+    first_clamp: the first clamp, if any.
     """
 
     section: HarmonicSolution
     pieces: tuple[LocalFields, ...]
     uncut: MeridianFields
     reactions: ClampMotions
-    held: ClampReaction | None = None
+    first_clamp: ClampReaction | None = None
 
     @property
     def corners(self) -> tuple[Zone, ...]:
@@ -55,13 +55,13 @@ class CutSolution:
         """
         out = set(range(len(self.pieces)))
         for loads, result in results:
-            held = self.reactions.held(loads)
+            all_loads = self.reactions.with_motions(loads)
             swings = [
-                piece.swing(held) * (1.0 + MAX_REFINED_RISE / piece.finer**2)
+                piece.swing(all_loads) * (1.0 + MAX_REFINED_RISE / piece.finer**2)
                 for piece in self.pieces
             ]
             for k, piece in enumerate(self.pieces):
-                most = piece.may_reach(held, result.maximum)
+                most = piece.may_reach(all_loads, result.maximum)
                 if most or (len(loads) > 1 and swings[k] >= max(swings) / (1.0 + MAX_REFINED_RISE)):
                     out.discard(k)
         return tuple(self.pieces[k] for k in sorted(out))
@@ -71,7 +71,7 @@ class CutSolution:
         """The surface of the pieces and of the uncut pin between them; the first clamp does not
         move.
         """
-        return shown(self.section.fields, self.pieces, self.held)
+        return shown(self.section.fields, self.pieces, self.first_clamp)
 
     @cached_property
     def unit_surface(self) -> UnitSurface:
@@ -92,14 +92,14 @@ class CutField:
 
         least: Pa; where the stress does not exceed it, any value up to it may be returned.
         """
-        loads = self.solution.reactions.held(loads)
+        loads = self.solution.reactions.with_motions(loads)
         local = np.max([piece.largest(loads)[0] for piece in self.solution.pieces], axis=0)
         uncut = self.section.maxima(loads, max(least, float(local.min())))
         return np.asarray(np.maximum(local, uncut))
 
     def largest(self, loads: Loads) -> tuple[float, int]:
         """The largest von Mises stress over all instants, Pa, and the number of its instant."""
-        loads = self.solution.reactions.held(loads)
+        loads = self.solution.reactions.with_motions(loads)
         value, instant = self.section.largest(loads)
         for piece in self.solution.pieces:
             here, _ = piece.largest(loads)
@@ -157,7 +157,7 @@ class CutField:
 
     def coefficients(self, loads: Loads) -> Floats:
         """The amount of each unit load of the surface at each instant, (T, L)."""
-        return self.solution.pieces[0].coefficients(self.solution.reactions.held(loads))
+        return self.solution.pieces[0].coefficients(self.solution.reactions.with_motions(loads))
 
     @property
     def read(self) -> Mask:
@@ -182,6 +182,6 @@ class CutField:
 
     def volume(self, loads: PinLoads, instant: int) -> Picture:
         """The whole body at one instant."""
-        solution, held = self.solution, self.solution.reactions.held(loads)
-        assert isinstance(held, PinLoads)
-        return body(solution.uncut, solution.pieces, solution.held, held, instant)
+        solution, all_loads = self.solution, self.solution.reactions.with_motions(loads)
+        assert isinstance(all_loads, PinLoads)
+        return body(solution.uncut, solution.pieces, solution.first_clamp, all_loads, instant)

@@ -83,7 +83,7 @@ class LocalMesh:
     high: points, m, in the pin's frame, where stress was high on the meshes before; the mesh is
     finest there.
     bands: ends of the loaded bands of the pin that have cuts.
-    most: largest number of unknowns.
+    max_unknowns: largest number of unknowns.
     """
 
     piece: Piece
@@ -92,7 +92,7 @@ class LocalMesh:
     finer: LocalFineness
     high: Sequence[Point] = ()
     bands: Sequence[tuple[float, float]] = ()
-    most: float = math.inf
+    max_unknowns: float = math.inf
     memo: Memo = field(default_factory=Memo)
 
     @cached_property
@@ -105,9 +105,9 @@ class LocalMesh:
         spots: Spots = ()
         if self._here:
             spots = [point_of(x) for x in unmirrored(piece, np.array(self._here))]
-        mesh = piece_mesh(piece, finer.edges, spots, finer.spots, self.most)
-        held, loaded = _clamped(piece, self.clamps), bearings(piece, self.bands)
-        return LocalModel(piece, mesh, self.material, held, loaded, finer.spots)
+        mesh = piece_mesh(piece, finer.edges, spots, finer.spots, self.max_unknowns)
+        clamped, loaded = _clamped(piece, self.clamps), bearings(piece, self.bands)
+        return LocalModel(piece, mesh, self.material, clamped, loaded, finer.spots)
 
     @property
     def section_points(self) -> Floats:

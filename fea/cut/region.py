@@ -143,13 +143,13 @@ def pieces(
     clamps: tuple[str, ...],
     beyond: float = PIECE_REACH,
     bands: Sequence[tuple[float, float]] = (),
-    apart: float = 1.0,
+    spacing: float = 1.0,
 ) -> tuple[Piece, ...]:
     """The pieces along the pin, each about one cut or several cuts that are close to each other.
 
     beyond: length of a piece beyond its cuts, of the diameter.
     bands: ends of the loaded bands that have cuts (loaded_bands).
-    apart: factor of the usual distance up to which cuts share a piece.
+    spacing: factor of the usual distance up to which cuts share a piece.
     """
     cuts = sorted(pin.cuts.items(), key=lambda named: named[1].extent)
     groups = [dict(cuts[:1])]
@@ -157,7 +157,7 @@ def pieces(
         (low, high), end = cut.extent, _ends(groups[-1].values())[1]
         # Cuts are merged if the gap to the group before is short, in proportion to the piece's
         # reach.
-        near = MERGE_DISTANCE * apart * beyond / PIECE_REACH
+        near = MERGE_DISTANCE * spacing * beyond / PIECE_REACH
         if low - end < near * _diameter(pin.profile, min(end, low), high):
             groups[-1][name] = cut
         else:
@@ -189,8 +189,8 @@ def _piece(
     angle, mirrors = _about(pin, list(cuts.values()))
     middle = 0.5 * (low + high)
     half = max(middle - z0, z1 - middle)
-    held = [surface_ends(CutPin(pin), name) for name in clamps]
-    clamped = any(max(a - middle, middle - b) <= half + pin.tolerance for a, b in held)
+    clamp_ends = [surface_ends(CutPin(pin), name) for name in clamps]
+    clamped = any(max(a - middle, middle - b) <= half + pin.tolerance for a, b in clamp_ends)
     parted = any(a < high and low < b and not (a < low and high < b) for a, b in bands)
     amid = [cut.moved(middle, angle) for cut in cuts.values()]
     if not clamped and not parted and _even(pin, middle, half) and _symmetric(pin, amid, "z"):

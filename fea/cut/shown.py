@@ -61,12 +61,12 @@ class ShownCut:
 
 
 def shown(
-    fields: MeridianFields, pieces: Sequence[LocalFields], held: ClampReaction | None
+    fields: MeridianFields, pieces: Sequence[LocalFields], first_clamp: ClampReaction | None
 ) -> ShownCut:
     """The whole surface of a cut pin.
 
     fields: of the pin without cuts.
-    held: the first clamp, which stays in place; without one, both ends of the axis stay on it.
+    first_clamp: stays in place; without a clamp, both ends of the axis stay on it.
     """
     between = [_instead_of_uncut(piece) for piece in pieces]
     uncut = _revolved(fields, pieces[0].units, between)
@@ -81,7 +81,7 @@ def shown(
         displacement[end:] += moved_by(piece, points[end:])
         displacement[start:end] += piece.displaced
     length = float(fields.points[:, 1].max())
-    displacement -= rigid(support_motion(pieces, held, length), points)
+    displacement -= rigid(support_motion(pieces, first_clamp, length), points)
     return ShownCut(
         points,
         np.concatenate([p.triangles + i for p, i in zip(parts, starts, strict=False)]),
@@ -125,14 +125,14 @@ def _piece(piece: LocalFields, ends: tuple[float, float]) -> ShownCut:
 
 
 def support_motion(
-    pieces: Sequence[LocalFields], held: ClampReaction | None, length: float
+    pieces: Sequence[LocalFields], first_clamp: ClampReaction | None, length: float
 ) -> Floats:
     """The rigid-body motion (6, L) of the support that all cuts cause, which is subtracted.
 
     length: m, of the pin.
     """
     whole = np.sum([p.moved[1] - p.moved[0] for p in pieces], axis=0)
-    return reached(held, pieces) if held else axis_kept(whole, length)
+    return reached(first_clamp, pieces) if first_clamp else axis_kept(whole, length)
 
 
 def moved_by(piece: LocalFields, points: Floats) -> Floats:

@@ -77,7 +77,7 @@ class ClampMotions:
     motions: tuple[Unit, ...]
     amounts: Floats
 
-    def held(self, loads: Loads) -> Loads:
+    def with_motions(self, loads: Loads) -> Loads:
         """The loads together with the motions of clamps that they cause."""
         if not self.motions:
             return loads

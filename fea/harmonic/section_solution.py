@@ -71,7 +71,7 @@ class SectionProblem:
 
     singularities: those of any of the cases.
     first: solves the first mesh where contact pressures act.
-    besides: additional unit loads to be solved.
+    extra_loads: additional unit loads to be solved.
     memo: a store of meshes and unit fields, shared with other problems.
     """
 
@@ -81,7 +81,7 @@ class SectionProblem:
     cases: tuple[PinLoads, ...]
     singularities: tuple[Zone, ...]
     first: FirstMesh | None = None
-    besides: tuple[UnitLoad, ...] = ()
+    extra_loads: tuple[UnitLoad, ...] = ()
     memo: Memo | None = None
 
 
@@ -116,7 +116,7 @@ def harmonic_solution(
     finer = [*grades, *(_at_high_stress(pin, spots, ratio**level, place) for place in high)]
     factor = ratio ** (level * LOW_STRESS_POWER if high else level)
 
-    loads = _unit_loads(cases) + problem.besides
+    loads = _unit_loads(cases) + problem.extra_loads
     rings = tuple(dict.fromkeys(name for load in loads for name, _ in load.parts))
     finer += finer_at_rings(pin, rings)
     ends = _ends(pin, problem.clamps, loads)
@@ -131,14 +131,16 @@ def harmonic_solution(
     elif quiet:
         nu, coarse = material.poisson_ratio, solved(FIRST_MESH_SIZE, [], quiet)
         quiet = low_stress_fillets(pin, coarse, cases, singularities, nu)
-    fields, more = _apart(solved(FIRST_MESH_SIZE.finer(factor), finer, quiet), len(elsewhere))
-    return HarmonicSolution(fields, close, material.poisson_ratio, ends, quiet, more)
+    fields, stress_elsewhere = _without_extra(
+        solved(FIRST_MESH_SIZE.finer(factor), finer, quiet), len(elsewhere)
+    )
+    return HarmonicSolution(fields, close, material.poisson_ratio, ends, quiet, stress_elsewhere)
 
 
 def _unit_fields(
     problem: SectionProblem,
     first: FirstMesh | None,
-    asked: tuple[tuple[UnitLoad, ...], Floats, tuple[tuple[float, float], ...]],
+    request: tuple[tuple[UnitLoad, ...], Floats, tuple[tuple[float, float], ...]],
     places: tuple[Spot, ...],
     size: SectionSize,
     grades: list[Grade],
@@ -147,10 +149,10 @@ def _unit_fields(
     """The unit fields on a mesh, solved once for each mesh and set of loads.
 
     first: the first mesh under contact pressures, which solves them; None on other meshes.
-    asked: the unit loads, the points at which stress is read, and the ends of pressures.
+    request: the unit loads, the points at which stress is read, and the ends of pressures.
     places, size, grades, quiet: arguments of the mesh.
     """
-    pin, material, (loads, read, ends) = problem.pin, problem.material, asked
+    pin, material, (loads, read, ends) = problem.pin, problem.material, request
 
     def model() -> HarmonicModel:
         section = meridian_mesh(pin, size, places, grades, quiet)
@@ -159,19 +161,19 @@ def _unit_fields(
     mesh = size, places, tuple(grades), quiet, read.tobytes(), ends
     key = pin, material.elastic_part, problem.clamps, *mesh
     if first is not None:
-        return first.fields(model, key, asked)
+        return first.fields(model, key, request)
     memo = problem.memo or Memo()
 
     def fields() -> MeridianFields:
         # Any change of load changes the patterns of pressure, but not the mesh: its model is kept.
         pressed = any(load.parts for load in loads)
         solved_before = memo.get(("model", *key), model) if pressed else model()
-        return solved_before.solve(*asked)
+        return solved_before.solve(*request)
 
     return memo.get(("fields", loads, *key), fields)
 
 
-def _apart(fields: MeridianFields, count: int) -> tuple[MeridianFields, Floats]:
+def _without_extra(fields: MeridianFields, count: int) -> tuple[MeridianFields, Floats]:
     """The fields without the additional points, and the stress at these.
 
     The additional points are the first `count` after those that have a displacement.

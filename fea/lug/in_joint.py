@@ -56,13 +56,13 @@ class _LoadedLug:
     """A lug on its band, whose stress under any pressures is superposed.
 
     rows: its rings among those of the pin.
-    of: the material of the pin, and the radii of its bore and of its band, m.
+    pin_section: the material of the pin, and the radii of its bore and of its band, m.
     length: (R,) m, of the rings.
     """
 
     lug: Lug
     rows: slice
-    of: tuple[Material, float, float]
+    pin_section: tuple[Material, float, float]
     eye: EyeStress
     length: Floats
     memo: Memo
@@ -72,7 +72,7 @@ class _LoadedLug:
 
         waves: (N + 1, T, rings of the pin, 2) Pa, harmonics of the pressures.
         """
-        around = 2.0 * math.pi * self.of[2] * self.length
+        around = 2.0 * math.pi * self.pin_section[2] * self.length
         return np.asarray(0.5 * np.einsum("trp,r->tp", waves[1][:, self.rows], around))
 
     def load(self, waves: Floats, angle: Floats, times: Floats | None) -> LugLoad:
@@ -118,9 +118,11 @@ class _LoadedLug:
         """
         for bushing in self.lug.pressed_bushings() or (None,):
             at = replace(self.lug, bushing=bushing, clearance=clearance)
-            bonded = partial(LugInPlane, at, *self.of, memo=self.memo)
+            bonded = partial(LugInPlane, at, *self.pin_section, memo=self.memo)
             pressed = bushing is not None and bushing.pressed
-            slipping = partial(SlippingBushing, at, *self.of, memo=self.memo) if pressed else None
+            slipping = (
+                partial(SlippingBushing, at, *self.pin_section, memo=self.memo) if pressed else None
+            )
             yield at, bonded, slipping
 
 
@@ -144,8 +146,9 @@ def lug_stresses(
             continue
         band = model.whole.band(lug.connection)
         inner = max(max(s.bores) for s in model.whole.segments if s.connection == lug.connection)
-        of = model.material, inner / 2.0, band.radius
-        loaded = _LoadedLug(lug, rows, of, _eye(contact, lug, ends, memo), np.diff(ends), memo)
+        pin_section = model.material, inner / 2.0, band.radius
+        eye = _eye(contact, lug, ends, memo)
+        loaded = _LoadedLug(lug, rows, pin_section, eye, np.diff(ends), memo)
         force = loaded.force(waves)
         if not force.any():
             continue

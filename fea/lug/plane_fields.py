@@ -291,13 +291,13 @@ class _Plane:
         # interface.
         force = loads - self._stiffness(only_bushing=True) @ u
         pushed = self._polar(circle, force)
-        traction = [_per_length(x, radius) for x in pushed]
+        traction = [_consistent_traction(x, radius) for x in pushed]
         return self._wall(
             circle, radius, u, -traction[0], -traction[1], self._constants(bushing=False)
         )
 
 
-def _per_length(forces: Floats, radius: float) -> Floats:
+def _consistent_traction(forces: Floats, radius: float) -> Floats:
     """The traction (K, P) whose quadratic interpolation has the nodal forces (K, P).
 
     The P nodes are corners and middles of elements in turn, beginning with a corner.
