@@ -164,9 +164,10 @@ class HarmonicBody:
 Forces = Mapping[int, tuple[Ints, Floats, Floats]]
 
 
-def shares(alone: Sequence[UnitLoad], loads: Sequence[UnitLoad]) -> Floats:
+def shares(on_single: Sequence[UnitLoad], loads: Sequence[UnitLoad]) -> Floats:
     """The amount (A, K) of each of A single-surface loads in each of K loads."""
-    number, out = {load: k for k, load in enumerate(alone)}, np.zeros((len(alone), len(loads)))
+    number = {load: k for k, load in enumerate(on_single)}
+    out = np.zeros((len(on_single), len(loads)))
     for k, load in enumerate(loads):
         for one, amount in load.single_surface_loads.items():
             out[number[one], k] = amount
@@ -260,8 +261,8 @@ class HarmonicModel(HarmonicBody):
 
     def _forces(self, loads: tuple[UnitLoad, ...]) -> Forces:
         harmonics = np.array([load.n for load in loads])
-        of = {n: np.flatnonzero(harmonics == n) for n in sorted(set(harmonics.tolist()))}
-        return {n: (here, *self._applied(n, [loads[k] for k in here])) for n, here in of.items()}
+        rows = {n: np.flatnonzero(harmonics == n) for n in sorted(set(harmonics.tolist()))}
+        return {n: (here, *self._applied(n, [loads[k] for k in here])) for n, here in rows.items()}
 
     def _applied(self, n: int, loads: list[UnitLoad]) -> tuple[Floats, Floats]:
         """The nodal forces (unknowns, K) and the tractions at the outline's nodes (E, 3, 3, K) of
@@ -309,20 +310,20 @@ def applied(
         forces = [generalised(outline.forces(part, n)) for part in parts]
         return np.stack(forces, axis=1), np.stack([outline.traction(p) for p in parts], axis=3)
 
-    alone = list(dict.fromkeys(one for load in loads for one in load.single_surface_loads))
+    on_single = list(dict.fromkeys(one for load in loads for one in load.single_surface_loads))
     # Loads on rings have the same tractions in all harmonics; only the integral around the axis
     # differs. So they are assembled once, for n = 0, and scaled.
-    alike = tuple(load._replace(n=0) for load in alone if load.parts and not load.fades)
-    if len(alike) < len(alone):
-        forces, tractions = spread([tractions_of(pin, load) for load in alone])
+    on_rings = tuple(load._replace(n=0) for load in on_single if load.parts and not load.fades)
+    if len(on_rings) < len(on_single):
+        forces, tractions = spread([tractions_of(pin, load) for load in on_single])
     else:
-        if alike not in outline.of_rings:
-            forces, tractions = spread([tractions_of(pin, load) for load in alike])
-            outline.of_rings = {alike: (forces / around(n), tractions)}
-        forces, tractions = (x.copy() for x in outline.of_rings[alike])
+        if on_rings not in outline.of_rings:
+            forces, tractions = spread([tractions_of(pin, load) for load in on_rings])
+            outline.of_rings = {on_rings: (forces / around(n), tractions)}
+        forces, tractions = (x.copy() for x in outline.of_rings[on_rings])
         forces *= around(n)
-    if alone != list(loads):
-        share = shares(alone, loads)
+    if on_single != list(loads):
+        share = shares(on_single, loads)
         forces = np.asarray(forces @ share, np.float64)
         tractions = np.asarray(tractions @ share, np.float64)
     for k, load in enumerate(loads):
@@ -338,10 +339,10 @@ def applied(
         here = [k for k, load in enumerate(loads) if load.shears == shears]
         phases = (0,) if n else (0, 1)
         closing = [c for p in phases for c in closing_tractions(pin, n, p, not shears)]
-        against, over = spread(closing)
-        closed = -np.linalg.solve(modes.T @ against, modes.T @ forces[:, here])
-        forces[:, here] += against @ closed
-        tractions[..., here] += over @ closed
+        on_unknowns, on_outline = spread(closing)
+        amounts = -np.linalg.solve(modes.T @ on_unknowns, modes.T @ forces[:, here])
+        forces[:, here] += on_unknowns @ amounts
+        tractions[..., here] += on_outline @ amounts
     return forces, tractions
 
 
