@@ -35,8 +35,8 @@ class ShownCut:
     triangles: (M, 3).
     stress: (P, 6, L) Pa.
     displacement: (P, 3, L) m.
-    read: (P,) the points that are searched for the maximum; of the pin between its pieces, zones
-    included.
+    read: (P,) the points that are searched for the maximum; between the pieces all points, also
+    those in zones.
     outline: (P,) the points on the outline of the pin without cuts.
     between: (U, 2) for the first U points, which lie on the pin between its pieces, the two points
     of its section between which each lies.

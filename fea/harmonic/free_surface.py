@@ -4,15 +4,15 @@ There are three kinds of points:
 
 - Points of the outline, on the part of the circumference that is free (fea.core.pressed).
 - Middles of rings, pressed or not. Their stress lacks the local stress of the pressure, which is -p
-along the pin, -p across the surface and -2 nu p around the axis, as in a half-plane under a
-pressure that changes little nearby. The remainder is the tension of a fibre that bends under its
-lug; the rest belongs to contact. These points are not read under the rounding of a lug's edge, nor
-on the outermost pressed ring beside it, since the steps of pressure there exceed the tension that
-is sought.
+  along the pin, -p across the surface and -2 nu p around the axis, as in a half-plane under a
+  pressure that changes little nearby. The remainder is the tension of a fibre that bends under its
+  lug; the rest belongs to contact. These points are not read under the rounding of a lug's edge,
+  nor on the outermost pressed ring beside it, since the steps of pressure there exceed the tension
+  that is sought.
 - Edges of lugs, seen from where the surface beside them is free. Stress there has a cusp, s_0 + a
-d^(1 - s) + b d^(2 - s) at the distance d, with s the exponent of pressure. It is extrapolated to d
-= 0 by these terms. Beside a fillet that begins too near for the fit (MIN_CUSP_SHARE), neither the
-edge is read nor the two lengths of the outermost ring next to it.
+  d^(1 - s) + b d^(2 - s) at the distance d, with s the exponent of pressure. It is extrapolated to
+  d = 0 by these terms. Beside a fillet that begins too near for the fit (MIN_CUSP_SHARE), neither
+  the edge nor the surface next to it (within two lengths of its outermost ring) is read.
 """
 
 from __future__ import annotations

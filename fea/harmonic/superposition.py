@@ -5,13 +5,13 @@ are:
 
 1. `reach`: the sum over unit loads of the most that each can cause at the point, a matrix product;
 2. `bound`: the sum over harmonics of the maximum of each. It is a bound since von Mises is a
-seminorm: the stress of a sum is at most the sum of the stresses;
+   seminorm: the stress of a sum is at most the sum of the stresses;
 3. `_tightened`: the LOW_HARMONICS lowest harmonics are sampled together, and only the maxima of the
-others are added;
+   others are added;
 4. `_near_anchors`: for loads that change little over many instants, which would otherwise all be
-evaluated. A few instants ("anchors") are sampled with all harmonics. The stress of another instant
-exceeds that of the nearest anchor by no more than what the difference of their loads can cause, by
-`reach`.
+   evaluated. A few instants ("anchors") are sampled with all harmonics. The stress of another
+   instant exceeds that of the nearest anchor by no more than what the difference of their loads can
+   cause, by `reach`.
 
 Pairs of a point and an instant that no bound rules out are evaluated (`largest_over_angle`). Points
 come in falling order of `reach`, so the search ends at the first batch that cannot exceed the
@@ -192,7 +192,7 @@ class Circumference(SuperposedStress):
 
     def _near_anchors(self, bound: Floats, points: Ints, beat: Floats | float) -> None:
         """Lower bounds (J, T), Pa, in place, to what the nearest anchor and the change of loads
-        since allow.
+        from it allow.
 
         beat: Pa, one for all instants or one (T,) for each; bounds that do not exceed it are left
         unchanged.
@@ -217,7 +217,7 @@ class Circumference(SuperposedStress):
     @cached_property
     def _anchors(self) -> tuple[Ints, Floats]:
         """The nearest anchor (T,) of every instant, and the change (K, T) of the unit loads'
-        amounts since it.
+        amounts from it.
 
         Each anchor is the instant whose loads differ most from those of all anchors before it.
         """
