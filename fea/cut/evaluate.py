@@ -61,7 +61,7 @@ def cut_solution(
     The arguments are those of fea.harmonic.section_solution.harmonic_solution, and:
     bands: ends of the loaded bands that have cuts (fea.cut.region.loaded_bands).
     distance: the excluded distance, as in fea.cut.inner_corners.
-    finer: fineness of the pieces, instead of that of the level.
+    finer: fineness of the pieces; by default that of the level.
     reused: fields of pieces that need no finer mesh.
     max_unknowns: largest number of unknowns of a piece.
 

@@ -200,7 +200,7 @@ class LocalFields:
         return float(np.sqrt(max(square.max(initial=0.0), 0.0)))
 
     def may_reach(self, loads: Loads, stress: float) -> bool:
-        """Whether finer meshes may find a stress, Pa, in this piece."""
+        """Whether the stress in this piece may reach a value, Pa, on finer meshes."""
         top = max(float(self.largest(loads)[0].max()), *(s.felt for s in self.inside(loads)), 0.0)
         return top * (1.0 + MAX_REFINED_RISE / self.finer**2) >= stress
 

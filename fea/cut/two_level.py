@@ -62,7 +62,8 @@ class TwoLevel:
         free: (3 N,) 0 for unknowns that are zero, else 1.
         held: unknowns of corner nodes that remove the remaining rigid-body motions, which need no
         force; they are zero on the coarse level alone.
-        tolerance: largest root of the residual's energy, of that of the largest forces.
+        tolerance: of the square root of the residual's energy, relative to that of the largest
+        forces.
         """
         free = free[:, None]
         on_coarse = free.copy()

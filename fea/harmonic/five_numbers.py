@@ -22,10 +22,10 @@ COSINE_COMPONENTS = np.array([True, True, True, False, True, False])
 
 @dataclass(frozen=True)
 class Numbers:
-    """The five numbers of K unit loads at points.
+    """The five numbers of K unit loads at S points.
 
     five: (S, 5, K) Pa.
-    reach: (S, K) Pa, the largest von Mises stress of each load by itself.
+    reach: (S, K) Pa, the largest von Mises stress of each load acting alone.
     """
 
     five: Floats

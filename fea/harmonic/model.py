@@ -304,6 +304,9 @@ def applied(
     n: the harmonic of all loads.
     integrals: of the shape functions of the moved section (Section.integrals); those of the model
     by default.
+
+    Raises: SolveError for a body load without a density, and for a pin with neither clamps nor
+    connections.
     """
 
     def spread(parts: Sequence[tuple[Traction, ...]]) -> tuple[Floats, Floats]:

@@ -1,6 +1,4 @@
-"""Unit fields of a body of revolution on one mesh of its section, which is fine where stress is
-high.
-"""
+"""Unit fields of a body of revolution on one mesh of its section, fine where stress is high."""
 
 from __future__ import annotations
 

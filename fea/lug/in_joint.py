@@ -138,8 +138,8 @@ def lug_stresses(
     """
     model, links = contact.model, contact.instants[case]
     waves, out = model.waves(contact.states(links)), list[LugStress]()
-    # The governing instant of a lug may differ from that of the pin: at that of the pin, the load
-    # on the lug may be small.
+    # The governing instant of a lug may differ from that of the pin, at which the load on the lug
+    # may be small.
     over = cache(lambda t: varied_pressures(model, contact.joined(links, t)))
     for rows, lug, ends in model.by_lug():
         if lug.shank is None:
