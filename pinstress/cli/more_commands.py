@@ -32,7 +32,7 @@ from pinstress.cli.streams import unneeded
 from pinstress.study.reading.errors import InputError, cannot_write
 
 JSON_OPTION = click.option("--json", "as_json", is_flag=True, help="Print JSON instead of text.")
-NEW_STUDIES = "pin_in_lugs.toml", "one_pin.toml"  # that init writes, the first to begin with
+NEW_STUDIES = "pin_in_lugs.toml", "one_pin.toml"  # studies that init writes; the first runs first
 
 
 @click.command(
@@ -51,7 +51,7 @@ def init(directory: Path, opens: bool) -> int:
     from reports.data.changes import as_argument
 
     target, *_ = targets = [directory / name for name in NEW_STUDIES]
-    if directory.suffix == ".toml":  # somebody takes it for the study's name
+    if directory.suffix == ".toml":  # the user takes the argument for the name of the study
         raise InputError(
             f"{directory}: name a folder; the studies are called {' and '.join(NEW_STUDIES)}",
             code="not-a-folder",

@@ -1,4 +1,4 @@
-"""The `sweep` command, which solves designs into a folder that keeps every batch and prints a
+"""The `sweep` command, which solves designs into a folder, stores every batch there, and prints a
 summary.
 """
 
@@ -50,7 +50,7 @@ SWEEP_FILES = (
     f"{DESIGNS_FILE}.partial",
     f"{DESIGNS_PAGE}.partial",
 )
-# In the folder of a sweep that was killed before it stated what it is
+# Entries of a folder whose sweep was killed before it wrote its identity
 BEGINNINGS = manifest.OWN_FILES | {f"{PARTS_FOLDER}/", f"{PARTS_FOLDER}/{IDENTITY_FILE}.partial"}
 
 
@@ -59,7 +59,7 @@ class Way:
     """Options for solving a sweep.
 
     jobs: number of processes on this machine, by default one for each core.
-    connection: to a cluster instead.
+    connection: to a cluster that solves the designs instead.
     resume: whether to resume the sweep in the folder.
     opens: whether to open the page.
     """
@@ -122,7 +122,7 @@ def _write(directory: Path, table: pa.Table) -> None:
 
 @contextmanager
 def _writing(directory: Path) -> Iterator[None]:
-    """Name the folder where it cannot be written, as on a full disk.
+    """Turn an error of writing, as on a full disk, into one that names the folder.
 
     Raises: InputError.
     """
@@ -137,8 +137,8 @@ def _writing(directory: Path) -> Iterator[None]:
 def _require_usable(directory: Path, parts: BatchFolder, resume: bool) -> None:
     """Check that a sweep can be written into a folder.
 
-    Raises: InputError for a folder with other files than those of a sweep, with a sweep that did
-    not end and is not to be resumed, or with none to resume.
+    Raises: InputError for a folder that contains files other than those of a sweep, an unfinished
+    sweep that is not to be resumed, or no sweep to resume.
     """
     if os.path.isdir(directory) and (link := manifest.first_link(directory)):
         raise InputError(
@@ -160,7 +160,7 @@ def _require_usable(directory: Path, parts: BatchFolder, resume: bool) -> None:
 
 
 def _mark(directory: Path, parts: BatchFolder) -> str:
-    """Return the file that a folder must have to be that of a sweep."""
+    """Return the file that a folder must contain to be that of a sweep."""
     if (parts.folder / IDENTITY_FILE).is_file():
         return f"{PARTS_FOLDER}/{IDENTITY_FILE}"
     only_begun = directory.is_dir() and manifest.entries(directory) <= BEGINNINGS
@@ -183,9 +183,9 @@ def _locked(directory: Path) -> Release:
 
 @contextmanager
 def _claimed(directory: Path, parts: BatchFolder, resume: bool) -> Iterator[None]:
-    """Create the folder, list it as ours, and lock it inside the block.
+    """Create the folder, write its manifest, and lock it inside the block.
 
-    Where no batch was solved, nothing is left of a sweep that was begun.
+    If no batch was solved, everything that a new sweep wrote is removed.
     """
     release: Release | None = None
     existed = os.path.exists(directory)
@@ -218,7 +218,7 @@ def progress(quiet: bool, alone: bool = True) -> Iterator[Report]:
     """Show a progress bar on stderr if it is a terminal, otherwise a line at intervals.
 
     alone: whether no process is forked inside the block, so that a thread may refresh the bar;
-    otherwise every call does.
+    otherwise every call refreshes it.
     """
     from rich import progress as rich
 
@@ -242,7 +242,7 @@ def progress(quiet: bool, alone: bool = True) -> Iterator[Report]:
 
 
 class _Lines:
-    """Progress where there is no terminal: a line every EVERY seconds."""
+    """Progress for an output that is not a terminal: a line every EVERY seconds."""
 
     EVERY = 30.0
 
