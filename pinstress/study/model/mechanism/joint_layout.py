@@ -18,9 +18,9 @@ class LayoutError(CodedError, ValueError):
 
 
 def places(mechanism: MechanismTable, show: Show) -> tuple[dict[str, Point], list[LayoutError]]:
-    """Return the position of every joint as drawn, m, and why joints have none.
+    """Return the position of every joint as drawn, m, and the errors of joints without a position.
 
-    Joints without a position are left out, as are those that are measured from them.
+    Joints without a position are left out, and so are joints measured from them.
 
     show: formats a length.
     """
