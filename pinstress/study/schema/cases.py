@@ -1,4 +1,4 @@
-"""The study file's form: cases, what loads the pins."""
+"""The schema of the study file: the load cases."""
 
 from typing import Annotated, Literal
 
@@ -236,14 +236,14 @@ class ApplyTable(StrictTable):
 
     @property
     def out_of_plane(self) -> bool:
-        """Whether it acts out of the plane: along z, about x or y, or at a stated z."""
+        """Whether the load acts out of the plane: along z, about x or y, or at a stated z."""
         impulse = None if self.impulse is None else self.impulse.direction
         along_z = any(any((d or [])[2:]) for d in (self.force, self.direction, impulse))
         return along_z or self.at_height or any(self.moments[:2])
 
     @property
     def at_height(self) -> bool:
-        """Whether the z of its point is stated."""
+        """Whether the z of the point of application is stated."""
         return self.at is not None and not isinstance(self.at, str) and len(self.at) > 2
 
 

@@ -1,4 +1,4 @@
-"""The study file's form: drives of a planar mechanism and the laws of their motion."""
+"""The schema of the study file: drives and the laws of their motion."""
 
 import math
 from typing import Annotated, ClassVar, Literal
@@ -8,7 +8,7 @@ from pydantic import model_validator
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.types import NOT_NEGATIVE, Angle, Duration, Length, StrictTable, Time
 
-MAX_TURNS = 1000  # each is followed in steps of 0.25 rad
+MAX_TURNS = 1000  # limit on work, since each turn is followed in steps of 0.25 rad
 
 
 class LawTable(StrictTable):
@@ -16,7 +16,7 @@ class LawTable(StrictTable):
     drive can only be used by cases that give its position.
     """
 
-    slides: ClassVar[bool]  # whether it has a length, instead of an angle
+    slides: ClassVar[bool]  # whether it drives a length, instead of an angle
 
     name: str | None = None
     """Name of the drive. Default: the name of its slider or body."""
@@ -118,8 +118,8 @@ class RotaryDrive(TurningDrive):
 
 
 def drive_name(drive: LawTable) -> str:
-    """Return the name of a drive: its slider, or its own name, or that of the body that it turns
-    or of the joint that it moves.
+    """Return the name of a drive: its slider, its own name, or the name of the body or joint that
+    it moves.
     """
     if isinstance(drive, SliderDrive):
         return drive.slider

@@ -1,4 +1,6 @@
-"""Keys of fatigue: the spectrum of a study, and the data of its materials."""
+"""The schema of the study file: the fatigue spectrum of a study, and the fatigue data of its
+materials.
+"""
 
 from typing import Annotated, Literal
 

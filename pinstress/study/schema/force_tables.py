@@ -1,4 +1,4 @@
-"""The study file's form: how a table of another program states forces."""
+"""The schema of the study file: tables of forces from other programs."""
 
 import math
 import re
@@ -31,7 +31,7 @@ from pinstress.study.schema.units import UNIT_SYSTEMS, to_si
 
 CONNECTIONS_ALIAS = "<connections>"  # in angle brackets, so that messages leave it out
 AXIS_NAMES = "x", "y", "z"
-MAX_AXES_ERROR = 1e-4  # of the products of rows of `axes`: numbers of four digits
+MAX_AXES_ERROR = 1e-4  # of products of the rows of `axes`, which may have four digits only
 
 JOINED_UNITS_PATTERN = re.compile(r"([kM]?N)([cm]?m)")  # Nm, kNmm
 HYPHEN_PATTERN = re.compile(r"(?<=[A-Za-z])-(?=[A-Za-z])")  # in-lbf
@@ -101,9 +101,9 @@ class ForceAxes(StrictTable):
 
 
 def matrix_of(axes: tuple[Any, Any, Any]) -> Matrix:
-    """Return (3, 3) the pin's axes in the table's, by row.
+    """Return (3, 3) the pin's axes in those of the table, as rows.
 
-    Raises: ArgumentError for a name that is not that of an axis.
+    Raises: ArgumentError for a name that is not an axis.
     """
     rows = []
     for axis in axes:
@@ -121,7 +121,7 @@ def matrix_of(axes: tuple[Any, Any, Any]) -> Matrix:
 
 
 def _require_rotation(rows: Matrix) -> None:
-    """Raises: ArgumentError unless the rows are right-handed unit vectors at right angles."""
+    """Raise ArgumentError unless the rows are right-handed unit vectors at right angles."""
     for i, one in enumerate(rows):
         for j, other in enumerate(rows):
             product = sum(p * q for p, q in zip(one, other, strict=True))
@@ -180,7 +180,7 @@ class TimeColumn(StrictTable):
 
 
 def _with_connections(schema: dict[str, Any], table: type[StrictTable]) -> None:
-    """Complete the JSON Schema of a table whose other keys are connections."""
+    """Complete the JSON Schema of a table whose other keys are the names of connections."""
     complete_schema(schema, table)
     connections = schema["properties"].pop(CONNECTIONS_ALIAS)
     words = {"description": connections["description"]}

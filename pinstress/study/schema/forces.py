@@ -1,4 +1,4 @@
-"""The study file's form: forces by a table, springs and dampers."""
+"""The schema of the study file: forces given by tables, springs and dampers."""
 
 from typing import Annotated, Literal
 

@@ -1,4 +1,4 @@
-"""The study file's form: gears and racks."""
+"""The schema of the study file: gears and racks."""
 
 import math
 from typing import Annotated
@@ -17,7 +17,7 @@ from pinstress.study.schema.types import (
     Whole,
 )
 
-Count = Annotated[Whole, Field(ge=1, le=100_000)]  # of teeth
+Count = Annotated[Whole, Field(ge=1, le=100_000)]  # number of teeth
 STANDARD_PRESSURE_ANGLE = math.radians(20.0)
 
 

@@ -1,4 +1,4 @@
-"""The study file's form: a landing as a drop, and ground loads by rule."""
+"""The schema of the study file: a landing as a drop, and ground loads by rule."""
 
 from typing import Annotated, Literal
 
@@ -164,7 +164,7 @@ class AtWheel(CaseTable):
 
     @property
     def joint(self) -> str:
-        """The joint at the axle, of a mechanism in a plane."""
+        """The joint at the axle, for a planar mechanism."""
         assert isinstance(self.at, str)
         return self.at
 
@@ -318,7 +318,7 @@ class GroundCase(AtWheel):
 
     @property
     def rules(self) -> tuple[str, ...]:
-        """The built-in rules of the case or, with a part, of its cases."""
+        """The built-in rules of the case or, with a part, of all its cases."""
         if self.part is not None:
             return RULES_OF_PART[self.part, "nose" if self.stands == "nose" else "main"]
         return (self.rule,) if self.rule is not None else ()

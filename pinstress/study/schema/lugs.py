@@ -1,4 +1,4 @@
-"""The study file's form: the lugs in which pins sit, and what all of them have in common."""
+"""The schema of the study file: the lugs in which pins sit, and defaults for all lugs."""
 
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal
@@ -168,7 +168,7 @@ def with_lug_defaults(raw: dict[str, Any]) -> dict[str, Any]:
     """Return a study's content in which every lug has the keys of `lug_defaults` that it omits, and
     pins that are not clamped have a lug at every connection.
 
-    raw: the content, not validated but for `lug_defaults`.
+    raw: the content, of which only `lug_defaults` is validated.
     """
     defaults, pins, cases = raw.get("lug_defaults"), raw.get("pin"), raw.get("case")
     if not isinstance(defaults, dict) or not isinstance(pins, dict):
@@ -194,7 +194,7 @@ def _in_lugs(pin: dict[str, Any], defaults: dict[str, Any], clamped: bool) -> di
 
 
 def _connections(pin: dict[str, Any]) -> Iterator[str]:
-    """Yield the connections of a pin that is not validated, in their order along it."""
+    """Yield the connections of a pin that is not validated, in their order along the pin."""
     segments, bands = pin.get("profile"), pin.get("band")
     for segment in segments if isinstance(segments, list) else ():
         if isinstance(segment, dict) and isinstance(segment.get("connection"), str):
@@ -205,10 +205,10 @@ def _connections(pin: dict[str, Any]) -> Iterator[str]:
 
 
 def _completed(lug: Any, defaults: dict[str, Any]) -> Any:
-    """Return a lug with the keys of the defaults that it omits, those of its own tables as well.
+    """Return a lug with the keys of the defaults that it omits, including keys of its inner tables.
 
-    Its own fit or clearance replaces what the defaults say of clearance, and likewise its bushing's
-    what they say of interference.
+    Its own fit or clearance replaces the clearance of the defaults, and the fit or interference of
+    its own bushing that of the defaults.
     """
     if not isinstance(lug, dict):
         return lug
@@ -226,9 +226,10 @@ def _completed(lug: Any, defaults: dict[str, Any]) -> Any:
 def _without_replaced(
     defaults: dict[str, Any], lug: dict[str, Any], key: str, table: str = ""
 ) -> dict[str, Any]:
-    """Return the defaults without those of a fit that a lug states itself.
+    """Return the defaults without the fit, and without the values that follow from a fit, that a
+    lug states itself.
 
-    key: what the fit gives. table: in which both are.
+    key: the value that a fit gives. table: the inner table that has both keys.
     """
     given, common = (x[table] if table else x for x in (lug, defaults))
     if "fit" in given or key in given:

@@ -1,4 +1,4 @@
-"""The study file's form: materials."""
+"""The schema of the study file: materials."""
 
 from itertools import pairwise
 from typing import Annotated

@@ -1,4 +1,4 @@
-"""The study file's form: the mechanism."""
+"""The schema of the study file: the mechanism."""
 
 from typing import Annotated, Any, Literal
 
@@ -117,7 +117,7 @@ class JointTable(StrictTable):
 
     @property
     def origins(self) -> tuple[str, ...]:
-        """The joints from which its position is measured."""
+        """The joints from which the position of the joint is measured."""
         if isinstance(self.at, Polar):
             return (self.at.origin,)
         return self.at.origins if isinstance(self.at, Dyad) else ()
@@ -139,7 +139,7 @@ class BarTable(StrictTable):
 
 
 def require_single_mass(mass: object, weight: object, bar: object, centre: object) -> None:
-    """Raise ArgumentError where two things give the mass of a body, or its centre."""
+    """Raise ArgumentError if two keys give the mass of a body, or two its centre."""
     if [mass, weight, bar].count(None) < 2:
         raise ArgumentError("give one of weight, mass or bar", "give-one")
     if bar is not None and centre is not None:

@@ -1,4 +1,4 @@
-"""The study file's form: pins."""
+"""The schema of the study file: pins."""
 
 from itertools import groupby
 from math import inf
@@ -72,12 +72,12 @@ class SegmentTable(StrictTable):
 
     @property
     def diameters(self) -> tuple[float, float]:
-        """The diameters at its start and far end, m."""
+        """The diameters at the start and the far end of the segment, m."""
         return self.diameter if isinstance(self.diameter, tuple) else (self.diameter,) * 2
 
     @property
     def bores(self) -> tuple[float, float]:
-        """The bores at its start and far end, m."""
+        """The bores at the start and the far end of the segment, m."""
         return self.bore if isinstance(self.bore, tuple) else (self.bore,) * 2
 
 
@@ -277,7 +277,7 @@ class PinTable(StrictTable):
     def diameters(self) -> tuple[float, ...]:
         """The diameters of the segments or corners in order, m; empty for a pin from a file.
 
-        Each is listed once where equal ones follow each other.
+        Successive equal diameters are listed once.
         """
         of_segments = (d for s in self.profile or () for d in s.diameters)
         of_corners = (2.0 * corner[1] for corner in self.meridian or ())
@@ -302,11 +302,13 @@ class PinTable(StrictTable):
 
     @property
     def ears(self) -> dict[str, str]:
-        """The name of the other ear, by connection, of links that are clevises."""
+        """The name of the second ear of each link that is a clevis, by the link's connection."""
         return {s.ear_of: s.name for s in self.profile or () if s.ear_of and s.name}
 
     @property
     def like_the_other(self) -> dict[str, str]:
-        """The connection, by the name of the other ear, where one lug is that of both ears."""
+        """The connection of the link, by the name of its second ear, if both ears share one lug
+        table.
+        """
         alike = ((ear, name) for name, ear in self.ears.items() if name in self.lug)
         return {ear: name for ear, name in alike if self.lug[ear] is self.lug[name]}

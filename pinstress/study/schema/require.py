@@ -33,5 +33,5 @@ class RequireTable(StrictTable):
 
 
 def level_of(table: RequireTable) -> RequiredLevel:
-    """Return the level of a requirement, that of its check by default."""
+    """Return the level of a requirement; by default that of its check."""
     return table.level or LEVELS_OF_CHECK[table.check][0]

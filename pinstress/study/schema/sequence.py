@@ -1,4 +1,4 @@
-"""The study file's form: cases one after the other."""
+"""The schema of the study file: sequences of cases."""
 
 from typing import Annotated
 

@@ -1,4 +1,4 @@
-"""The study file's form: what `pinstress size` may do to a pin and the eyes about it."""
+"""The schema of the study file: limits for `pinstress size` on a pin and the eyes about it."""
 
 from typing import Annotated, Literal
 

@@ -1,4 +1,4 @@
-"""The study file's form: a mechanism in space."""
+"""The schema of the study file: a mechanism in space."""
 
 import math
 from typing import Annotated, Any, Literal
@@ -36,9 +36,9 @@ from pinstress.study.schema.types import (
     Weight,
 )
 
-# Nearer to each other, the axes of a universal joint do not say which second axis was meant.
+# Axes of a universal joint closer to each other than this do not show which second axis was meant.
 MAX_COSINE_OF_SKEW = math.cos(math.radians(1.0))
-PLANAR_PARTS = {  # of a mechanism, and what stands for them in space
+PLANAR_PARTS = {  # parts of a planar mechanism, and their replacement in space
     "slider": 'use a joint of kind = "prismatic" between its two bodies',
     "point": "remove it: bodies.csv has the motion of every body",
 }
@@ -151,7 +151,9 @@ def _require_axes(joint: SpaceJointTable) -> None:
 
 
 def _depth_of(what: str) -> Any:
-    """Return the validator of a rectangular section, which must say where its depth is."""
+    """Return the validator of a rectangular section, which must state the direction of its
+    depth.
+    """
 
     def check(table: Any) -> None:
         section, along = table.section, table.depth_along
@@ -389,12 +391,12 @@ class SpaceMechanismTable(StrictTable):
 
 
 def drivable(joint: SpaceJointTable) -> list[str]:
-    """Return the connections of a joint that move on its pin: all but the first of a floating one,
-    in whose body it is fixed.
+    """Return the connections of a joint that move on its pin: all but the first of a floating pin,
+    which is fixed in the body of that connection.
     """
     return list(joint.connections)[joint.fixed_in is None :]
 
 
 def has_motion(kind: Kind, slides: bool) -> bool:
-    """Return whether joints of a kind have a travel, or else an angle."""
+    """Return whether joints of a kind have a travel (if `slides`) or an angle."""
     return KINDS[kind].travel if slides else KINDS[kind].angle

@@ -1,4 +1,4 @@
-"""The study file's form: every table and key, with its unit, domain and description."""
+"""The schema of the study file: every table and key, with its unit, domain and description."""
 
 import datetime
 from typing import Annotated, Any, Literal
@@ -43,7 +43,9 @@ from pinstress.study.schema.vary import ReliabilityTable, VaryTable
 
 
 def _plane_or_space(value: object) -> str:
-    """The tag of a mechanism by its dimension; where that is neither 2 nor 3, by its points."""
+    """The tag of a mechanism by its dimension; if that is neither 2 nor 3, by the coordinates of
+    its points.
+    """
     dimension = value.get("dimension", 2) if isinstance(value, dict) else 2
     if not isinstance(value, dict) or dimension in (2, 3):
         return "<space>" if dimension == 3 else "<plane>"
@@ -136,7 +138,7 @@ class AnalysisTable(StrictTable):
 
     @property
     def codes(self) -> tuple[Code, ...]:
-        """The sets of checks that are made, each once."""
+        """The chosen sets of checks, each once."""
         return (self.code,) if isinstance(self.code, str) else tuple(dict.fromkeys(self.code))
 
     @model_validator(mode="after")
@@ -193,7 +195,9 @@ class PublishedTable(StrictTable):
 
 
 def _date(value: object) -> object:
-    """Return a date as it is, or as a text; pydantic takes numbers for seconds since 1970."""
+    """Return a date that is given as a date or as text. Numbers are rejected: pydantic would read
+    them as seconds since 1970.
+    """
     text = value.isoformat() if type(value) is datetime.date else value
     try:
         return datetime.date.fromisoformat(text if isinstance(text, str) else "")
@@ -283,7 +287,7 @@ class StudyTable(StrictTable):
         try:
             LugTable.model_validate(data["lug_defaults"], context=info.context)
         except ValidationError:
-            return data  # its mistakes are reported there, once
+            return data  # the errors of lug_defaults are reported once, for that table
         return with_lug_defaults(data)
 
     @field_validator("case", mode="before")

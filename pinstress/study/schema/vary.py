@@ -1,4 +1,4 @@
-"""The study file's form: numbers of the study that vary, for `sweep` and `reliability`."""
+"""The schema of the study file: numbers of the study that vary, for `sweep` and `reliability`."""
 
 from typing import Annotated, Literal
 
