@@ -1,4 +1,4 @@
-"""Cache of earlier solutions: a folder of files, each named by the SHA-256 of everything on which
+"""Cache of earlier solutions in a folder of files, each named by the SHA-256 of everything on which
 its content depends.
 
 A file consists of a signature line, the hash of its own name and content, and the content

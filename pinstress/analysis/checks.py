@@ -1,4 +1,4 @@
-"""Optional checks of a study: a cantilever against beam theory, a motion against a closed form."""
+"""Optional comparisons of a cantilever with beam theory, and of a motion with a closed form."""
 
 from __future__ import annotations
 

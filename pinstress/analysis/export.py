@@ -1,5 +1,5 @@
-"""Input decks for a reviewer: a row's pin at the governing instant, headed by the expected
-numbers.
+"""Input decks for a reviewer, with a row's pin at the governing instant and the expected numbers at
+the head.
 """
 
 from __future__ import annotations

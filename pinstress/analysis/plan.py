@@ -1,4 +1,4 @@
-"""Plan of an analysis: the tasks to solve, after every input has been read and checked."""
+"""Plan of an analysis with its tasks, made after every input has been read and checked."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The `chart` command: solves all meshes, writes the output folder, prints the table."""
+"""The `chart` command, which solves all meshes, writes the output folder and prints the table."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The `curve` command: plots factors of safety against one number, and writes a table."""
+"""The `curve` command, which plots factors of safety against one number and writes a table."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The `export` command: writes the input deck of one row for a reviewer."""
+"""The `export` command, which writes the input deck of one row for a reviewer."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""The command `size --least-weight`: finds the lightest pins that reach a factor, and writes the
-new study.
+"""The command `size --least-weight`, which finds the lightest pins that reach a factor and writes
+the new study.
 """
 
 from __future__ import annotations

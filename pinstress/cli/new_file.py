@@ -1,5 +1,5 @@
-"""Files that the user names: an existing one is never overwritten without permission, except a file
-of JUnit results.
+"""Files that the user names, none of which is overwritten without permission, except a file of
+JUnit results.
 """
 
 from __future__ import annotations

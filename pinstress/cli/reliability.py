@@ -1,4 +1,6 @@
-"""The `reliability` command: samples the designs, writes the output folder, prints the table."""
+"""The `reliability` command, which samples the designs, writes the output folder and prints the
+table.
+"""
 
 from __future__ import annotations
 

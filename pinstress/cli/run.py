@@ -1,4 +1,4 @@
-"""The `run` command: analyse, write the output folder, print the table."""
+"""The `run` command, which analyses a study, writes the output folder and prints the table."""
 
 from __future__ import annotations
 

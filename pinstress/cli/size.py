@@ -1,4 +1,6 @@
-"""The `size` command: sizes every pin and writes the new study, each pin as soon as it is sized."""
+"""The `size` command, which sizes every pin and writes the new study, each pin as soon as it is
+sized.
+"""
 
 from __future__ import annotations
 

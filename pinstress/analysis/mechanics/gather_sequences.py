@@ -1,5 +1,5 @@
-"""Sequences: load cases one after the other on one time axis, joined from their results without a
-new solution.
+"""Sequences of load cases on one time axis, joined from the results of the cases without a new
+solution.
 """
 
 from __future__ import annotations

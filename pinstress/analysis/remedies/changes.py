@@ -1,5 +1,4 @@
-"""Changes by which a pin reaches its factor of safety: more strength, larger diameters, or less
-load.
+"""Changes by which a pin reaches its factor of safety, in strength, diameters or loads.
 
 Stress is proportional to the loads and, in a linear-elastic pin, does not depend on the strength.
 An impulse acts together with the other loads, so its permissible time is found by superposing the

@@ -1,5 +1,5 @@
-"""Sensitivities of a pin's factor of safety: derivatives with respect to dimensions, loads and
-material.
+"""Sensitivities of a pin's factor of safety, i.e. its derivatives with respect to dimensions, loads
+and material.
 
 They are derivatives of the stress that the row reports: of the section's where it governs,
 otherwise of the surface's on its own mesh (assess.derivatives). For a beam, the derivatives on the

@@ -1,4 +1,4 @@
-"""Links with two ears: the load of a link as loads on the bands on which its ears bear.
+"""Links with two ears, whose load is divided into loads on the bands on which the ears bear.
 
 A force across the axis acts midway between the ears, which share it. A moment across the axis is a
 couple of forces on the ears, by statics. A force along the axis acts on the ear on the side towards

@@ -1,4 +1,4 @@
-"""The sequences of a study: their cases, and the time at which each begins."""
+"""The sequences of a study, with their cases and the time at which each begins."""
 
 from __future__ import annotations
 

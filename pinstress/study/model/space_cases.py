@@ -1,4 +1,4 @@
-"""Cases of a linkage in space: forces and moments on its pins, in pin axes."""
+"""Cases of a linkage in space, solved for the forces and moments on its pins in pin axes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tasks to solve: each pin, its constraints, and its loads in every case."""
+"""Tasks to solve, each a pin with its constraints and its loads in every case."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""Warnings about stated weights: of floating pins, compared with their shapes, and in a gravity
-that is not the earth's.
+"""Warnings about stated weights of floating pins that differ from those of their shapes, and about
+stated weights in a gravity that is not the earth's.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The content of a study: its tables, in SI units, and all its errors at once."""
+"""The content of a study with its tables in SI units, and all its errors at once."""
 
 from __future__ import annotations
 

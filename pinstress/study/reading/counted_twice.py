@@ -1,4 +1,4 @@
-"""Factors that a study gives twice: in its required safety factor, and for its margins.
+"""Factors that a study gives twice, in its required safety factor and for its margins.
 
 The required factor compares yield with the stress under the loads of the study as they are. Limit,
 ultimate and fitting factors multiply these loads in the margins of safety. A study whose required

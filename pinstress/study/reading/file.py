@@ -1,4 +1,4 @@
-"""Reading of a study file: TOML, validated, in SI units, with every cross-reference checked."""
+"""Reading of a study file into validated tables in SI units, with every cross-reference checked."""
 
 from __future__ import annotations
 

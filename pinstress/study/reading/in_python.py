@@ -1,4 +1,4 @@
-"""Studies built in Python: from tables with the keys of a study file, and from another study."""
+"""Studies built in Python from tables with the keys of a study file, or from another study."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Materials that a study names without defining them: from a file of the user, or from the library
+"""Materials that a study names without defining them, from a file of the user or from the library
 that ships with the program.
 
 A file of materials has tables [material.NAME] like those of a study, whose quantities have units.

@@ -1,5 +1,5 @@
-"""Possible mistakes in the numbers of a study: values that are allowed but unusual, mostly because
-of a wrong unit.
+"""Possible mistakes in the numbers of a study, which are allowed but unusual, mostly because of a
+wrong unit.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""References by name within a study: each must refer to something that exists."""
+"""References by name within a study, each of which must refer to something that exists."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The schema of the study file: the load cases."""
+"""Keys of the load cases in a study file."""
 
 from typing import Annotated, Literal
 

@@ -1,4 +1,4 @@
-"""The schema of the study file: drives and the laws of their motion."""
+"""Keys of drives and of the laws of their motion in a study file."""
 
 import math
 from typing import Annotated, ClassVar, Literal

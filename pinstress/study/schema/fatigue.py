@@ -1,6 +1,4 @@
-"""The schema of the study file: the fatigue spectrum of a study, and the fatigue data of its
-materials.
-"""
+"""Keys of the fatigue spectrum and of the fatigue data of materials in a study file."""
 
 from typing import Annotated, Literal
 

@@ -1,4 +1,4 @@
-"""The schema of the study file: tables of forces from other programs."""
+"""Keys in a study file that describe tables of forces from other programs."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""The schema of the study file: forces given by tables, springs and dampers."""
+"""Keys of forces given by tables, of springs and of dampers in a study file."""
 
 from typing import Annotated, Literal
 

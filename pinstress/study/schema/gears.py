@@ -1,4 +1,4 @@
-"""The schema of the study file: gears and racks."""
+"""Keys of gears and racks in a study file."""
 
 import math
 from typing import Annotated

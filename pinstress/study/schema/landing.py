@@ -1,4 +1,4 @@
-"""The schema of the study file: a landing as a drop, and ground loads by rule."""
+"""Keys of a landing as a drop, and of ground loads by rule, in a study file."""
 
 from typing import Annotated, Literal
 

@@ -1,4 +1,4 @@
-"""The schema of the study file: the lugs in which pins sit, and defaults for all lugs."""
+"""Keys of the lugs in which pins sit in a study file, and their common defaults."""
 
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal

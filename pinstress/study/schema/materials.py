@@ -1,4 +1,4 @@
-"""The schema of the study file: materials."""
+"""Keys of materials in a study file."""
 
 from itertools import pairwise
 from typing import Annotated

@@ -1,4 +1,4 @@
-"""The schema of the study file: the mechanism."""
+"""Keys of a planar mechanism in a study file."""
 
 from typing import Annotated, Any, Literal
 

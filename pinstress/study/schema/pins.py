@@ -1,4 +1,4 @@
-"""The schema of the study file: pins."""
+"""Keys of pins in a study file."""
 
 from itertools import groupby
 from math import inf

@@ -1,4 +1,4 @@
-"""The tables [[require]] of a study: factors that checks of pins must reach."""
+"""Keys of [[require]] in a study file, which states factors that checks of pins must reach."""
 
 from typing import Annotated
 

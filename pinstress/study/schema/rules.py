@@ -1,6 +1,4 @@
-"""Rules of the study file's schema on keys of a table that belong together or exclude each
-other.
-"""
+"""Rules on keys of a table of the study file that belong together or exclude each other."""
 
 from collections.abc import Callable
 from typing import Any

@@ -1,4 +1,4 @@
-"""The schema of the study file: sequences of cases."""
+"""Keys of sequences of cases in a study file."""
 
 from typing import Annotated
 

@@ -1,4 +1,4 @@
-"""The schema of the study file: limits for `pinstress size` on a pin and the eyes about it."""
+"""Keys of the limits for `pinstress size` in a study file."""
 
 from typing import Annotated, Literal
 

@@ -1,4 +1,4 @@
-"""The schema of the study file: a mechanism in space."""
+"""Keys of a mechanism in space in a study file."""
 
 import math
 from typing import Annotated, Any, Literal

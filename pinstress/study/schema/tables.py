@@ -1,4 +1,4 @@
-"""The schema of the study file: every table and key, with its unit, domain and description."""
+"""Tables of a study file, with the unit, domain and description of every key."""
 
 import datetime
 from typing import Annotated, Any, Literal

@@ -1,4 +1,5 @@
-"""The vocabulary of the study file: quantities with units, names, tables that reject unknown keys.
+"""Types of the values in a study file, i.e. quantities with units, names, and tables that reject
+unknown keys.
 
 The JSON Schema, for editors and for the reference in the documentation, states the `dimension` and
 `domain` of every quantity and the description of every key, which is the string below the key in

@@ -1,4 +1,4 @@
-"""Units: numbers of a study are converted to SI units, which are used everywhere inside the
+"""Conversion of numbers from a study's units to SI units, which are used everywhere inside the
 program.
 """
 

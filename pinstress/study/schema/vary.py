@@ -1,4 +1,4 @@
-"""The schema of the study file: numbers of the study that vary, for `sweep` and `reliability`."""
+"""Keys in a study file of numbers that vary, for `sweep` and `reliability`."""
 
 from typing import Annotated, Literal
 

@@ -1,4 +1,4 @@
-"""The mechanism as drawn: the positions of its joints, and the bodies on them."""
+"""The mechanism as drawn, with the positions of its joints and the bodies on them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Positions of the joints as drawn: coordinates, or distances from other joints."""
+"""Positions of the joints as drawn, given by coordinates or by distances from other joints."""
 
 from __future__ import annotations
 

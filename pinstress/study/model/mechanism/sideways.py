@@ -1,4 +1,4 @@
-"""Loads of a case out of the plane of its mechanism: the positions and the stiffness of the
+"""Loads of a case out of the plane of its mechanism, with the positions and the stiffness of the
 links.
 """
 

@@ -1,4 +1,4 @@
-"""Bodies of a study's mechanism in space: their masses, centres and inertia."""
+"""Bodies of a study's mechanism in space, with their masses, centres and inertia."""
 
 from __future__ import annotations
 
