@@ -53,7 +53,7 @@ class LawTable(StrictTable):
 
 
 class SlidingDrive(LawTable):
-    """Keys of all drives of a length."""
+    """Keys of all drives that change a length."""
 
     start: Length | None = None
     """Length, travel or distance at the start."""
@@ -66,7 +66,7 @@ class SlidingDrive(LawTable):
 
 
 class TurningDrive(LawTable):
-    """Keys of all drives of an angle."""
+    """Keys of all drives that change an angle."""
 
     start: Angle | None = None
     """Angle at the start."""
@@ -92,8 +92,8 @@ class SliderDrive(SlidingDrive):
 
 class RotaryDrive(TurningDrive):
     """A drive of a body's angle: the direction of a line between two of its joints,
-    counter-clockwise from x or, for a drive between two bodies, from a line of the other; without
-    a line what the body has turned since the drawing.
+    counter-clockwise from x or, for a drive between two bodies, from a line of the other; without a
+    line, the rotation of the body since the drawing.
     """
 
     body: str

@@ -87,11 +87,12 @@ class ForceAxes(StrictTable):
     moment_unit: Annotated[str, _unit_of("moment")] | None = None
     """Unit of the moments, where the file does not state it."""
     axes: Axes | None = None
-    """The pin's axes x, y, z in those of the table, for instance ["x", "-z", "y"] where the pin
-    points along y of the table; or by their components, three rows of three numbers. Both are
-    right-handed."""
+    """The pin's axes x, y, z in terms of the table's axes, for instance ["x", "-z", "y"] if the pin
+    points along y of the table; or by their components, three rows of three numbers. Both systems
+    are right-handed."""
     acts_on: Literal["pin", "link"] | None = None
-    """What the forces and moments act on: the pin (default), or the link, which reverses them."""
+    """The body on which the forces and moments act: the pin (default), or the link, which reverses
+    their signs."""
 
     @model_validator(mode="after")
     def _right_handed(self) -> "ForceAxes":
@@ -137,8 +138,8 @@ def _require_rotation(rows: Matrix) -> None:
 
 
 class JointColumns(ForceAxes):
-    """The columns of a connection's force and moment: headers, or numbers from 1; with a minus
-    before it where the sign is the opposite.
+    """The columns of a connection's force and moment: headers, or numbers from 1; with a minus sign
+    in front if the sign is opposite.
     """
 
     fx: Column | None = None
@@ -201,7 +202,7 @@ class TableFile(ForceAxes):
     header_line: Annotated[Whole, Field(ge=1, le=1_000_000)] | None = None
     """Line of the header (row of a sheet), where lines precede it that are not comments."""
     separator: Literal[",", ";", "tab", "blank"] | None = None
-    """What separates columns. Default: the first of ; tab , blank that the header has."""
+    """Separator of the columns. Default: the first of ; tab , blank that the header contains."""
     decimal: Literal[".", ","] | None = None
     """The decimal sign, where the file does not show it; the other one then separates thousands."""
     encoding: Literal["utf-8", "utf-16-le", "utf-16-be", "cp1252"] | None = None

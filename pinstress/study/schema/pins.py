@@ -47,7 +47,7 @@ class SegmentTable(StrictTable):
     """Radius to which the edge of the outer surface at the far end is rounded; [a, b] at its start
     and at its far end."""
     bore_radius: NotNegativeAtEnds = 0.0
-    """The same of the corners of the bore, inner ones too."""
+    """The same for the corners of the bore, including inner corners."""
     hardened: HardenedTable | None = None
     """Hardened outer surface of this segment. Default: that of the pin or its material."""
 
@@ -144,7 +144,7 @@ class SlotTable(StrictTable):
     """A keyway or slot along the pin."""
 
     z: tuple[Length, Length]
-    """Start and end along the pin, with the round ends; open where that is not inside the pin."""
+    """Start and end along the pin, including the round ends; an end outside the pin is open."""
     width: PositiveLength
     """Width across the pin."""
     depth: PositiveLength | None = None
@@ -158,7 +158,7 @@ class SlotTable(StrictTable):
 
 
 class PassageTable(BottomTable):
-    """A hole along the pin, on its axis or beside it."""
+    """A hole along the pin, on its axis or parallel to it."""
 
     end: Literal["start", "end"] = "start"
     """End face from which it is drilled."""
@@ -170,7 +170,7 @@ class BandTable(StrictTable):
     """A band of a pin from a file. Give either `z` or `surface`."""
 
     z: tuple[Length, Length] | None = None
-    """The outermost surface between these two z of the file."""
+    """The outermost surface between two z of the file."""
     surface: str | None = None
     """The surface of this name in the file."""
     connection: Switch = True
@@ -205,7 +205,7 @@ class PinTable(StrictTable):
     """Instead of a profile: the outline from z = 0 to the far end by its corners, [z, r] or
     [z, r, radius to which the corner is rounded], r being half the diameter."""
     bore_meridian: Corners | None = None
-    """The same of the bore. Default: solid. Only with `meridian`."""
+    """The outline of the bore in the same form. Default: solid. Only with `meridian`."""
     fillet: NotNegativeLength = 0.0
     """Radius at every inner corner of the shaft, tangent to the thinner shaft and to the shoulder
     face; 0 is sharp. Only with a profile."""
@@ -230,8 +230,8 @@ class PinTable(StrictTable):
     """Whether `lug_defaults` gives this pin a lug at every connection; it does so for no pin that
     is clamped, in a case or in all."""
     balance: str | None = None
-    """Connection whose force in cases of given forces is minus the sum of the others, and whose
-    torque about the axis likewise; such cases do not state it. For forces that scatter
+    """Connection whose force, in cases of given forces, is minus the sum of the others, and
+    likewise its torque about the axis; such cases do not state it. Useful for forces that scatter
     independently. Default: the cases state all forces."""
     hardened: HardenedTable | None = None
     """Hardened outer surface of all segments. Default: that of its material. Not with `geometry`,
@@ -240,8 +240,8 @@ class PinTable(StrictTable):
     """Whether the pin is meant to be replaced; then EN 1993-1-8, 3.13 limits bearing, bending and
     contact stress at limit load, too."""
     bending_factor: Annotated[Number, Field(gt=0.0)] | None = None
-    """Bending stress Mc/I at rupture over the ultimate strength of the material, off a figure, for
-    the code "aircraft". Default: by Cozzone, from the material's `ultimate_strain`."""
+    """Bending stress Mc/I at rupture over the ultimate strength of the material, read from a
+    figure, for the code "aircraft". Default: by Cozzone, from the material's `ultimate_strain`."""
     clamp: list[str] = []
     """Clamped surfaces: "start" and "end" (the end faces), the name or connection of a segment (its
     outer surface), "hole 1", "flat 1", "slot 1", "passage 1", or a band. Default: none; forces and

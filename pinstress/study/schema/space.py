@@ -177,8 +177,8 @@ class SpaceBarTable(BarTable):
 
 
 class SpaceLinkStiffnessTable(LinkStiffnessTable):
-    """The section of a link, for its stiffness where joints are redundant; of a `bar` it is that of
-    the bar.
+    """The section of a link, for its stiffness where joints are redundant. A `bar` has its own
+    section by default.
     """
 
     section: tuple[PositiveLength, PositiveLength] | None = None
@@ -206,7 +206,7 @@ class SpaceBodyTable(StrictTable):
     inertia: Annotated[list[SignedInertia], Field(min_length=3, max_length=6)] | None = None
     """Inertia about the centre of mass along the world's axes as drawn: [xx, yy, zz] or [xx, yy,
     zz, xy, xz, yz], the entries of the tensor, so that xy is minus the integral of x y dm. Default:
-    that of the bar; without a bar none, the body's mass being in its centre."""
+    that of the bar; without a bar, none: the mass is at the centre."""
     welded_to: str | None = None
     """Body, or "ground", to which it is fixed."""
 
@@ -240,7 +240,7 @@ class AngleDrive(TurningDrive):
     joint: str
     """The joint."""
     connection: str | None = None
-    """The driven one of its connections. Default: the only one that moves on the pin."""
+    """The connection that is driven. Default: the only one that moves on the pin."""
 
 
 class TravelDrive(SlidingDrive):
@@ -251,7 +251,7 @@ class TravelDrive(SlidingDrive):
     slide: str
     """The joint."""
     connection: str | None = None
-    """The driven one of its connections. Default: the only one that moves on the pin."""
+    """The connection that is driven. Default: the only one that moves on the pin."""
 
 
 class LengthDrive(SlidingDrive):
@@ -315,7 +315,7 @@ class SpaceTorsionSpringTable(TorsionLawTable):
     joint: str
     """The joint."""
     connection: str | None = None
-    """Which of its connections. Default: the only one that moves on the pin."""
+    """The connection concerned. Default: the only one that moves on the pin."""
 
 
 class SpaceStopTable(StrictTable):
@@ -329,7 +329,7 @@ class SpaceStopTable(StrictTable):
     slide: str | None = None
     """The prismatic or cylindrical joint whose travel it keeps."""
     connection: str | None = None
-    """Which of its connections. Default: the only one that moves on the pin."""
+    """The connection concerned. Default: the only one that moves on the pin."""
     between: tuple[JointOrPoint3, JointOrPoint3] | None = None
     """The points of two bodies whose distance it keeps, joints or [x, y, z]; pins are not loaded at
     these joints."""
@@ -362,9 +362,9 @@ class SpaceMechanismTable(StrictTable):
     """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom; none
     for a structure, and where `hold` names the locks of every case."""
     gear: dict[str, SpaceGearTable] = {}
-    """Pairs of gears by name, which is also that of the force between their teeth."""
+    """Pairs of gears by name, which is also the name of the force between their teeth."""
     rack: dict[str, SpaceRackTable] = {}
-    """Racks with their gears by name, which is also that of the force between their teeth."""
+    """Racks with their gears by name, which is also the name of the force between their teeth."""
     stop: dict[str, SpaceStopTable] = {}
     """Stops and locks by name."""
     spring: dict[str, SpaceSpringTable] = {}
@@ -375,9 +375,9 @@ class SpaceMechanismTable(StrictTable):
     """Redundant connections, and how they share their load (default: by the stiffness of links);
     and drives in parallel."""
     link_stiffness: dict[str, SpaceLinkStiffnessTable] = {}
-    """Sections of links, by body, by which they share what statics and `sharing` leave open. Those
-    of which none is stated are as stiff as the mean of the others, and rows have a range over each
-    of them a tenth and ten times as stiff."""
+    """Sections of links, by body. By their stiffness, links share the forces that statics and
+    `sharing` leave undetermined. A link without a stated section is as stiff as the mean of the
+    others, and rows have a range over each such link a tenth and ten times as stiff."""
 
     @model_validator(mode="before")
     @classmethod
