@@ -76,9 +76,9 @@ def balanced(
     )
     missing = np.concatenate([(wanted - carried)[known], np.zeros((2 * len(steps) - 1, 3))])
     amounts = np.linalg.lstsq(rows, missing, rcond=None)[0] / size[:, None]
-    more = np.stack([np.interp(points[:, 2], steps, a) for a in amounts.T], axis=1)
+    added = np.stack([np.interp(points[:, 2], steps, a) for a in amounts.T], axis=1)
     out = body.stress.copy()
-    out[:, ON_SECTIONS] += depth[:, None] * more
+    out[:, ON_SECTIONS] += depth[:, None] * added
     return replace(body, stress=out)
 
 

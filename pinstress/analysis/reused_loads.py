@@ -97,12 +97,12 @@ def content_of_loads(study: Study, raw: Mapping[str, Any]) -> bytes:
         if joint.weight is None and joint.fixed_in is None and name in table.pin
     ]
     weights = [(raw["pin"][x], table.material[table.pin[x].material].density) for x in weighed]
-    along = [_places(raw["pin"][x]) for x in table.pin] if bands_count(study) else []
+    along = [_places(raw["pin"][x]) for x in table.pin] if depends_on_bands(study) else []
     depends = [tables, joints, weights, along]
     return hashlib.sha256(json.dumps(depends, default=str).encode()).digest()
 
 
-def bands_count(study: Study) -> bool:
+def depends_on_bands(study: Study) -> bool:
     """Return whether forces may depend on the positions of links along the pins: in space, and out
     of the plane of a planar linkage.
     """

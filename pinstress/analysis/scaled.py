@@ -79,7 +79,7 @@ def same_ranges(one: Task, other: Task) -> bool:
     """Return whether two tasks have the same uncertain parameters of their joints, so that the
     range of one task may be scaled with its row to the other.
     """
-    return _open_of_joint(one) == _open_of_joint(other)
+    return _uncertain_parameters(one) == _uncertain_parameters(other)
 
 
 def range_may_widen(before: PinResult, row: PinResult) -> bool:
@@ -96,7 +96,7 @@ def range_may_widen(before: PinResult, row: PinResult) -> bool:
     return highest * (row.required or 1.0) > (row.yield_strength or 0.0)
 
 
-def _open_of_joint(task: Task) -> object:
+def _uncertain_parameters(task: Task) -> object:
     """Return what the range over the joint follows from: the stated ranges and the friction of the
     lugs, and the clearances as given and at the temperature of the case, from which a range that is
     not stated is derived.
@@ -239,29 +239,29 @@ def _places(
     """
     assert row.places is not None
     assert now.places is not None
-    of, at = row.places, now.places
-    assert of.section is not None
-    assert at.section is not None
-    assert of.contact is not None
-    assert at.contact is not None
+    full, rough = row.places, now.places
+    assert full.section is not None
+    assert rough.section is not None
+    assert full.contact is not None
+    assert rough.contact is not None
 
     def stress(name: str, value: float, error: float) -> tuple[float, float, str]:
         scaled, relative = value * ratios[name], error / value + drift[name]
         known = "converged" if relative <= requirement.tolerance else "unconverged"
         return scaled, relative * scaled, known
 
-    a = stress("surface", of.surface.max_von_mises, of.surface.error_estimate)
-    b = stress("section", of.section.max_von_mises, of.section.error_estimate)
-    beneath, beneath_error, _ = stress("beneath", of.contact.beneath, of.contact.beneath_error)
-    surface = replace(at.surface, max_von_mises=a[0], error_estimate=a[1], verdict=a[2])
-    section = replace(at.section, max_von_mises=b[0], error_estimate=b[1], verdict=b[2])
-    strength, used = task.material.yield_strength, at.section.plastic_utilisation
+    a = stress("surface", full.surface.max_von_mises, full.surface.error_estimate)
+    b = stress("section", full.section.max_von_mises, full.section.error_estimate)
+    beneath, beneath_error, _ = stress("beneath", full.contact.beneath, full.contact.beneath_error)
+    surface = replace(rough.surface, max_von_mises=a[0], error_estimate=a[1], verdict=a[2])
+    section = replace(rough.section, max_von_mises=b[0], error_estimate=b[1], verdict=b[2])
+    strength, used = task.material.yield_strength, rough.section.plastic_utilisation
     used = None if strength is None or used is None else used * NOMINAL_STRENGTH / strength
     section = replace(section, plastic_utilisation=used)
-    depths = tuple((x * ratios["beneath"], depth) for x, depth in of.contact.depths)
-    bands = tuple(_band(band, task) for band in at.contact.bands)
+    depths = tuple((x * ratios["beneath"], depth) for x, depth in full.contact.depths)
+    bands = tuple(_band(band, task) for band in rough.contact.bands)
     contact = replace(
-        at.contact, beneath=beneath, beneath_error=beneath_error, depths=depths, edges=(),
+        rough.contact, beneath=beneath, beneath_error=beneath_error, depths=depths, edges=(),
         bands=bands,
     )  # fmt: skip
     governs: Place = "section" if b[0] > a[0] else "surface"
@@ -318,13 +318,13 @@ def _joint(row: PinResult, now: PinResult, peak: Maximum, drift: float) -> Joint
     A coarse solution without a range takes the range of `row`, of the study as it is.
     drift: the relative error of the ratios of the coarse solutions.
     """
-    joint, of = now.joint, now if has_own_range(now) else row
+    joint, source = now.joint, now if has_own_range(now) else row
     assert joint is not None
-    if of.joint is None or of.joint.range is None:
+    if source.joint is None or source.joint.range is None:
         return joint
     largest = peak.max_von_mises or 0.0
-    by, deep = largest / (of.max_von_mises or 1.0), _beneath(peak) / _beneath(of.maximum)
-    drift, error = (drift, _error_taking_over(peak)) if of is now else (0.0, 0.0)
+    by, deep = largest / (source.max_von_mises or 1.0), _beneath(peak) / _beneath(source.maximum)
+    drift, error = (drift, _error_taking_over(peak)) if source is now else (0.0, 0.0)
 
     def scaled(x: Variation) -> Variation:
         interval = x.interval
@@ -335,10 +335,10 @@ def _joint(row: PinResult, now: PinResult, peak: Maximum, drift: float) -> Joint
         beneath = None if x.beneath is None else x.beneath * deep * (1.0 + drift)
         return replace(x, max_von_mises=by * x.max_von_mises, interval=interval, beneath=beneath)
 
-    variations = tuple(map(scaled, of.joint.range.variations))
+    variations = tuple(map(scaled, source.joint.range.variations))
     ends = range_ends(largest, variations)
-    over = replace(of.joint.range, max_von_mises=ends, variations=variations)
-    return replace(joint, range=over, remark=joint.remark if of is now else RANGE_REMARK)
+    over = replace(source.joint.range, max_von_mises=ends, variations=variations)
+    return replace(joint, range=over, remark=joint.remark if source is now else RANGE_REMARK)
 
 
 def _error_taking_over(peak: Maximum) -> float:

@@ -139,8 +139,10 @@ def _solve_once(
     A plan that needs rows only also accepts an outcome that was stored with its explanations.
     """
     key, lacking = entry_keys(plan, task, cache)
-    more = () if plan.explained else entry_keys(replace(plan, explained=True), task, cache)
-    entries = (cache.read(x, Entry) for x in (key, lacking, *more) if x is not None)
+    explained_keys = (
+        () if plan.explained else entry_keys(replace(plan, explained=True), task, cache)
+    )
+    entries = (cache.read(x, Entry) for x in (key, lacking, *explained_keys) if x is not None)
     entry = next((x for x in entries if x is not None and x.answers(task)), None)
     if entry is not None:
         tell(f"pin {task.pin.name}, as solved before")
@@ -244,7 +246,7 @@ def _rows(
     ratio = plan.requirement.for_ratio  # one ratio serves for the whole range
     landing = [None if ratio else landing_range(plan.loads, task, s) for s in solved]
     sharing = [None if ratio else sharing_range(task, s) for s in solved]
-    joints = _in_lugs(task, solved, tell) if task.lugs else _around(plan, task, solved)
+    joints = _in_lugs(task, solved, tell) if task.lugs else _ranges_around(plan, task, solved)
     limits = limit_loads(plan, task, solved, tell)
     of_lugs = lug_collapses(plan, task, tell)
     parts = zip(solved, joints, limits, landing, sharing, strict=True)
@@ -338,7 +340,9 @@ def _joined(*remarks: str) -> str:
     return "; ".join(filter(None, remarks))
 
 
-def _around(plan: Plan, task: Task, solved: tuple[Solution, ...]) -> tuple[JointResult | None, ...]:
+def _ranges_around(
+    plan: Plan, task: Task, solved: tuple[Solution, ...]
+) -> tuple[JointResult | None, ...]:
     """Return, for each case, the range over the lugs around a pin with prescribed clamps
     and loads.
     """

@@ -44,7 +44,7 @@ MAX_NAMED_BINDING = 4  # number of active constraints that are named
 
 
 @dataclass(frozen=True)
-class Wishes:
+class LeastWeightOptions:
     """Options of the command line for the least weight.
 
     vary: kinds of dimensions.
@@ -64,14 +64,14 @@ class Wishes:
         return [f"--{name}" for name, value in vars(self).items() if value is not None]
 
 
-def require_aim(goal: SizingGoal, wishes: Wishes, step: float | None) -> WeightGoal:
+def weight_goal(goal: SizingGoal, options: LeastWeightOptions, step: float | None) -> WeightGoal:
     """Return the goal of the search that the options describe.
 
     goal: the factors to reach. step: step to which diameters are rounded up, m.
 
     Raises: InputError for options that are invalid or contradict each other.
     """
-    vary = tuple(dict.fromkeys(wishes.vary or DIMENSION_KINDS))
+    vary = tuple(dict.fromkeys(options.vary or DIMENSION_KINDS))
     unknown = [kind for kind in vary if kind not in DIMENSION_KINDS]
     if unknown:
         raise InputError(
@@ -82,7 +82,7 @@ def require_aim(goal: SizingGoal, wishes: Wishes, step: float | None) -> WeightG
             "--step rounds diameters, which --vary leaves as they are; leave out one of them",
             code="contradiction",
         )
-    stated = {key: value for key in ("wall", "shoulder") if (value := getattr(wishes, key))}
+    stated = {key: value for key in ("wall", "shoulder") if (value := getattr(options, key))}
     return WeightGoal(goal.required, vary, Proportions(**stated), step, goal.more)
 
 

@@ -293,18 +293,22 @@ def size(
         raise InputError(f"--step: {error}", code="not-a-length") from None
     if metres is not None and metres <= 0.0:
         raise InputError("--step: must be positive", code="not-positive")
-    from pinstress.cli.least_weight import Wishes, lighten_and_write, require_aim
-    from pinstress.cli.size import SizeOptions, require_wish, size_and_write
+    from pinstress.cli.least_weight import LeastWeightOptions, lighten_and_write, weight_goal
+    from pinstress.cli.size import SizeOptions, size_and_write, sizing_goal
 
-    wished = Wishes(**{field.name: options.pop(field.name) for field in fields(Wishes)})
-    if wished.given and not least_weight:
-        raise InputError(f"{wished.given[0]} needs --least-weight", code="needs-least-weight")
+    least_options = LeastWeightOptions(
+        **{field.name: options.pop(field.name) for field in fields(LeastWeightOptions)}
+    )
+    if least_options.given and not least_weight:
+        raise InputError(
+            f"{least_options.given[0]} needs --least-weight", code="needs-least-weight"
+        )
     if least_weight and connection is not None:
         raise InputError("--scheduler is not for --least-weight", code="contradiction")
-    goal = require_wish(loaded, fos, metres)
+    goal = sizing_goal(loaded, fos, metres)
     if least_weight:
-        aim = require_aim(goal, wished, metres)
-        return lighten_and_write(loaded, aim, probability=wished.probability, **options)
+        aim = weight_goal(goal, least_options, metres)
+        return lighten_and_write(loaded, aim, probability=least_options.probability, **options)
     return size_and_write(loaded, goal, SizeOptions(connection=connection, **options))
 
 

@@ -177,7 +177,7 @@ class _Sizing:
         return moved(text, self._study.path.parent, self._target.parent).encode()
 
 
-def require_wish(study: Study, fos: float | None, step: float | None) -> SizingGoal:
+def sizing_goal(study: Study, fos: float | None, step: float | None) -> SizingGoal:
     """Return the goal of sizing: the factor to reach and the diameters to choose from.
 
     fos: the factor, or None for that of the study.

@@ -55,7 +55,7 @@ BEGINNINGS = manifest.OWN_FILES | {f"{PARTS_FOLDER}/", f"{PARTS_FOLDER}/{IDENTIT
 
 
 @dataclass(frozen=True)
-class Way:
+class SweepOptions:
     """Options for solving a sweep.
 
     jobs: number of processes on this machine, by default one for each core.
@@ -72,43 +72,47 @@ class Way:
 
 
 def sweep_and_write(
-    study: Study, directory: Path, pins: list[str] | None, cases: list[str] | None, way: Way
+    study: Study,
+    directory: Path,
+    pins: list[str] | None,
+    cases: list[str] | None,
+    options: SweepOptions,
 ) -> int:
     """Sweep a study into a folder and return the exit status: 1 if every design failed.
 
     Raises: InputError.
     """
     parts = BatchFolder(directory, identity(study, pins, cases))
-    _require_usable(directory, parts, way.resume)
+    _require_usable(directory, parts, options.resume)
     sweep = planned(study, pins, cases)
-    if way.resume and parts.finished:
-        if not way.quiet:
+    if options.resume and parts.finished:
+        if not options.quiet:
             click.echo(f"The sweep in {directory} is complete: nothing to do.", err=True)
-        return _told(directory, read_table(directory / DESIGNS_FILE), way)
+        return _report_designs(directory, read_table(directory / DESIGNS_FILE), options)
     kept = resumable(lambda: parts.count, "batch", "batches")
-    with _claimed(directory, parts, way.resume), kept, _writing(directory):
-        before = parts.count_before if way.resume else None
+    with _claimed(directory, parts, options.resume), kept, _writing(directory):
+        before = parts.count_before if options.resume else None
         if before is not None:
             parts.continue_with(table_of(study, sweep.parameters, []).schema)
-            if not way.quiet:
+            if not options.quiet:
                 count = len(sweep.values)
                 click.echo(f"Continued from {before:,} designs to {count:,}.", err=True)
-        alone = way.connection is not None or (way.jobs or cores()) == 1
-        with progress(way.quiet, alone) as report:
-            table = solved(sweep, parts, way.jobs, way.connection, report, warn)
+        alone = options.connection is not None or (options.jobs or cores()) == 1
+        with progress(options.quiet, alone) as report:
+            table = solved(sweep, parts, options.jobs, options.connection, report, warn)
         _write(directory, table)
         parts.finish()
-    return _told(directory, table, way)
+    return _report_designs(directory, table, options)
 
 
-def _told(directory: Path, table: pa.Table, way: Way) -> int:
+def _report_designs(directory: Path, table: pa.Table, options: SweepOptions) -> int:
     """Print a summary of a table and return the exit status."""
     with unneeded(directory):
         summary(table, console())
-    if not way.quiet:
+    if not options.quiet:
         click.echo(f"Table: {directory / DESIGNS_FILE}", err=True)
         click.echo(f"Page: {directory / DESIGNS_PAGE}", err=True)
-    if way.opens:
+    if options.opens:
         open_page(directory / DESIGNS_PAGE)
     verdicts = set(table["verdict"].unique().to_pylist())
     return int(verdicts <= {*UNSOLVED_VERDICTS})

@@ -78,7 +78,7 @@ def assessed(study: Study, task: Task, row: PinResult) -> PinResult:
         judgement=against_yield(row.maximum, task.material.yield_strength, required),
         strength_range=task.material.strength_range,
         margins=tuple(margins),
-        worst=tuple(worst_places([*counted, *_not_made(s, why)])),
+        worst=tuple(worst_places([*counted, *_skipped_checks(s, why)])),
         arms=None if why else _arms(s, task, row),
         lost_fits=lost_fits(study, task, row.case),
     )
@@ -271,7 +271,7 @@ def _situation(
     return replace(s, over_joint=joint.range.across, lug_growth=shared), ""
 
 
-def _not_made(s: Situation, why: str) -> Iterable[Margin]:
+def _skipped_checks(s: Situation, why: str) -> Iterable[Margin]:
     """Return, as skipped margins, the checks that a situation does not allow.
 
     These are the checks by formula if they lack something (`why`); checks of lugs at clamps, whose
@@ -306,8 +306,8 @@ def _not_made(s: Situation, why: str) -> Iterable[Margin]:
 
 
 def _arms(s: Situation, task: Task, row: PinResult) -> BendingArms:
-    """Return the arms of the bending moment at the governing instant, also that of the joint's
-    solution.
+    """Return the arms of the bending moment at the governing instant, including the arm from the
+    joint's solution.
     """
     peak, joint = row.maximum, row.joint
     now = s.by_formula.at(np.array([0]))

@@ -135,7 +135,7 @@ def _with_all(
     owner = {c: t for t in of.values() for c in t.connections}
     at = [have.get(c, -1) for c in names]
     present = np.array([k >= 0 for k in at])
-    turn = None if table.turn is None else _where(present, table.turn[:, at])
+    turn = None if table.turn is None else _turn_where_present(present, table.turn[:, at])
     of_name = {peak.connection: peak for peak in table.largest}
     return replace(
         table,
@@ -149,7 +149,7 @@ def _with_all(
     )
 
 
-def _where(present: Floats, turn: Floats) -> Floats:
+def _turn_where_present(present: Floats, turn: Floats) -> Floats:
     """Return the rotation where the case has the connection, and no rotation elsewhere.
 
     turn: angles (T, C) in a plane or matrices (T, C, 3, 3) in space.
@@ -273,9 +273,9 @@ def _drive(
     tables: of the drive, for each case; None where something else holds the linkage, so that the
     drive's force is zero.
     """
-    like = next(t for t in tables.values() if t is not None)
+    known = next(t for t in tables.values() if t is not None)
     whole = {
-        case: t or _idle(like, 1 if (course := times[case]) is None else len(course))
+        case: t or _idle(known, 1 if (course := times[case]) is None else len(course))
         for case, t in tables.items()
     }
     joined, axis = _course(whole, times, order), _axis(times, order)
@@ -295,10 +295,10 @@ def _work(study: Study, drives: list[DriveTable]) -> str:
     return f"Work per cycle: {', '.join(drive_texts)}."
 
 
-def _idle(like: DriveTable, count: int) -> DriveTable:
+def _idle(drive: DriveTable, count: int) -> DriveTable:
     unknown, zero = np.full(count, np.nan), np.zeros(count)
     return DriveTable(
-        *("", None, unknown, unknown, unknown, zero, zero, zero, zero, zero), like.name, like.kind
+        *("", None, unknown, unknown, unknown, zero, zero, zero, zero, zero), drive.name, drive.kind
     )
 
 
@@ -352,6 +352,6 @@ def _sequences(history: PointHistory, orders: dict[str, list[Occurrence]]) -> It
             yield replace(_course(used, times, order), case=name, times=_axis(times, order))
 
 
-def _unloaded(like: PointHistory) -> CaseHistory:
+def _unloaded(history: PointHistory) -> CaseHistory:
     zero = np.zeros(1)
-    return CaseHistory("", None, np.zeros((1, like.cases[0].stress.shape[1])), zero, zero)
+    return CaseHistory("", None, np.zeros((1, history.cases[0].stress.shape[1])), zero, zero)

@@ -169,8 +169,8 @@ def _grounded(linkage: SpaceLinkage) -> set[str]:
     """Return the ground and the bodies that are fixed to it, directly or through other bodies."""
     fixed = [{j.base, j.moving} for j in linkage.joints if j.kind == "fixed"]
     still = {GROUND}
-    while more := {body for pair in fixed if pair & still for body in pair} - still:
-        still |= more
+    while newly_fixed := {body for pair in fixed if pair & still for body in pair} - still:
+        still |= newly_fixed
     return still
 
 

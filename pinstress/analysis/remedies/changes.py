@@ -36,14 +36,14 @@ FROM_FILE = "its shape comes from a file, which has no diameters to change"
 @dataclass(frozen=True)
 class FailingCase:
     """A case whose factor is too small: its solution, and the permissible share of all loads
-    (`part`).
+    (`permissible_share`).
 
     The share is for the stress at the upper end of its error, and for the stress beneath contact.
     """
 
     task: Task
     solution: Solution
-    part: float
+    permissible_share: float
 
 
 def change(requirement: Requirement, task: Task, solutions: tuple[Solution, ...]) -> Remedy | None:
@@ -58,11 +58,11 @@ def change(requirement: Requirement, task: Task, solutions: tuple[Solution, ...]
     def required_of(solution: Solution) -> float:
         return requirement.of_case(solution.peak.case).required or 1.0
 
-    worst = max(solutions, key=lambda s: _counted(s) * required_of(s))
+    worst = max(solutions, key=lambda s: _deciding_stress(s) * required_of(s))
     peak, required = worst.peak, required_of(worst)
     if strength is None or not peak.max_von_mises:
         return None
-    if _counted(worst) <= strength / required:
+    if _deciding_stress(worst) <= strength / required:
         return None
     # With an unknown error, the stress itself is the best estimate of what would suffice.
     high = max(peak.upper_end if peak.bounded else peak.max_von_mises, _beneath(worst))
@@ -76,7 +76,7 @@ def change(requirement: Requirement, task: Task, solutions: tuple[Solution, ...]
         case=peak.case,
         required=required,
         yield_strength=required * high,
-        load_factor=failing.part,
+        load_factor=failing.permissible_share,
         proportional=not task.lugs,
         diameter_factor=times,
         diameter_note=why,
@@ -86,7 +86,7 @@ def change(requirement: Requirement, task: Task, solutions: tuple[Solution, ...]
     )
 
 
-def _counted(solution: Solution) -> float:
+def _deciding_stress(solution: Solution) -> float:
     """Return the stress that decides whether a case fails, Pa: the larger of the maximum and the
     stress beneath contact.
 
@@ -114,11 +114,11 @@ def _share(failing: FailingCase, loads: PinLoads) -> float | None:
     if answer is None or whole is None:
         return None
     if failing.task.lugs:
-        return failing.part
+        return failing.permissible_share
     low, high = 0.0, 1.0
     for _ in range(SEARCH_ROUNDS):
         shares = np.linspace(low, high, IMPULSE_SHARES)
-        bad = _maxima(answer, loads, shares) > failing.part * whole
+        bad = _maxima(answer, loads, shares) > failing.permissible_share * whole
         first = int(bad.argmax()) if bad.any() else IMPULSE_SHARES - 1
         if not first:
             return None
@@ -156,7 +156,7 @@ def _diameters(
     if problem is None or pin is None:
         return None, SIZED_BY_COMMAND
     try:
-        return _widening(problem, pin, required * failing.part, required), ""
+        return _widening(problem, pin, required * failing.permissible_share, required), ""
     except NoSizeError as error:
         return None, str(error)
     except (GeometryError, ArithmeticError) as error:

@@ -45,7 +45,7 @@ def joint_parameters(study: Study, task: Task) -> Iterator[StudyParameter]:
     table = study.table.pin[pin.name]
     for lug in task.lugs:
         name = lug.connection
-        if name in table.like_the_other:
+        if name in table.shared_lugs:
             continue
         given = table.lug.get(name)
         bushing = given and given.bushing
@@ -89,7 +89,7 @@ def _with_dimension(study: Study, task: Task, dimension: Dimension, value: float
 
 def _with_lug(study: Study, task: Task, name: str, key: str, value: float) -> Joint:
     table = study.table.pin[task.pin.name]
-    ears = (ear for ear, link in table.like_the_other.items() if link == name)
+    ears = (ear for ear, link in table.shared_lugs.items() if link == name)
     for one in (name, *ears):
         lug_path = "pin", task.pin.name, "lug", one
         if one not in table.lug:

@@ -253,8 +253,8 @@ def _of_lugs(study: Study, task: Task, joined: Solution, step: float | None) -> 
     ]
     if strength is not None:
         key = f"material.{key_part(task.material.name)}.yield_strength"
-        more = STEP_FRACTION * strength
-        rows.append(_Parameter(key, "stress", strength, more, 0.0, 1.0 / strength))
+        change = STEP_FRACTION * strength
+        rows.append(_Parameter(key, "stress", strength, change, 0.0, 1.0 / strength))
     return _with_rows(replace(out, changing=gradient.changing), gradient, rows)
 
 
@@ -266,16 +266,16 @@ def _of_joint(
         if one.key not in by:
             continue
         if one.key.endswith(".clearance"):
-            more = CLEARANCE_STEP * step
+            change = CLEARANCE_STEP * step
         elif kind == "length":
-            more = _little(step, one.value)
+            change = _small_step(step, one.value)
         else:
-            more = POISSON_RATIO_STEP if kind == "1" else STEP_FRACTION * one.value
+            change = POISSON_RATIO_STEP if kind == "1" else STEP_FRACTION * one.value
         stress = by[one.key]
-        yield _Parameter(one.key, kind, one.value, more, stress, -stress / maximum)
+        yield _Parameter(one.key, kind, one.value, change, stress, -stress / maximum)
 
 
-def _little(step: float, value: float) -> float:
+def _small_step(step: float, value: float) -> float:
     """Return a step (m) of a dimension, reduced by powers of ten until it is small relative to the
     dimension.
     """
@@ -316,10 +316,10 @@ def _of_dimensions(
 ) -> Iterator[_Parameter]:
     for dimension in dimensions:
         if dimension.key in gradient.by_dimension:
-            more = _little(step, dimension.value)
+            change = _small_step(step, dimension.value)
             stress = gradient.by_dimension[dimension.key]
             relative = -stress / gradient.maximum
-            yield _Parameter(dimension.key, "length", dimension.value, more, stress, relative)
+            yield _Parameter(dimension.key, "length", dimension.value, change, stress, relative)
 
 
 def _sorted(rows: Iterable[_Parameter], factor: float | None) -> tuple[Sensitivity, ...]:
@@ -360,7 +360,7 @@ def _of_material(gradient: Derivatives, material: Material) -> Iterator[_Paramet
     ):
         if value is not None:
             relative = 1.0 / value if name == "yield_strength" else 0.0 - stress / gradient.maximum
-            more = STEP_FRACTION * value if step is None else step
+            change = STEP_FRACTION * value if step is None else step
             yield _Parameter(
-                f"material.{key_part(material.name)}.{name}", kind, value, more, stress, relative
+                f"material.{key_part(material.name)}.{name}", kind, value, change, stress, relative
             )

@@ -245,7 +245,7 @@ def key_parts(study: Study, key: str) -> list[str | int]:
         case []:
             raise study.error("'' is not a key", code="not-a-key")
         case ["pin", str(pin), "lug", str(ear), _, *_] if pin in study.table.pin:
-            if link := study.table.pin[pin].like_the_other.get(ear):
+            if link := study.table.pin[pin].shared_lugs.get(ear):
                 raise study.error(
                     f"{key}: the lug of this ear is that of {link}, whose keys change both; to "
                     f"change one, give {ear} a lug of its own",

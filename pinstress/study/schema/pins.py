@@ -306,7 +306,7 @@ class PinTable(StrictTable):
         return {s.ear_of: s.name for s in self.profile or () if s.ear_of and s.name}
 
     @property
-    def like_the_other(self) -> dict[str, str]:
+    def shared_lugs(self) -> dict[str, str]:
         """The connection of the link, by the name of its second ear, if both ears share one lug
         table.
         """
