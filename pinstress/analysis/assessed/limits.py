@@ -4,8 +4,8 @@ Limit loads of lugs are computed only if the study or the run requests more than
 
 A factor that [[require]] states for the limit load counts as a request, unless the study excludes
 the pin or the elastic stress already meets the factor. Without a request, the limit load of a row
-that yields is computed if this takes no more than seconds of processor time. So the computer may
-decide whether a limit load is computed, but never its value.
+that yields is computed if it takes at most UNASKED_LIMIT_LOAD_SECONDS of processor time. So the
+computer may decide whether a limit load is computed, but never its value.
 """
 
 from __future__ import annotations

@@ -121,8 +121,8 @@ def _without_data(plan: Plan, table: FatigueTable) -> list[str]:
 
 
 def _growth(plan: Plan, rows: Iterable[PinResult]) -> Growth:
-    """Return the factors by which the stress of one pin may exceed its rows, by cause, then by case
-    or sequence of cases.
+    """Return the factors by which the stress of one pin may exceed that of its rows, by cause, then
+    by case or sequence of cases.
 
     The factor of a sequence is the largest of its cases. Causes without effect are left out.
     """

@@ -195,7 +195,8 @@ def _wheel(case: DropCase, unsprung: float) -> Wheel | None:
 def fallen(study: Study, name: str, leg: Drop) -> Landing:
     """Return the course of the drop.
 
-    Raises: InputError if the leg bottoms or fails otherwise.
+    Raises: InputError if the strut bottoms, the tyre is deflected too far, or the drop cannot be
+    computed.
     """
     try:
         return land(leg)

@@ -28,8 +28,8 @@ FACTOR_WORDS = {
 def counted_twice(table: AnalysisTable, notes: Mapping[str, str]) -> tuple[str, ...]:
     """Return a sentence on the factors of margins that the required factor seems to contain.
 
-    notes: the source of each number, by key. A note on the required factor that names none of these
-    factors settles the question.
+    notes: the source of each number, by key. A note on the required factor that mentions none of
+    these factors settles the question.
     """
     required, note = table.required_safety_factor, notes.get(REQUIRED_FACTOR_KEY, "")
     if required is None or required <= 1.0:
