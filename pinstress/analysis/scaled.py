@@ -71,7 +71,9 @@ def coarse(requirement: Requirement, lasting: bool, varied: bool) -> Requirement
 
 
 def same_shape(one: Task, other: Task) -> bool:
-    """Return whether two tasks differ in loads, clearances, tilts and ranges only."""
+    """Return whether two tasks differ at most in loads, clearances, tilts and ranges, and in
+    strengths and names of materials.
+    """
     return _shape(one) == _shape(other)
 
 

@@ -75,7 +75,7 @@ class CaseLoads:
     linkage in space.
     peaks: the largest forces over time.
     over: other results of the whole motion.
-    frictionless: `over` without friction, if there is friction.
+    frictionless: results of the whole motion without friction, if there is friction.
     moving: the loads on the pins at any time.
     landing: course of a drop.
     shared: the case with other stiffnesses of the links that share loads out of the plane, each
@@ -182,7 +182,7 @@ def _shown(study: Study) -> Callable[[float, bool], str]:
 class _Moved:
     """The dynamics of a case at any times (T,) s of its motion.
 
-    This is a class instead of closures, because it is sent to processes that do not fork.
+    This is a class instead of closures, because it is sent to processes that are not forked.
     """
 
     name: str

@@ -133,7 +133,7 @@ def postures_of(linkage: SpaceLinkage, instants: int) -> int:
 class MovedInSpace:
     """A motion in space at any times (T,) s.
 
-    This is a class instead of closures, because it is sent to processes that do not fork.
+    This is a class instead of closures, because it is sent to processes that are not forked.
     """
 
     name: str
