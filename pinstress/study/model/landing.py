@@ -60,9 +60,8 @@ def drop(study: Study, name: str, case: DropCase, mechanism: Linkage) -> tuple[D
     Raises: InputError, LinkageError.
     """
     where = place(study, name, case, mechanism)
-    key = "case." + name
+    key = f"case.{key_part(name)}.strut"
     try:
-        key = f"case.{key_part(name)}.strut"
         strut = None if case.strut is None else _strut(case.strut)
         rises: Telescopic | Levered = Telescopic()
         if case.strut is not None:

@@ -16,7 +16,7 @@ from pinstress.study.reading.file import Study
 from pinstress.study.schema.space import SpaceBarTable, SpaceBodyTable, SpaceMechanismTable
 
 # The least component across a bar of a unit vector that gives a direction across it
-MIN_ACROSS = 1.0 - math.cos(math.radians(1.0))
+MIN_ACROSS = math.sin(math.radians(1.0))
 
 
 def body_in_space(
