@@ -15,8 +15,9 @@ from pinstress.study.model.tasks import Task
 from pinstress.study.reading.in_python import study_from
 from reports.data.dependence import depends_on
 from reports.data.row import LandingRange, PinResult, SharingRange
+from reports.tables.strength.landing import landing_table
 from tests.pinstress.analysis.test_scaled import STUDY as CLEVIS
-from tests.places.test_outcomes_beneath import pin
+from tests.places.test_outcomes_beneath import only, pin
 
 # Two arms on a pin in two lugs of a structure: one bends it by 8 kN, far from both lugs; the other,
 # whose impulse has a range, shears it beside a lug.
@@ -132,6 +133,12 @@ def test_each_place_has_its_own_stress_and_error_over_an_impulse(
     """78,667 psi are permitted: 76,000 with 4 % are 79,040, with 0.5 % they are 76,380."""
     made = pin(60000.0, 0.0, landing=_over_time(stress, error, beneath))
     assert [d.what for d in made.depends_on] == expected
+
+
+def test_the_table_of_a_landing_counts_what_lies_beneath() -> None:
+    """80,000 psi beneath contact at 0.13 s, of 78,667: it was said to meet the factor."""
+    made = only(pin(60000.0, 0.0, landing=_over_time(60000.0, 0.005, 80000.0)))
+    assert [x["meets_required"] for x in landing_table(made).records()] == [True, False]
 
 
 @pytest.mark.parametrize(("upper_end", "beneath", "expected"), [

@@ -8,7 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from fea.core.places import ContactPlace
 from reports.data.decision import limit
+from reports.data.over_loads import upper_end_beneath
 from reports.data.results import Results
 from reports.data.row import LandingRange
 from reports.format.files import markdown
@@ -25,11 +27,15 @@ LANDING_NOTE = (
 
 @dataclass(frozen=True)
 class LandingPoint:
-    """Point number k of the range of a pin in a case."""
+    """Point number k of the range of a pin in a case.
+
+    contact: what contact has in the case itself, None without contact.
+    """
 
     of: LandingRange
     k: int
     required: float | None
+    contact: ContactPlace | None = None
 
     @property
     def factor(self) -> float | None:
@@ -39,10 +45,14 @@ class LandingPoint:
 
     @property
     def meets(self) -> bool | None:
-        """Return whether the required factor is met with the error."""
+        """Return whether the required factor is met with the error, also beneath contact."""
         if self.factor is None or self.required is None:
             return None
-        return _meets(self.of, self.factor / self.required, self.k)
+        met, deep = _meets(self.of, self.factor / self.required, self.k), self.of.beneath
+        if not met or deep is None:
+            return met
+        permitted = self.factor * float(self.of.max_von_mises[self.k]) / self.required
+        return upper_end_beneath(self.contact, float(deep[self.k])) <= permitted
 
     def end(self, k: int) -> float | None:
         """Return an end of the interval of a singular row's factor."""
@@ -71,7 +81,7 @@ COLUMNS: list[Column[LandingPoint]] = [
 def landing_table(results: Results) -> Table[LandingPoint]:
     """Return every pin at every combination of impulse time, velocity change and pulse."""
     rows = [
-        LandingPoint(pin.landing, k, pin.required)
+        LandingPoint(pin.landing, k, pin.required, pin.places.contact if pin.places else None)
         for pin in results.pins
         if pin.landing
         for k in range(len(pin.landing.force))
