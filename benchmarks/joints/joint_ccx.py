@@ -100,7 +100,7 @@ def joint_ccx() -> str:
     if not installed():
         return f"CalculiX is not installed (no {CALCULIX_COMMAND}); {INSTALL_HINT}"
     joints = drawn(COUNT, SEED)
-    parts = [_described(joints), _beside(joints), _meshes(joints[REFINED])]
+    parts = [_described(joints), _comparison(joints), _meshes(joints[REFINED])]
     return "\n\n".join([*parts, _ours(joints[REFINED]), _motion(joints[REFINED])])
 
 
@@ -165,7 +165,7 @@ def _described(joints: list[Joint]) -> str:
     return table(("joint", "d [mm]", "lugs, pin", "clearances / d", "lugs of", "in a plane"), rows)
 
 
-def _beside(joints: list[Joint]) -> str:
+def _comparison(joints: list[Joint]) -> str:
     rows = [
         (k, *_row(joint, ours(joint), _theirs(joint, WHOLE if joint.oblique else EVERY)))
         for k, joint in enumerate(joints, 1)
@@ -189,10 +189,10 @@ def _row(
     return (
         f"{mine.moment:.4g}",
         f"{moment:.4g}",
-        _off(mine.moment, moment),
+        _deviation(mine.moment, moment),
         f"{mine.stress / 1e6:.1f}",
         f"{there / 1e6:.1f}",
-        _off(mine.stress, there),
+        _deviation(mine.stress, there),
         f"{found.largest(DISTANCE * joint.pin.smallest_diameter) / 1e6:.1f}",
         unknowns,
         found.unknowns,
@@ -202,7 +202,7 @@ def _row(
     )
 
 
-def _off(one: float, other: float) -> str:
+def _deviation(one: float, other: float) -> str:
     return f"{100.0 * (one / other - 1.0):+.1f}"
 
 

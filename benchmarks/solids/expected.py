@@ -42,7 +42,7 @@ def expected() -> str:
     """Return the table for first meshes: whole pins and bodies from files as solids, and local
     solids about cuts.
     """
-    found = [(name, *_beside(make)) for name, make in _meshes()]
+    found = [(name, *_measured(make)) for name, make in _meshes()]
     rows = [(name, n, f"{e:,.0f}", e / n, spent, made) for name, n, e, spent, made in found]
     ratios = [row[3] for row in rows]
     head = ("mesh", "unknowns", "expected", "ratio", "expecting, s", "meshing, s")
@@ -83,7 +83,7 @@ def _from_file(pin: CutPin) -> SolidMesh:
         return cad_mesh(BodyFile("P", path, 1e-3, ()), MeshSize())
 
 
-def _beside(make: Make) -> tuple[int, float, float, float]:
+def _measured(make: Make) -> tuple[int, float, float, float]:
     """Return unknowns of a mesh, those expected, and the processor times of the expectation and of
     all else, s.
     """

@@ -156,15 +156,15 @@ def _together(
     }
     if len(ratios) + (over is not None) < 2:
         return
-    more, variations = math.prod(ratios.values()), over.variations if over else ()
+    load_ratio, variations = math.prod(ratios.values()), over.variations if over else ()
     counted = [v for v in variations if judged.safe or v.what != FRICTION]
     most = _largest_over_joint(judged, over) if over and judged.safe else judged.high
     beneath = [contact.upper_end if contact else 0.0, *(_upper_end(contact, v) for v in counted)]
     tops = [most] if judged.safe else [_top(judged, v) for v in counted]
-    top, deep = (more * extreme(x) for x in ([judged.high, *tops], beneath))
+    top, deep = (load_ratio * extreme(x) for x in ([judged.high, *tops], beneath))
     if (max(top, deep) > judged.permitted) == judged.safe:
         ends = over.max_von_mises if over else ()
-        stress = more * extreme((judged.maximum, *ends))
+        stress = load_ratio * extreme((judged.maximum, *ends))
         factor = judged.strength / (max(stress, deep) if judged.safe else stress)
         yield Dependence(TOGETHER, "", joined([*["joint"] * (over is not None), *ratios]), factor)
 

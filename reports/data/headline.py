@@ -63,7 +63,7 @@ def judged_checks(results: Results) -> list[JudgedCheck]:
     """Return all checks that count, the worst first."""
     checks = [_of_row(row, limit(row)) for row in results.pins]
     checks += checks_of(results, results.margins)
-    checks += map(_of_requirement, _besides(results))
+    checks += map(_of_requirement, _separate_requirements(results))
     open_ = results.fatigue.not_decided if results.fatigue else {}
     checks += (
         JudgedCheck(pin, "", FATIGUE_LIFE, NOT_DECIDED, None, 1.0, -inf, reason=reason)
@@ -80,7 +80,7 @@ def checks_of(results: Results, margins: Iterable[PinMargin]) -> Iterator[Judged
             yield _of_margin(m, rows.get((m.pin, m.case)))
 
 
-def _besides(results: Results) -> list[RequirementRow]:
+def _separate_requirements(results: Results) -> list[RequirementRow]:
     """Return the requirements that neither a row nor a margin judges with the same factor.
 
     Fatigue lives that are missed only because of the error of the stress are included, since a
@@ -89,13 +89,13 @@ def _besides(results: Results) -> list[RequirementRow]:
     stated = {(s.pin, s.case, s.level, s.check) for s in results.stated}
     factors = {(row.pin, row.case): limit(row) for row in results.pins}
 
-    def besides(r: RequirementRow) -> bool:
+    def is_separate(r: RequirementRow) -> bool:
         if r.check == "yield":
             return r.required > factors.get((r.pin, r.case), inf)
         by_error = (r.check, r.outcome) == ("fatigue", NOT_DECIDED) and r.reached is not None
         return r.key in stated or r.outcome == DEPENDS or by_error
 
-    return [r for r in requirement_rows(results) if besides(r) and not r.left_out]
+    return [r for r in requirement_rows(results) if is_separate(r) and not r.left_out]
 
 
 def worst_checks(results: Results) -> dict[str, JudgedCheck]:

@@ -282,7 +282,7 @@ def _judged(plain: RequirementRow, margins: list[Margin], row: PinResult | None)
         return replace(plain, outcome="met")  # no load acts on the pin, so no formula applies
     if plain.check not in ("yield", "rupture") or row is None:
         by_formula = _of_margins(plain, margins, row.most_loads if row else None)
-        return _beside_cuts(by_formula, margins, row)
+        return _with_cuts_omitted(by_formula, margins, row)
     hardened = row.places is not None and row.places.hardened
     if hardened and plain.check == "rupture":  # the row may be that of another place
         return _of_margins(plain, margins, {**row.most_loads, "joint": row.surface_growth})
@@ -294,7 +294,7 @@ def _judged(plain: RequirementRow, margins: list[Margin], row: PinResult | None)
     return _of_stress(plain, row, strengths[0])
 
 
-def _beside_cuts(
+def _with_cuts_omitted(
     by_formula: RequirementRow, margins: list[Margin], row: PinResult | None
 ) -> RequirementRow:
     """Return a requirement whose formulas may leave out cuts of the pin.

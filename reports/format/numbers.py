@@ -85,7 +85,7 @@ def drawn(value: float) -> str:
     return short(value if given else float(f"{value:.5g}"))
 
 
-def like(value: float, given: float) -> str:
+def with_decimals_of(value: float, given: float) -> str:
     """Return a number with as many decimals as a given number has."""
     _, _, decimals = f"{Decimal(repr(float(given))):f}".partition(".")
     return f"{value:,.{len(decimals.rstrip('0'))}f}".replace("-", "−")

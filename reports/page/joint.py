@@ -109,12 +109,12 @@ def _range(joint: JointResult, units: Units) -> Grid | None:
         *texts("changed=what"),
         read_only("to", lambda v: value_words(v, units), numeric=False),
         read_only("max von Mises", lambda v: v.max_von_mises, "stress"),
-        read_only(last, _beside),
+        read_only(last, _interval_or_beneath),
     ]
     return grid_of(Table("joint_range", columns, over.variations), units)
 
 
-def _beside(variation: Variation) -> str:
+def _interval_or_beneath(variation: Variation) -> str:
     """Return the range of a maximum if it has one, otherwise the stress beneath contact."""
     if variation.interval is None:
         return engineering(variation.beneath)

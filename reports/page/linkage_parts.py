@@ -97,10 +97,13 @@ def bodies(at: Instant, panel: LinkagePanel, points: Points) -> Iterable[str]:
             yield f'<circle class="mass" cx="{centre[0]:.1f}" cy="{centre[1]:.1f}" r="4.5"/>'
 
 
-def line(kind: str, start: Floats, end: Floats, more: str = "") -> str:
-    """Return a line. kind: its class in reports/templates/linkage.css. more: further attributes."""
+def line(kind: str, start: Floats, end: Floats, attributes: str = "") -> str:
+    """Return a line.
+
+    kind: its class in reports/templates/linkage.css. attributes: further ones of the SVG element.
+    """
     (x1, y1), (x2, y2) = start, end
-    return f'<path class="{kind}" d="M{x1:.1f} {y1:.1f}L{x2:.1f} {y2:.1f}"{more}/>'
+    return f'<path class="{kind}" d="M{x1:.1f} {y1:.1f}L{x2:.1f} {y2:.1f}"{attributes}/>'
 
 
 def axes(at: Instant, panel: LinkagePanel, points: Points) -> Iterable[str]:

@@ -12,7 +12,7 @@ from reports.data.decision import worst_first
 from reports.data.envelope import detailed_rows
 from reports.data.results import Results
 from reports.format.file_names import animation_name, drive_names, plot_name
-from reports.format.numbers import DASH, engineering, like, ratio, short
+from reports.format.numbers import DASH, engineering, ratio, short, with_decimals_of
 from reports.format.packed import deflated
 from reports.format.ranges import error_words, factor_range
 from reports.format.template import environment
@@ -115,7 +115,7 @@ def _template() -> Template:
     templates.filters.update(
         eng=engineering,
         short=lambda value: DASH if value is None else short(value),
-        like=like,
+        with_decimals_of=with_decimals_of,
         ratio=ratio,
         error=error_words,
         factor=factor_range,

@@ -199,7 +199,7 @@ def _number(value: float) -> str:
 
 def _flip(row: PinResult, d: Dependence, units: Units) -> str:
     state = "may fail" if row.as_described in GOOD else "is safe"
-    at = f"with {d.value or d.what}" if d.over == "links" else _at(d, units)
+    at = f"with {d.value or d.what}" if d.over == "links" else _threshold_words(d, units)
     return f"{row.pin} {state} {'with ' if at and at == d.value else ''}{at}".strip()
 
 
@@ -215,12 +215,14 @@ def flips(row: PinResult, units: Units) -> str:
         what = d.value if d.what == BENEATH_CONTACT else d.what
         if d.what == TOGETHER or what == IMPULSE_RANGES_TOGETHER:
             what = f"the {d.over} values together"
-        at = "" if d.what == TOGETHER else _at(d, units)  # several properties would be a list
+        at = (
+            "" if d.what == TOGETHER else _threshold_words(d, units)
+        )  # several properties would be a list
         told.append(f"{what} ({at})" if at else what)
     return ", ".join(dict.fromkeys(told))
 
 
-def _at(d: Dependence, units: Units) -> str:
+def _threshold_words(d: Dependence, units: Units) -> str:
     """Return the values at which an outcome differs, "above 0.0007 in", "half-sine"; or nothing."""
     value = d.flips_at if d.flips_at is not None else d.at
     if value is None or d.over == PRESS_FIT:

@@ -39,7 +39,12 @@ def decisions(results: Results, lines: Sequence[PinLine]) -> str:
 
     lines: those of the pins (`pin_lines`), as in all functions of this module.
     """
-    parts = [_undecided(lines), _depending(results, lines), _good(lines), _also(results, lines)]
+    parts = [
+        _undecided(lines),
+        _depending(results, lines),
+        _good(lines),
+        _other_rows(results, lines),
+    ]
     quiet = quiet_cases(results, lines)
     if len(quiet) > MAX_NAMED_CASES:
         parts.append(_all_quiet(quiet))
@@ -142,14 +147,14 @@ def _good(lines: Sequence[PinLine]) -> str:
     return f"{names([x.pin for x in good])} {'are' if len(good) > 1 else 'is'} {state}."
 
 
-def _also(results: Results, lines: Sequence[PinLine]) -> str:
+def _other_rows(results: Results, lines: Sequence[PinLine]) -> str:
     """Return sentences, by case, on the rows that are not safe, other than the worst row of each
     pin.
     """
     shown = {(x.row.pin, x.row.case) for x in lines}
-    more = [r for r in results.pins if r.outcome not in GOOD and (r.pin, r.case) not in shown]
+    others = [r for r in results.pins if r.outcome not in GOOD and (r.pin, r.case) not in shown]
     by_case: dict[str, dict[str, list[str]]] = {}
-    for row in sorted(more, key=lambda r: OUTCOME_ORDER[r.outcome]):
+    for row in sorted(others, key=lambda r: OUTCOME_ORDER[r.outcome]):
         by_case.setdefault(row.case, {}).setdefault(row.outcome, []).append(row.pin)
     told = [
         f"in {case} " + ", ".join(f"{names(p)} {state(s, p)}" for s, p in of.items())

@@ -27,8 +27,8 @@ def summary(results: Results) -> str:
     if not results.pins:
         return "No pin was solved."
     decided = [_against_required(results), _depending(results)]
-    besides = [_without_range(results), _at_edges(results), _negative(results)]
-    return " ".join(part for part in (*decided, *besides, *caveats(results)) if part)
+    exceptions = [_without_range(results), _at_edges(results), _negative(results)]
+    return " ".join(part for part in (*decided, *exceptions, *caveats(results)) if part)
 
 
 def caveats(results: Results) -> list[str]:
@@ -165,17 +165,19 @@ def _unknown(results: Results) -> str:
     unsolved = verdicts.count("rigid") + verdicts.count("failed")
     text = ""
     if singular:
-        text = f"{_of(singular, total)} {_is(singular)} singular: no maximum exists."
+        text = f"{_share_of_rows(singular, total)} {_is(singular)} singular: no maximum exists."
     if loose:
-        text += f" {_of(loose, total)} did not converge."
+        text += f" {_share_of_rows(loose, total)} did not converge."
     if decided:
         tolerance = f"{short(100.0 * results.tolerance)} %"
         many = len(decided)
-        text += f" {_of(many, total)} {_is(many)} decided with an error above {tolerance}"
+        text += (
+            f" {_share_of_rows(many, total)} {_is(many)} decided with an error above {tolerance}"
+        )
         minor = sum(p.minor for p in decided)
         text += f", {minor} far below another case of the pin." if minor else "."
     if unsolved:
-        text += f" {_of(unsolved, total)} could not be solved."
+        text += f" {_share_of_rows(unsolved, total)} could not be solved."
     return text.strip() or f"{ALL_CONVERGED} to {short(100.0 * results.tolerance)} %."
 
 
@@ -185,7 +187,7 @@ def _within(row: PinResult, tolerance: float) -> bool:
     return error is not None and error <= tolerance * (row.max_von_mises or 0.0)
 
 
-def _of(number: int, total: int) -> str:
+def _share_of_rows(number: int, total: int) -> str:
     return f"{number} of {counted(total, 'row')}"
 
 

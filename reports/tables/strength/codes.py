@@ -30,7 +30,7 @@ def codes_table(results: Results) -> Table[CodesRow]:
 
     The table has no rows if the study selects a single code.
     """
-    made = list(_made(results))
+    made = list(_checks_at_places(results))
     codes = list(dict.fromkeys(code for _, m in made for code in m.code.split(", ")))
     rows: dict[tuple[str, str], dict[str, Margin]] = {}
     for pin, m in made:
@@ -46,7 +46,7 @@ def codes_table(results: Results) -> Table[CodesRow]:
     return Table("codes", columns, shown if len(codes) > 1 else [])
 
 
-def _made(results: Results) -> Iterator[tuple[str, Margin]]:
+def _checks_at_places(results: Results) -> Iterator[tuple[str, Margin]]:
     """Yield the pin and the margin of each check of a code at a named place.
 
     Checks without a demand are left out.

@@ -117,7 +117,10 @@ def landing_blocks(results: Results) -> list[tuple[str, Grid]]:
             here = [i for i, point in enumerate(points) if point == (speed, pulse)]
             columns = [
                 *texts("pin verdict"),
-                *(_at(i, f"{short(first.impulse_time[i])} {units.time}", required) for i in here),
+                *(
+                    _factor_column(i, f"{short(first.impulse_time[i])} {units.time}", required)
+                    for i in here
+                ),
             ]
             title = f"{case}, velocity change {short(speed)} {units.length}/{units.time}"
             title += f", {pulse} pulse" if len(set(first.pulses)) > 1 else ""
@@ -125,7 +128,9 @@ def landing_blocks(results: Results) -> list[tuple[str, Grid]]:
     return blocks
 
 
-def _at(i: int, heading: str, required: Mapping[tuple[str, str], float]) -> Column[LandingRange]:
+def _factor_column(
+    i: int, heading: str, required: Mapping[tuple[str, str], float]
+) -> Column[LandingRange]:
     """Return a column of the safety factors at point i; for a singular row their interval.
 
     required: the required factor by pin and case.

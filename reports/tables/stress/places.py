@@ -111,7 +111,7 @@ def place_rows(pin: PinResult, units: Units) -> list[PlaceRow]:
     return [PlaceRow(pin, name, of, units) for name, of in rows if of is not None]
 
 
-def _of(key: str, dimension: str = "") -> Column[PlaceRow]:
+def _optional_number(key: str, dimension: str = "") -> Column[PlaceRow]:
     """Return a column of a number that only some places have."""
     return Column(key, lambda row: getattr(row.of, key, None), dimension)
 
@@ -121,13 +121,13 @@ PLACE_COLUMNS: list[Column[PlaceRow]] = [
     *fields("place governs"),
     *fields("max_von_mises=stress error_estimate=error", "stress"),
     *fields("safety_factor=factor"),
-    _of("verdict"),
+    _optional_number("verdict"),
     *fields("x=at.0 y=at.1 z=at.2", "length"),
     *fields("time", "time"),
-    *(_of(name, "force") for name in ("axial_force", "shear_force")),
-    *(_of(name, "moment") for name in ("bending_moment", "torque")),
-    _of("plastic_utilisation"),
-    *(_of(name, "length") for name in ("reach", "reach_required")),
+    *(_optional_number(name, "force") for name in ("axial_force", "shear_force")),
+    *(_optional_number(name, "moment") for name in ("bending_moment", "torque")),
+    _optional_number("plastic_utilisation"),
+    *(_optional_number(name, "length") for name in ("reach", "reach_required")),
     *unit_columns("length force stress time"),
 ]
 EDGE_COLUMNS: list[Column[PinRow[ContactEdge]]] = [
