@@ -62,7 +62,7 @@ def broken_bars(tell: Tell = lambda _: None, every: int = 1) -> list[Comparison]
     """Return the limit load at yield and the ultimate load of Moore's bars over the loads that
     broke them.
 
-    every: take every so many-th bar.
+    every: n, to take every n-th bar only.
     """
     study = load_study(STUDIES / "moore1948.toml")
     cases = [(row, ratio) for row in records("moore1948.csv") for ratio in RATIOS]

@@ -63,10 +63,11 @@ class SurfaceRead:
 
 
 def read_folder(folder: Path, grown: float = 0.0) -> list[SurfaceRead]:
-    """Return what is read for every row in contact that has VTU files, also on the outside of its
-    solids.
+    """Return the values read for every row in contact that has VTU files, also on the outside of
+    its solids.
 
     grown: number of cells, at most 1, by which the pressed area is enlarged on every side.
+
     Raises: ValueError for another `grown`.
     """
     if not 0.0 <= grown <= 1.0:

@@ -75,8 +75,8 @@ def _mesh(pin: PinBody, material: Material) -> Iterator[str]:
 
 
 def _supports(ties: Ties) -> Iterator[str]:
-    """Yield the components that are zero, and the equations of those that are plus or
-    minus others.
+    """Yield the zero components, and the equations between components that are equal or
+    opposite.
     """
     yield "*BOUNDARY"
     for node, axis in zip(*divmod(np.flatnonzero(ties.unknown < 0), 3), strict=True):

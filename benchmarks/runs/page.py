@@ -104,7 +104,7 @@ def _row(number: int, folder: Path) -> tuple[object, ...]:
 
 
 def _opened(report: Path) -> tuple[Any, ...]:
-    """Return what is measured on a page.
+    """Return the measurements of a page in a browser.
 
     These are: nodes, time until loaded, s, memory of scripts, MB, time until the last pin's view is
     drawn, s, time until all parts are open, s, and the number of nodes then.

@@ -1,4 +1,5 @@
-"""What lets go first: the load factors at which parts of a pin's joint yield, fail or collapse.
+"""The parts of a pin's joint that let go first: the load factors at which they yield, fail or
+collapse.
 
 A load factor multiplies all loads of the case. The load factor of a check is its allowable over its
 demand. A demand that comes from contact with a clearance or with rounded edges does not grow in

@@ -150,7 +150,7 @@ def _lost_fits(depends_on: Sequence[Dependence]) -> list[str]:
 
 
 def _ranges(depends_on: Sequence[Dependence], units: Units) -> list[str]:
-    """Return all ranges in words as a list of one text; empty without ranges."""
+    """Return a list with one text that names all ranges; empty without ranges."""
     parts = []
     for over in dict.fromkeys(d.over for d in depends_on):
         if over in (BENEATH_CONTACT, PRESS_FIT):

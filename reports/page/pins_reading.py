@@ -1,4 +1,4 @@
-"""How to read the pins: conventions and exclusions that apply to all pins, each stated once."""
+"""The conventions and exclusions that apply to all pins of the page, each stated once."""
 
 from __future__ import annotations
 
