@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache, partial
+from typing import Literal
 
 import numpy as np
 
@@ -51,6 +53,8 @@ from pinbase.arrays import Mask
 # judgement, coarser than MODE_TOLERANCE since only ratios of maxima follow from it.
 VARIATION_MODE_TOLERANCE = 1e-2
 
+Cells = Literal["own", "large"]  # those of the model, or twice as large
+
 
 @dataclass(frozen=True)
 class VariedPressures:
@@ -70,21 +74,21 @@ class PressedJoint:
 
     per_arc: harmonics that the cells follow, times the half angle of contact in rad.
     lugs: of a varied joint.
-    large: the same contact on cells twice as large, where the arcs are too narrow for these.
-    own_cells: whether the cells are those of the model, instead of cells twice as large.
+    cells: on which it is solved.
+    large: the same contact on large cells, where the arcs are too narrow for these.
     """
 
     waves: Floats
     states: list[ContactState]
     per_arc: float = math.inf
     lugs: tuple[Lug, ...] = ()
+    cells: Cells = "own"
     large: PressedJoint | None = None
-    own_cells: bool = True
 
     @property
     def with_rougher(self) -> tuple[PressedJoint, ...]:
         """This joint, and on narrow arcs the one from which the error of the cells follows: on
-        cells twice as large, if it is known there, with half the harmonics.
+        large cells, if it is known on these, with half the harmonics.
         """
         if self.large is not None:
             return self, in_half_the_harmonics(self.large)
@@ -107,6 +111,9 @@ class ChangedContact:
 JointsUnderChanges = tuple[list[tuple[JointChange, PressedJoint]], list[str]]
 
 
+# By contact, cells and gaps: the cells in contact of a joint, from which others begin.
+Touching = dict[tuple[int, Cells, bytes], Mask]
+Problems = Callable[[Cells], tuple[ContactProblem, Floats]]
 # The joint as given on the cells of varied ones: its stress, the relative error, and the contact.
 LikeGiven = tuple[AtPlaces, AtPlaces, PressedJoint]
 
@@ -115,17 +122,16 @@ LikeGiven = tuple[AtPlaces, AtPlaces, PressedJoint]
 class JointChanges:
     """Contacts, each at one instant, whose joint is changed.
 
-    likes: for each contact, the joint as given on cells twice as large and on the model's own
-    cells, with its stress and the relative error from the cells.
-    own_cells: whether all joints are solved on the model's own cells. Otherwise they are solved on
-    cells twice as large, which cost less, where these follow the arcs of contact.
+    likes: for each contact, the joint as given on these cells.
+    cells: on which joints are solved. The second, if there are two, follow where the arcs of
+    contact are too narrow for the first.
     """
 
     model: ContactModel
     at: Sequence[JointContact]
     requirement: Requirement
-    likes: Sequence[tuple[LikeGiven, LikeGiven]]
-    own_cells: bool
+    likes: Sequence[Mapping[Cells, LikeGiven]]
+    cells: tuple[Cells, ...]
 
     def by(
         self, changes: Sequence[Sequence[JointChange]], known: PressureModes
@@ -135,20 +141,17 @@ class JointChanges:
         """
         model = self.model
         every = self.joints(changes)
-        joints = [[joint for _, joint in solved] for solved, _ in every]
+        joints = [[x for _, one in solved for x in one.with_rougher] for solved, _ in every]
         parts = [(x.waves, VARIATION_MODE_TOLERANCE) for x in itertools.chain(*joints)]
         patterns = model.patterns(parts, known) if parts else known
         loads = [
-            [
-                loads_of(model, patterns, one, contact)
-                for one in itertools.chain(*(x.with_rougher for x in of_contact))
-            ]
+            [loads_of(model, patterns, one, contact) for one in of_contact]
             for contact, of_contact in zip(self.at, joints, strict=True)
         ]
         stress = iter(at_places(model, self.requirement, loads) if any(loads) else [])
         out = []
         for contact, like, (solved, missing) in zip(self.at, self.likes, every, strict=True):
-            over = [self._variation(contact, like[one.own_cells], change, one, stress)
+            over = [self._variation(contact, like[one.cells], change, one, stress)
                     for change, one in solved]  # fmt: skip
             out.append(ChangedContact(largest_of(over, low=min), tuple(missing)))
         return out, patterns
@@ -190,69 +193,57 @@ class JointChanges:
         # For other gaps the usual first guess is nearer: it knows the width of contact.
         gaps = self.model.bands.gap.tobytes()
         touching = {
-            (k, own, gaps): self._given(k, own)
-            for k in range(len(self.at))
-            for own in (False, True)
+            (k, on, gaps): self._given(k, on) for k in range(len(self.at)) for on in self.cells
         }
         for name, of_change in wanted.items():
             _, change = of_change[0]
             other = self.model.varied(change.lugs, change.softness)
-            large = None if self.own_cells else on_coarser_cells(other)
+            problems = cache(partial(_problem, other))
             for k, _ in of_change:
                 solved, missing = out[k]
                 try:
-                    joints = self._on_cells_that_follow(k, other, large, touching)
+                    joints = self._on_cells_that_follow(k, other, problems, touching)
                     solved += [(change, joint) for joint in joints]
                 except SolveError as error:
                     missing.append(f"{name} ({error})")
         return out
 
     def _on_cells_that_follow(
-        self,
-        k: int,
-        other: ContactModel,
-        large: tuple[ContactProblem, Floats] | None,
-        touching: dict[tuple[int, bool, bytes], Mask | None],
+        self, k: int, other: ContactModel, problems: Problems, touching: Touching
     ) -> list[PressedJoint]:
-        """A contact in another joint: on large cells where they follow the arcs of contact, else on
-        the model's own cells. Where these do not follow either, both count, since either error may
-        be too small. The arguments are as of `_joint`.
+        """A contact in another joint, on the first cells if they follow the arcs of contact, else
+        on the model's own. Where these do not follow either, both count, since either error may be
+        too small. The arguments are as of `_joint`.
         """
-        if large is None:
-            return [self._joint(k, other, None, touching)]
-        joint = self._joint(k, other, large, touching)
-        if joint.per_arc >= MIN_HARMONICS_PER_ARC:
+        first, *more = self.cells
+        joint = self._joint(k, other, first, problems, touching)
+        if joint.per_arc >= MIN_HARMONICS_PER_ARC or not more:
             return [joint]
-        own = replace(self._joint(k, other, None, touching), large=joint)
-        return [joint, own] if own.per_arc < MIN_HARMONICS_OF_ORDER else [own]
+        second = self._joint(k, other, more[0], problems, touching)
+        own, large = (joint, second) if first == "own" else (second, joint)
+        own = replace(own, large=large)
+        return [large, own] if own.per_arc < MIN_HARMONICS_OF_ORDER else [own]
 
     def _joint(
-        self,
-        k: int,
-        other: ContactModel,
-        large: tuple[ContactProblem, Floats] | None,
-        touching: dict[tuple[int, bool, bytes], Mask | None],
+        self, k: int, other: ContactModel, cells: Cells, problems: Problems, touching: Touching
     ) -> PressedJoint:
-        """A contact in another joint.
+        """A contact in another joint on some cells.
 
-        large: the cells twice as large; None for the model's own.
+        problems: gives the contact problem of the other joint on cells, as `on_coarser_cells`.
         touching: the cells in contact from which the search begins; the first result of other gaps
         is added.
         """
-        own, contact = large is None, self.at[k]
-        like = k, own, other.bands.gap.tobytes()
-        cells = large or _own_cells(other)
-        joint = on_cells(other, contact.loads.links, *cells, touching.get(like))
+        contact, like = self.at[k], (k, cells, other.bands.gap.tobytes())
+        joint = on_cells(other, contact.loads.links, *problems(cells), touching.get(like))
         touching.setdefault(like, joint.states[0].active)
-        highest = self.model.cells.highest * (1.0 if own else 0.5)
+        highest = self.model.cells.highest * (1.0 if cells == "own" else 0.5)
         per_arc = highest * contact.half_angle(other.bands, other.tail)
-        return replace(joint, per_arc=per_arc, lugs=other.lugs, own_cells=own)
+        return replace(joint, per_arc=per_arc, lugs=other.lugs, cells=cells)
 
-    def _given(self, k: int, own: bool) -> Mask | None:
+    def _given(self, k: int, cells: Cells) -> Mask:
         """The cells in contact in the joint as given."""
-        if own:
-            return self.at[k].contact[0].active
-        return self.likes[k][0][2].states[0].active if self.likes else None
+        states = self.at[k].contact if cells == "own" else self.likes[k][cells][2].states
+        return states[0].active
 
 
 def largest_of(
@@ -380,5 +371,5 @@ def in_half_the_harmonics(joint: PressedJoint) -> PressedJoint:
     return replace(joint, waves=waves)
 
 
-def _own_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
-    return model.contact, np.eye(len(model.rings))
+def _problem(model: ContactModel, cells: Cells) -> tuple[ContactProblem, Floats]:
+    return (model.contact, np.eye(len(model.rings))) if cells == "own" else on_coarser_cells(model)

@@ -8,7 +8,7 @@ act on one mesh, the first: its error is in all maxima alike, so that their rati
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -24,6 +24,7 @@ from fea.support.contact.cell_error import (
 from fea.support.contact.coarser_cells import on_coarser_cells
 from fea.support.contact.friction import friction_variations, rubbed, rubbed_across, rubs
 from fea.support.contact.joint_changes import (
+    Cells,
     JointChanges,
     LikeGiven,
     PressedJoint,
@@ -133,14 +134,15 @@ def compare(
         [loads_of(model, patterns, x, contact) for x in (*both, in_half_the_harmonics(both[1]))]
         for contact, both in zip(at, exact, strict=True)
     ]
-    stress, out, likes = at_places(model, requirement, every), [], []
+    likes: list[Mapping[Cells, LikeGiven]] = []
+    stress, out = at_places(model, requirement, every), []
     for contact, both in zip(at, exact, strict=True):
         first, twice, roughest = (stress.pop(0) for _ in range(3))
         arc = contact.half_angle(model.bands, model.tail)
         cells = by_cells(first, roughest, model.cells.rings, arc * model.cells.highest)
         out.append(ResolutionComparison(first, cells, contact.loads.links, (), half_angle=arc))
         own, large = both
-        likes.append(((twice, cells, large), (first, cells, own)))
+        likes.append({"own": (first, cells, own), "large": (twice, cells, large)})
     which = (True,) * len(at) if vary is None else vary(out)
     if any(which):
         ratios = _over_joint(model, at, requirement, patterns, likes, which)
@@ -148,26 +150,25 @@ def compare(
     return tuple(out)
 
 
-def _large_cells(model: ContactModel) -> bool:
-    """Whether the model's own cells are so large that all varied joints are solved on them."""
-    return model.cells.rings < USUAL_RING_COUNT
-
-
 def _over_joint(
     model: ContactModel,
     at: Sequence[JointContact],
     requirement: Requirement,
     known: PressureModes,
-    likes: Sequence[tuple[LikeGiven, LikeGiven]],
+    likes: Sequence[Mapping[Cells, LikeGiven]],
     vary: Sequence[bool],
 ) -> list[tuple[tuple[Variation, ...], str]]:
     """The variations of each contact, and what is not included in them.
 
-    likes: the joints as given on cells twice as large and on own cells.
+    likes: the joints as given, on the cells on which they are known.
     vary: the contacts whose joint is varied.
     """
     changes = tuple(joint_variations(model.whole, model.lugs)) if any(vary) else ()
-    joints = JointChanges(model, at, requirement, likes, _large_cells(model))
+    tried: tuple[Cells, ...] = ("large", "own")
+    if model.cells.rings < USUAL_RING_COUNT:  # so large that larger ones tell the error alone
+        tried = "own", "large"
+    known_on = likes[0] if likes else {}
+    joints = JointChanges(model, at, requirement, likes, tuple(x for x in tried if x in known_on))
     changed, known = joints.by([changes if so else () for so in vary], known)
     by_friction = _by_friction(model, requirement, known, at, vary)
     out = []
@@ -181,7 +182,7 @@ def varied_pressures(model: ContactModel, contact: JointContact) -> tuple[Varied
     """The pressures of a contact at one instant, and under each change of the joint but friction
     that can be solved, all on the model's own cells.
     """
-    joints = JointChanges(model, [contact], Requirement(), (), own_cells=True)
+    joints = JointChanges(model, [contact], Requirement(), (), ("own",))
     ((solved, _),) = joints.joints([tuple(joint_variations(model.whole, model.lugs))])
     varied = (VariedPressures(x.lugs, x.waves) for _, x in solved)
     return (VariedPressures(model.lugs, model.waves(contact.contact)), *varied)
@@ -233,7 +234,8 @@ def uncompared(
     own = [PressedJoint(model.waves(x.contact), list(x.contact)) for x in at]
     loads = [[loads_of(model, known, *both)] for both in zip(own, at, strict=True)]
     stress = at_places(model, requirement, loads)
-    likes = [((x, NOWHERE, joint),) * 2 for x, joint in zip(stress, own, strict=True)]
+    likes: list[Mapping[Cells, LikeGiven]]
+    likes = [{"own": (x, NOWHERE, joint)} for x, joint in zip(stress, own, strict=True)]
     over = _over_joint(model, at, requirement, known, likes, (True,) * len(at))
     return tuple(
         ResolutionComparison(like, NOWHERE, x.loads.links, *varied)
