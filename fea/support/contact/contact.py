@@ -1,19 +1,20 @@
-"""Frictionless contact of a pin with its lugs, on cells: rings of the bands times sectors.
+"""Frictionless contact of a pin with its lugs on cells, which are rings of the bands times sectors.
 
-With pressure p >= 0 on the cells, the gap to the bore is, on the average of a cell,
+With pressure p >= 0 on the cells, the mean gap between pin and bore over a cell is
 
     g = clearance / 2 + edge rounding + C p + (shift of the lug + z turn of the pin) . e_r >= 0
 
-and p g = 0. C is the flexibility of pin and lugs together, harmonic by harmonic, the half-plane's
-beyond, under pressures that are even on every cell, and averaged over cells, so that it is
-symmetric. A lug whose tilt is elastic adds the tilt that the pressures' couple makes. Shifts and
-turn are the multipliers of what equilibrium asks: the resultant on the bands of a link is its
-force, and the couples on the pin are in balance. It is a linear complementarity problem with a
-positive definite matrix; a primal-dual active set solves it in few steps. Where it runs in circles,
-as it may where hardly more cells touch than hold the pin, descent of the energy finds the cells
-(fea.support.contact.least_energy). As long as the same cells are in contact everything is linear in
-the loads: what a set of cells answers is found once and kept, so that neighbouring instants take
-next to nothing.
+and p g = 0. C is the flexibility of pin and lugs together under pressures that are uniform on each
+cell. It is computed harmonic by harmonic, with that of a half-plane for the highest harmonics, and
+averaged over cells, so that it is symmetric. A lug whose tilt is elastic adds the tilt that the
+couple of the pressures causes. Shifts and turn are the Lagrange multipliers of equilibrium: the
+resultant on the bands of a link is the link's force, and the couples on the pin are in balance.
+
+This is a linear complementarity problem with a positive definite matrix. A primal-dual active set
+solves it in few steps. The active set may cycle where barely more cells touch than are needed to
+hold the pin; then a descent of the energy finds the cells (fea.support.contact.least_energy). As
+long as the same cells are in contact, everything is linear in the loads. The response of each set
+of cells is therefore computed once and kept, so that neighbouring instants cost almost nothing.
 
 Sources: Hintermueller, Ito & Kunisch, SIAM J. Optim. 13 (2002) 865 (the active set); Ciavarella &
 Decuzzi, Int. J. Solids Struct. 38 (2001) 4507 (the plane problem that tests compare with).
@@ -43,34 +44,37 @@ from pinbase.arrays import Mask
 # Limits of the iteration and of the descent, chosen by judgement. They decide how soon contact is
 # found; the contact itself is unique.
 MAX_ACTIVE_SET_STEPS = 30
-# Of the loads: force of the first springs when they give as much as the largest gap. Their
-# softening where they pass on too little. Of 400 random light loads in loose lugs none took more
-# than five rounds.
+# Springs hold the pin during the descent. SPRING_FORCE is the force of the first springs, relative
+# to the loads, when they stretch by the largest gap and the elastic displacement. SPRING_SOFTENING
+# is the factor on their stiffness where they have passed on too little of the loads. Of 400 random
+# light loads in loose lugs none took more than five rounds.
 SPRING_FORCE, SPRING_SOFTENING, MAX_SPRING_ROUNDS = 1e-3, 1e-3, 30
-# Of required resultants and rigid motions, which come in pairs along x and y.
+# The x and y parts of required resultants and rigid motions, which come in pairs.
 ALONG_X, ALONG_Y = slice(0, None, 2), slice(1, None, 2)
 # Round-off of double precision, with a margin chosen by judgement.
 BALANCE_TOLERANCE = 1e-9  # of the largest force
 CLOSING_FORCE_ROUND_OFF = 1e-12  # of the forces that would close the gaps
 SIGN_TOLERANCE = 1e-12  # of the largest pressure or gap: a wrong sign below it is round-off
-# Of the stiffness of the cells: holds a lug that has lost all contact, and is far too soft to
-# change that of a lug in contact.
+# A spring, relative to the stiffness of the cells, that holds a lug which has lost all contact. It
+# is far too soft to change the contact of any other lug.
 SOFT_SPRING_STIFFNESS = 1e-13
-# Numbers kept of the responses of sets of cells, counted by one value of each cell and motion.
+# The responses of sets of cells that are kept, counted as one number for each cell and motion.
 MAX_KEPT_NUMBERS = 4_000_000
-MAX_KEPT_STATES = 64  # of loads: those of single instants are requested repeatedly
+# Solved states that are kept, by their loads: single instants are requested repeatedly.
+MAX_KEPT_STATES = 64
 
 
 class ContactProblem:
-    """One pin in its lugs, ready for any loads.
+    """The contact problem of one pin in its lugs, ready for any loads.
 
-    flexibility: (N + 1, R, R) m/Pa by harmonic, of pin and lugs together, on means over rings.
-    tail: n u_n / p_n of both together for higher harmonics, m/Pa, (R,).
-    tilt: (B,) N m/rad, stiffness of the lugs' tilt, inf where guided, 0 where free.
-    sectors: M, of equal angles, the first about x.
-    besides: (U, U) m/N, further displacement of cells under forces on cells, of a body that is not
-    alike in all directions.
-    gone: (U,) the cells that are not there.
+    flexibility: mean displacements of rings, by harmonic, pin and lugs together, (N + 1, R, R)
+    m/Pa.
+    tail: n u_n / p_n of pin and lugs together for higher harmonics, (R,) m/Pa.
+    tilt: tilt stiffness of the lugs, (B,) N m/rad; inf where guided, 0 where free.
+    sectors: number M of equal sectors; the first is centred on x.
+    besides: displacement of cells under forces on cells that a body without rotational symmetry
+    adds, (U, U) m/N.
+    gone: mask (U,) of the cells that cuts have removed.
     """
 
     def __init__(
@@ -110,7 +114,7 @@ class ContactProblem:
         return other
 
     def freed(self, bands: Mask) -> ContactProblem:
-        """The same problem with some of the lugs (B,) free to tilt, kept for further loads."""
+        """The same problem with the lugs of a mask (B,) free to tilt, kept for later loads."""
         key = bands.tobytes()
         if not bands.any():
             return self
@@ -121,7 +125,7 @@ class ContactProblem:
 
     @cached_property
     def mirrored(self) -> ContactProblem:
-        """The same problem under loads along x, whose contact is mirrored about x."""
+        """The same problem for loads in the plane of x and the axis, where contact is symmetric."""
         other = copy.copy(self)
         other._cells = Sectors(self.sectors, mirrored=True)
         other._fit(self.bands, self.tilt)
@@ -135,7 +139,9 @@ class ContactProblem:
         self._link = np.repeat(bands.links[bands.band], len(self._cells))
         self._open = np.repeat(bands.gap, len(self._cells)) + self._beyond
         self._motions, self._tilts = self.rigid(bands, tilt)
-        largest = np.abs(self._motions).max(axis=0)  # a turn counts as the shift at the far end
+        # The largest gap change of each motion: a turn counts as the shift that it causes farthest
+        # from the middle.
+        largest = np.abs(self._motions).max(axis=0)
         self._reach = np.where(largest > 0.0, largest, 1.0)
         self._answers: dict[bytes, Answer] = {}
         self._states: dict[bytes, ContactState] = {}
@@ -144,28 +150,31 @@ class ContactProblem:
 
     @cached_property
     def _compliance(self) -> Floats:
-        """The mean displacements (U, U) of the cells under forces on them, m/N."""
+        """The mean displacements of the cells under forces on the cells, (U, U) m/N."""
         fixed = self._elastic.of(self._cells)
         return fixed + self._tilts @ self._tilts.T if self._tilts.size else fixed
 
     @property
     def _softest(self) -> float:
-        """The largest compliance, m/N: of a positive definite matrix it is on the diagonal."""
+        """The largest compliance, m/N: the largest entry of a positive definite matrix is on its
+        diagonal.
+        """
         return float(self._compliance.diagonal().max())
 
     @property
     def closed(self) -> bool:
-        """Whether pin and bores fit everywhere before any load."""
+        """Whether the gap is zero everywhere before loading."""
         return not self.bands.gap.any()
 
     def rigid(self, bands: Bands, tilt: Sequence[float]) -> tuple[Floats, Floats]:
-        """Changes of the gap by the motions of lugs and pin, on bands with as many rings.
+        """The changes of the gap by rigid motions of lugs and pin, on bands with as many rings.
 
-        The first value, (U, Y), is that of motions without stiffness: shifts of the lugs, turn of
-        the pin, tilts of the free lugs. The second, (U, S), is that of sprung tilts over the root
-        of their stiffness, so that its product with itself is their compliance.
+        The first array, (U, Y), is for motions without stiffness: shifts of the lugs, turn of the
+        pin, tilts of the free lugs. The second array, (U, S), is for elastic tilts. Each column is
+        divided by the square root of the tilt stiffness, so that the array times its transpose is
+        the compliance of the tilts.
         """
-        # Mirrored about x, nothing moves along y.
+        # With symmetry about x, nothing moves along y.
         e_r = self._e_r[:, :1] if self._cells.mirrored else self._e_r
         columns = [e_r * (self._link == k)[:, None] for k in range(self._count)]
         band, z = (np.repeat(x, len(self._cells)) for x in (bands.band, bands.z))
@@ -187,13 +196,15 @@ class ContactProblem:
         start: Mask | None = None,
         moments: Floats | None = None,
     ) -> ContactState:
-        """The contact under forces (L, 2), N, of the links on the pin, along x and y.
+        """Return the contact under forces of the links.
 
-        couple: N m, along x and y, on the pin by anything but the lugs.
-        start: cells (R, M) in contact at a neighbouring instant.
-        moments: (B, 2) N m, along x and y, of the lugs that are free to tilt, on the pin.
+        forces: on the pin, along x and y, (L, 2) N.
+        couple: on the pin along x and y, by everything but the lugs, N m.
+        start: mask (R, M) of the cells in contact at a neighbouring instant.
+        moments: on the pin along x and y, by the lugs that are free to tilt, (B, 2) N m.
 
-        Raises: SolveError where the active set does not settle.
+        Raises: SolveError where no set of cells in contact is found or no contact can react the
+        loads.
         """
         forces = np.asarray(forces, dtype=np.float64)
         required = self.required_resultants(forces, couple, moments)
@@ -213,13 +224,13 @@ class ContactProblem:
         return state
 
     def _along_x(self, required: Floats) -> bool:
-        """Whether required resultants lie in the plane of x and the pin's axis."""
+        """Whether the required resultants lie in the plane of x and the pin's axis."""
         size = np.abs(required) / self._reach
         return bool(size[ALONG_Y].max() <= BALANCE_TOLERANCE * size.max())
 
     def _settled(self, required: Floats, active: Mask) -> ContactState | None:
-        """The contact found from a first set of cells in contact; None where the sets do not
-        settle.
+        """Return the contact that the active set finds from a first guess of the cells in contact;
+        None where it does not settle.
         """
         # Each step solves the linear contact of the guessed cells, then corrects the guess: cells
         # in tension open, cells that penetrate close. This is a semismooth Newton method
@@ -231,7 +242,8 @@ class ContactProblem:
             wrong_force = active & (force < -SIGN_TOLERANCE * np.abs(force).max(initial=0.0))
             wrong_gap = ~active & (gap < -SIGN_TOLERANCE * np.abs(gap).max(initial=0.0))
             if not (wrong_force | wrong_gap).any():
-                # Cells that press nowhere near enough, as in one of two free lugs, are no contact.
+                # Cells whose forces miss the required resultants, as in one of two free lugs, are
+                # no solution.
                 balanced = self._balances(force, required, answer)
                 return self._state(force, gap, motion, step) if balanced else None
             if (key := active.tobytes()) in seen:
@@ -241,16 +253,16 @@ class ContactProblem:
         return None
 
     def _chosen(self, gap: Floats, overlaps: Mask, active: Mask) -> Mask:
-        """A mask of the cells to close at once, of those that overlap."""
-        # Where fewer cells touch than hold the pin, it turns far and most of the others
-        # penetrate: only the deepest of each band is then near to those that will touch.
+        """A mask of the overlapping cells to close in the next step."""
+        # Where fewer cells touch than are needed to hold the pin, the pin turns far and most other
+        # cells overlap. Only the deepest cell of each band is then near those that will touch.
         loose = overlaps & (self._open > 0.0)
         if np.count_nonzero(loose) <= np.count_nonzero(active):
             return overlaps
         return np.asarray((overlaps & ~loose) | self._deepest(gap, loose))
 
     def _deepest(self, gap: Floats, among: Mask) -> Mask:
-        """A mask of the cell of least gap of each band, among some."""
+        """A mask of the cell with the smallest gap in each band, among the given cells."""
         out, rings = np.zeros_like(among), len(self.bands.z)
         shallow = np.where(among, gap, np.inf).reshape(rings, -1)
         for band in range(int(self.bands.band.max()) + 1):
@@ -261,16 +273,18 @@ class ContactProblem:
         return out & among
 
     def _by_energy(self, required: Floats, first: Mask) -> ContactState | None:
-        """The contact found by descent of the energy, which finds every contact that exists; None
-        where round-off hides it.
+        """Return the contact that descent of the energy finds; None where round-off hides it.
 
-        first: cells with which to begin.
+        Descent finds every contact that exists. first: mask of the cells in contact at the start.
+
+        Raises: SolveError where no forces of the cells have the required resultants.
         """
         size = float(np.abs(required / self._reach).max())
         require_forces((self._motions / self._reach).T, required / self._reach / (size or 1.0))
-        # The descent holds the pin by springs, whose far ends move by the loads: by all that the
-        # springs have not passed on, until they have passed on everything (the method of
-        # multipliers). Small parts of the loads need softer springs to get as far as the gaps.
+        # Springs hold the pin and the lugs, since without them the energy would have no bound. The
+        # springs first pull with the loads. Each round adds the part of the loads that has not
+        # reached the cells, until nothing is missing (the method of multipliers). Small parts of
+        # the loads need softer springs, so that the pin moves as far as the gaps are wide.
         give = float(np.abs(self.bands.gap).max()) + size * self._softest
         spring, pull, missing = SPRING_FORCE * (size or 1.0) / give, required, required
         force = np.maximum(self._answer(first).on_springs(pull, spring)[0], 0.0)
@@ -292,7 +306,10 @@ class ContactProblem:
         return self._answer(active).on_springs(pull, spring)
 
     def _energy(self, force: Floats, pull: Floats, spring: float) -> float:
-        """The energy, N m, of forces (U,) on springs, N/m, which is least where these press."""
+        """The energy of cell forces (U,) N with springs of a stiffness, N/m, in N m.
+
+        It is least for the forces of contact.
+        """
         rows = np.flatnonzero(force)
         some = force[rows]
         stretched = (self._motions[rows].T @ some - pull) / self._reach
@@ -300,7 +317,7 @@ class ContactProblem:
         return elastic + float(self._open[rows] @ some + 0.5 * stretched @ stretched / spring)
 
     def _answer(self, active: Mask) -> Answer:
-        """The response of given cells in contact, kept for later instants."""
+        """The response of given cells in contact; it is kept for later instants."""
         key = np.packbits(active).tobytes()
         if key not in self._answers:
             if len(self._answers) * self._motions.size > MAX_KEPT_NUMBERS:
@@ -310,7 +327,7 @@ class ContactProblem:
 
     def _compute_answer(self, active: Mask) -> Answer:
         # On the cells in contact the gap is zero: C p = -open - G y. One factorisation of C serves
-        # the initial gaps and every rigid motion y, which are then the only unknowns left.
+        # the initial gaps and every rigid motion. The motions y are then the only unknowns left.
         C, G = self._compliance, self._motions
         rows = np.flatnonzero(active)
         force, yielding = np.zeros(len(active)), np.zeros(G.shape)
@@ -331,10 +348,10 @@ class ContactProblem:
         couple: tuple[float, float] = (0.0, 0.0),
         moments: Floats | None = None,
     ) -> Floats:
-        """The resultants (Y,) that the cells' forces must have on the rigid motions.
+        """The resultants (Y,) that the cells' forces must have, one for each rigid motion.
 
-        Their sign is negative since the cells push the pin against e_r.
-        moments: of the lugs that are free to tilt, as of `solve`.
+        The links' forces change sign, since the cells push the pin against e_r. The arguments are
+        those of `solve`.
         """
         mx, my = couple  # x: by forces along -y at z, y: by forces along x at z
         free = np.array(self.tilt) == 0.0
@@ -346,10 +363,9 @@ class ContactProblem:
     def _balances(self, force: Floats, required: Floats, answer: Answer) -> bool:
         """Whether the cells' forces have the required resultants.
 
-        Raises: SolveError where round-off hides it.
+        Raises: SolveError where round-off hides whether they do.
         """
-        # A couple counts as the force at the far end that makes it, so that all residuals are
-        # forces.
+        # A couple counts as a force on the longest lever arm, so that all residuals are forces.
         residual = np.abs(self._motions.T @ force - required) / self._reach
         lost = residual.max(initial=0.0)
         if lost <= BALANCE_TOLERANCE * np.abs(required).max(initial=force.max(initial=0.0)):
@@ -362,14 +378,14 @@ class ContactProblem:
         return False
 
     def adjoint(self, active: Mask, wanted: Floats, required: Floats) -> AdjointContact:
-        """The sensitivity of a sum of the cells' forces, weighted by `wanted` (U,), to gaps and
-        loads.
+        """The sensitivity of a weighted sum of the cells' forces to gaps and loads.
 
-        active: the cells (R, M) in contact.
-        required: the required resultants of the rigid motions.
+        active: mask (R, M) of the cells in contact.
+        wanted: weights of the forces in the sum, (U,).
+        required: required resultants of the rigid motions, (Y,).
         """
         # The problem is symmetric: the adjoint is the same contact with `wanted` as its right-hand
-        # side and no resultants.
+        # side and zero resultants.
         rows = np.flatnonzero(active)
         answer = self._answer(active.ravel())
         force, _, motion = answer.under(required)
@@ -377,13 +393,13 @@ class ContactProblem:
         dual = np.zeros(len(force))
         dual[rows] = cho_solve(cho_factor(C, lower=True, check_finite=False), wanted[rows])
         of_motion, lost = np.zeros(len(required)), G.T @ dual[rows]
-        for _ in range(2):  # once more for round-off, as contact itself
+        for _ in range(2):  # the second pass removes round-off, as in Answer.under
             of_motion += answer.motion(lost)
             lost = G.T @ (dual[rows] - answer.yielding[rows] @ of_motion)
         return AdjointContact(force, motion, dual - answer.yielding @ of_motion, of_motion)
 
     def first_cells(self, forces: Floats, moments: Floats | None = None) -> Mask:
-        """A mask (U,) of the cells that are likely to touch under loads as of `solve`."""
+        """A mask (U,) of the cells that are likely to touch under the loads of `solve`."""
         acting = cell_loads(self.bands, len(self._cells), forces, moments)
         return facing_cells(self.bands, self._tail, self.sectors, self._e_r, acting)
 

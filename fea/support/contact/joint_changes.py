@@ -1,8 +1,7 @@
-"""Contact in joints that are changed: stress, and forces across the pin, relative to the joint as
-given.
+"""Contact in changed joints: stress and forces across the pin, relative to the joint as given.
 
-Contact is solved again with the flexibilities at hand, and all pressures act on one mesh, the
-first: its error is in all maxima alike, so that their ratios are compared.
+Contact is solved again with the known flexibilities. All pressures act on one mesh, the first,
+whose error is nearly the same in all maxima, so that the ratios of maxima are used.
 """
 
 from __future__ import annotations
@@ -46,16 +45,18 @@ from fea.support.lugs.lug import Lug
 from fea.support.records import Variation
 from pinbase.arrays import Mask
 
-# Of the largest amplitude: what a pattern must add to the pressures of a varied joint. Chosen by
-# judgement, coarser than MODE_TOLERANCE since only ratios of maxima follow from it.
+# A pattern whose amplitude in the pressures of varied joints is below this fraction of the largest
+# is left out. Chosen by judgement, coarser than MODE_TOLERANCE since only ratios of maxima depend
+# on it.
 VARIATION_MODE_TOLERANCE = 1e-2
 
 
 @dataclass(frozen=True)
 class VariedPressures:
-    """The pressures of a varied joint at an instant.
+    """The pressures of a varied joint at one instant.
 
-    lugs: with their clearance and tilt. waves: harmonics, (N + 1, 1, R, 2) Pa.
+    lugs: with the varied clearance and tilt.
+    waves: harmonics of the pressures, (N + 1, 1, R, 2) Pa.
     """
 
     lugs: tuple[Lug, ...]
@@ -64,10 +65,11 @@ class VariedPressures:
 
 @dataclass(frozen=True)
 class PressedJoint:
-    """The contact at an instant with something changed: the harmonics of its pressures, and the
-    cells.
+    """The contact of a joint at one instant.
 
-    per_arc: harmonics that the cells follow, times the half angle of contact in rad.
+    waves: harmonics of the pressures, (N + 1, 1, R, 2) Pa.
+    states: the contact on the cells.
+    per_arc: number of harmonics that the cells follow, times the half angle of contact in rad.
     lugs: of a varied joint.
     """
 
@@ -78,7 +80,9 @@ class PressedJoint:
 
     @property
     def with_rougher(self) -> tuple[PressedJoint, ...]:
-        """This joint, and on narrow arcs the one from which the error of the cells follows."""
+        """This joint; on narrow arcs also the joint with half the harmonics, which shows the error
+        of the cells.
+        """
         narrow = self.per_arc < MIN_HARMONICS_PER_ARC
         return (self, in_half_the_harmonics(self)) if narrow else (self,)
 
@@ -87,18 +91,20 @@ class PressedJoint:
 class ChangedContact:
     """A contact under some changes of the joint.
 
-    over: the ratios of those that could be solved. missing: the others, and why.
+    over: stress ratios for the changes that could be solved.
+    missing: the other changes, each with its reason.
     """
 
     over: tuple[Variation, ...] = ()
     missing: tuple[str, ...] = ()
 
 
-# The joint of a contact under each change that could be solved, and the others with the reasons.
+# The joint of a contact under each change that could be solved, and the other changes with reasons.
 JointsUnderChanges = tuple[list[tuple[JointChange, PressedJoint]], list[str]]
 
 
-# The joint as given on the cells of varied ones: its stress, the relative error, and the contact.
+# The joint as given on the cells of the varied joints: stress, relative error from the cells, and
+# contact.
 LikeGiven = tuple[AtPlaces, AtPlaces, PressedJoint]
 
 
@@ -106,9 +112,10 @@ LikeGiven = tuple[AtPlaces, AtPlaces, PressedJoint]
 class JointChanges:
     """Contacts, each at one instant, whose joint is changed.
 
-    likes: the joints as given on the same cells, with their stress and its relative error from the
-    cells.
-    own_cells: whether to use the model's own cells, instead of cells twice as large.
+    at: the contacts with the joint as given.
+    likes: the joints as given on the cells of the varied joints (LikeGiven).
+    own_cells: whether varied joints are solved on the model's own cells instead of cells twice as
+    large.
     """
 
     model: ContactModel
@@ -120,8 +127,9 @@ class JointChanges:
     def by(
         self, changes: Sequence[Sequence[JointChange]], known: PressureModes
     ) -> tuple[list[ChangedContact], PressureModes]:
-        """Each contact under changes of its own, and the patterns of the pressures, with those that
-        are known.
+        """Return each contact under its own changes, and the patterns of all pressures.
+
+        known: existing patterns, which come first.
         """
         model = self.model
         every = self.joints(changes)
@@ -150,9 +158,9 @@ class JointChanges:
         joint: PressedJoint,
         stress: Iterator[AtPlaces],
     ) -> Variation:
-        """The ratios of a contact under a change to that as given.
+        """The stress and force ratios of a contact under a change, relative to the joint as given.
 
-        stress: of this joint and those with rougher cells comes next.
+        stress: iterator whose next items belong to this joint (PressedJoint.with_rougher).
         """
         (*stress_given, given), model = like, self.model
         here = [next(stress) for _ in joint.with_rougher]
@@ -165,19 +173,20 @@ class JointChanges:
         )
 
     def joints(self, changes: Sequence[Sequence[JointChange]]) -> list[JointsUnderChanges]:
-        """The joint of each contact under its changes, and those that could not be solved.
+        """The joint of each contact under its changes, and the changes that could not be solved.
 
-        Lugs that are free to tilt may leave a couple on the pin, and contact may be lost in a large
-        clearance.
+        A change may have no solution: lugs that are free to tilt may leave a couple on the pin, and
+        contact may be lost in a large clearance.
         """
         out: list[JointsUnderChanges] = [([], []) for _ in self.at]
         wanted: dict[str, list[tuple[int, JointChange]]] = {}
         for k, of_contact in enumerate(changes):
-            for change in of_contact:  # each is one joint for all contacts
+            for change in of_contact:  # the same change of several contacts needs one model
                 wanted.setdefault(f"{change.what} {change.value}", []).append((k, change))
         highest = self.model.cells.highest * (1.0 if self.own_cells else 0.5)
-        # Joints of the same gaps touch nearly the same cells, from which the next of them begins.
-        # For other gaps the usual first guess is nearer: it knows the width of contact.
+        # Joints with the same gaps touch nearly the same cells, so that each starts from the cells
+        # of the first. For other gaps the usual first guess, which estimates the width of contact,
+        # is nearer.
         gaps = self.model.bands.gap.tobytes()
         touching = {(k, gaps): self._given(k) for k in range(len(self.at))}
         for name, of_change in wanted.items():
@@ -203,7 +212,7 @@ class JointChanges:
 
 
 def loaded(model: ContactModel, joint: PressedJoint, contact: JointContact) -> LoadedJoint:
-    """A varied joint with the resultants of its pressures on the rings."""
+    """A joint with the resultants of its pressures on the rings."""
     loads = resultants(model.pin, model.rings, joint.waves, contact.loads.links)
     return LoadedJoint(model.pin, model.lugs, model.bands, loads, contact.mass)
 
@@ -215,13 +224,14 @@ def _ratio(
     rings: int,
     per_arc: float,
 ) -> Variation:
-    """The variation with its stresses relative to those of the joint as given, and with the error
-    of the cells where that of the row as given does not hold: on narrow arcs, and where the surface
-    governs instead of a section, which the cells hardly change.
+    """The variation with its stresses relative to those of the joint as given.
 
+    The variation has an error of its own where the row's error from the cells does not cover it: on
+    narrow arcs, and where the surface governs instead of a section, whose stress hardly depends on
+    the cells.
     stress: with the variation; on narrow arcs also with half the harmonics.
-    given: of the joint as given, on the same cells, and its relative error.
-    rings, per_arc: as of `_by_cells`.
+    given: stress of the joint as given, on the same cells, and its relative error.
+    rings, per_arc: as in cell_error.by_cells.
     """
     (varied, *half), (like, like_error) = stress, given
     row, interval = like.row or 1.0, None
@@ -254,9 +264,10 @@ def at_places(
     every: Sequence[Sequence[PressureLoads]],
     unread: tuple[Zone, ...] = (),
 ) -> list[AtPlaces]:
-    """The stress at the places on the first mesh, of loads of one instant each.
+    """The stress at the places on the first mesh, for each of the loads, which have one instant
+    each.
 
-    unread: zones that are not read, about which the mesh is no finer.
+    unread: further zones that are not read, but near which the mesh is not refined.
     """
     whole = stacked(list(itertools.chain(*every)))
     singular = singularities_of(model.pin, model.material, (), (whole,), requirement.distance)
@@ -279,14 +290,17 @@ def on_cells(
     belongs: Floats,
     start: Mask | None = None,
 ) -> PressedJoint:
-    """The contact on other cells; the arguments as of `on_coarser_cells` and `pressed`."""
+    """The contact on other cells, expressed on the rings of the model.
+
+    problem, belongs: as from `on_coarser_cells`. links, start: as in ContactModel.pressed.
+    """
     states = model.pressed(links, problem, start)
     states = [replace(x, pressure=belongs @ x.pressure) for x in states]
     return PressedJoint(model.waves(states), states)
 
 
 def in_half_the_harmonics(joint: PressedJoint) -> PressedJoint:
-    """The joint with the lower half of its harmonics alone, as many as half the sectors resolve."""
+    """The joint with only the lower half of its harmonics, which half the sectors would resolve."""
     waves = joint.waves.copy()
     waves[(len(waves) + 1) // 2 :] = 0.0
     return replace(joint, waves=waves)

@@ -1,8 +1,8 @@
-"""The change of a pin's stress with its joint: with the cells of contact, with clearance, and with
-the stiffness of lugs.
+"""The change of a pin's stress with the cells of contact and with the properties of the joint.
 
-Contact is solved again at the governing instants with the flexibilities at hand, and all pressures
-act on one mesh, the first: its error is in all maxima alike, so that their ratios are compared.
+Contact is solved again at the governing instants with the known flexibilities. All pressures act on
+one mesh, the first, whose error is nearly the same in all maxima, so that the ratios of maxima are
+used.
 """
 
 from __future__ import annotations
@@ -49,11 +49,12 @@ from geometry.shape.rings import USUAL_RING_COUNT
 class ResolutionComparison:
     """The stress at one instant on the first mesh, and its relative error from the cells.
 
-    links: the loads.
+    stress, cells: the stress, Pa, and the error.
+    links: loads of the links at the instant.
     over: variations of the joint, with the larger of surface and section, and the stress beneath
     contact, relative to those of the joint as given.
     left_out: the variations that could not be solved, and why.
-    half_angle: of contact where a lug presses most, rad (JointContact.half_angle).
+    half_angle: half angle of contact where a lug presses most, rad (JointContact.half_angle).
     """
 
     stress: AtPlaces
@@ -64,9 +65,9 @@ class ResolutionComparison:
     half_angle: float = 0.5 * math.pi
 
     def ratios(self, case: AtPlaces) -> tuple[Variation, ...]:
-        """The variations relative to the largest stress of a case instead of that of the instant.
+        """The variations relative to the largest stress of a case instead of that at the instant.
 
-        case: on the first mesh, as given.
+        case: the largest stress of the case with the joint as given, on the first mesh.
         """
         own = self.stress
         row, deep = own.row / (case.row or 1.0), own.beneath / (case.beneath or 1.0)
@@ -76,8 +77,8 @@ class ResolutionComparison:
         )
 
     def is_at(self, links: PinLoads, case: PinLoads) -> bool:
-        """Return whether an instant is this one, or no farther from it than two of the case's are
-        apart.
+        """Return whether the instant of the given loads is this one, or away from it by at most the
+        longest interval of the case.
         """
         if links.times is None or self.links.times is None or case.times is None:
             return np.array_equal(links.forces, self.links.forces)
@@ -86,17 +87,17 @@ class ResolutionComparison:
 
 
 def scaled(x: Variation, row: float, below: float) -> Variation:
-    """A variation with its stress times a factor, and with that beneath contact times another."""
+    """The variation with its stress times `row` and its stress beneath contact times `below`."""
     interval = x.interval and (row * x.interval[0], row * x.interval[1])
     deep = below * (x.beneath or 0.0)
     return replace(x, max_von_mises=row * x.max_von_mises, interval=interval, beneath=deep)
 
 
 def largest_of(every: Iterable[Variation]) -> tuple[Variation, ...]:
-    """The variations of a case whose joint is varied at several instants: of each change the
-    largest stress and forces at any of them.
+    """The variations of a case whose joint is varied at several instants: for each change the
+    largest stress and forces at any of the instants.
 
-    every: relative to the same stress.
+    every: variations at all instants, relative to the same stress.
     """
     of = dict[tuple[str, str], list[Variation]]()
     for x in every:
@@ -107,7 +108,7 @@ def largest_of(every: Iterable[Variation]) -> tuple[Variation, ...]:
 def _largest(at: Sequence[Variation]) -> Variation:
     ends = [x.interval or (x.max_von_mises, x.max_von_mises) for x in at]
     low, high = max(low for low, _ in ends), max(high for _, high in ends)
-    # Without an interval of its own the largest has the error of the row.
+    # A variation without an interval of its own has the error of the row.
     plain = max((x.max_von_mises for x in at if x.interval is None), default=0.0)
     lugs = dict[str, float]()
     for name, ratio in (pair for x in at for pair in x.lugs):
@@ -124,20 +125,22 @@ def _largest(at: Sequence[Variation]) -> Variation:
 
 
 def joint_range(over: Sequence[Variation], largest: float, below: float = 0.0) -> JointRange:
-    """The range over the joint of a maximum and of the stress beneath contact, Pa.
+    """The range over the joint of a maximum and of the stress beneath contact.
 
-    over: relative to both.
+    over: the variations, relative to the joint as given.
+    largest, below: the maximum and the stress beneath contact with the joint as given, Pa.
     """
     over = tuple(scaled(x, largest, below) for x in over)
     return JointRange(range_ends(largest, over), over)
 
 
-# Tells, from the comparisons of cells at some instants, at which the joint is varied.
+# A function that returns, from the comparisons of cells at some instants, at which of these the
+# joint is varied.
 WhichVaried = Callable[[Sequence[ResolutionComparison]], Sequence[bool]]
 
 
 def nowhere(compared: Sequence[ResolutionComparison]) -> Sequence[bool]:
-    """The joint is varied at no instant (WhichVaried)."""
+    """Return False for every instant, so that no joint is varied (WhichVaried)."""
     return (False,) * len(compared)
 
 
@@ -148,10 +151,10 @@ def compare(
     known: PressureModes | None = None,
     vary: WhichVaried | None = None,
 ) -> tuple[ResolutionComparison, ...]:
-    """Compare joints in contact, each at one instant, with coarser cells and with a varied joint.
+    """Compare contacts, each at one instant, with those on coarser cells and in varied joints.
 
-    known: patterns of the pressures on them.
-    vary: tells from the comparisons of cells at which instants the joint is varied, by default at
+    known: existing patterns of pressures.
+    vary: decides from the comparisons of cells at which instants the joint is varied; by default at
     all.
     """
     if not at:
@@ -170,7 +173,7 @@ def compare(
         arc = contact.half_angle(model.bands, model.tail)
         cells = by_cells(first, roughest, model.cells.rings, arc * model.cells.highest)
         out.append(ResolutionComparison(first, cells, contact.loads.links, (), half_angle=arc))
-        # The joint as given on the cells of varied joints.
+        # Varied joints are compared with the joint as given on the same cells.
         stress_like, like = (first, both[0]) if _large_cells(model) else (twice, both[1])
         likes.append((stress_like, cells, like))
     which = (True,) * len(at) if vary is None else vary(out)
@@ -181,9 +184,9 @@ def compare(
 
 
 def _large_cells(model: ContactModel) -> bool:
-    """Whether the model's own cells are so large that varied joints are solved on them.
+    """Whether the model's own cells are so large that varied joints are solved on these cells.
 
-    Otherwise they are solved on cells twice as large, which cost less.
+    Otherwise varied joints are solved on cells twice as large, which cost less.
     """
     return model.cells.rings < USUAL_RING_COUNT
 
@@ -196,10 +199,11 @@ def _over_joint(
     likes: Sequence[LikeGiven],
     vary: Sequence[bool],
 ) -> list[tuple[tuple[Variation, ...], str]]:
-    """The variations of each contact, and what is not included in them.
+    """The variations of each contact, and a remark on those that are not included.
 
-    likes: the joints as given on the same cells.
-    vary: the contacts whose joint is varied.
+    known: existing patterns of pressures.
+    likes: the joints as given on the cells of the varied joints.
+    vary: for each contact, whether its joint is varied.
     """
     changes = tuple(joint_variations(model.whole, model.lugs)) if any(vary) else ()
     joints = JointChanges(model, at, requirement, likes, _large_cells(model))
@@ -213,8 +217,8 @@ def _over_joint(
 
 
 def varied_pressures(model: ContactModel, contact: JointContact) -> tuple[VariedPressures, ...]:
-    """The pressures of a contact at one instant, and under each change of the joint but friction
-    that can be solved, all on the model's own cells.
+    """The pressures of a contact at one instant, first with the joint as given, then under each
+    change of the joint that can be solved, without friction; all on the model's own cells.
     """
     joints = JointChanges(model, [contact], Requirement(), (), own_cells=True)
     ((solved, _),) = joints.joints([tuple(joint_variations(model.whole, model.lugs))])
@@ -229,14 +233,15 @@ def _by_friction(
     at: Sequence[JointContact],
     vary: Sequence[bool],
 ) -> list[tuple[Variation, ...]]:
-    """The variations of each contact by the friction of lugs, relative to those without.
+    """The variations of each contact by the friction of lugs, relative to no friction.
 
-    known: patterns of the pressures that have been solved.
+    known: existing patterns of pressures.
     """
     if not rubs(model.lugs):
         return [()] * len(at)
     out: list[tuple[Variation, ...]] = []
-    # Friction is even on every ring, and its step at the edges a singularity of that alone.
+    # The traction of friction is uniform along each ring. Its steps at the edges would be
+    # singularities that exist only for that reason, so that they are not read.
     edges = edges_of_loads(model.pin, model.rings, model.material, requirement.distance)
     for contact, so in zip(at, vary, strict=True):
         if not so:
@@ -258,10 +263,10 @@ def uncompared(
     requirement: Requirement,
     known: PressureModes,
 ) -> tuple[ResolutionComparison, ...]:
-    """Joints in contact, each at one instant, varied on the model's own cells where that is
-    wanted, and compared with nothing.
+    """Return the contacts, each at one instant, without a comparison of cells.
 
-    known: patterns of the pressures on them.
+    Their joints are varied on the model's own cells if the requirement asks for it.
+    known: patterns that reproduce all pressures.
     """
     if not requirement.varied:
         return tuple(ResolutionComparison(NOWHERE, NOWHERE, x.loads.links, ()) for x in at)
@@ -279,7 +284,7 @@ def uncompared(
 def _on_both_cells(
     model: ContactModel, at: Sequence[JointContact]
 ) -> list[tuple[PressedJoint, PressedJoint]]:
-    """Each contact, and the same on cells twice as large."""
+    """Each contact, and the same contact on cells twice as large."""
     cells = on_coarser_cells(model)
     return [
         (
