@@ -42,22 +42,22 @@ def rise_between(answer: StressMaxima, loads: PinLoads, between: Between) -> flo
 
 
 def _reached(
-    answer: StressMaxima, loads: PinLoads, off: LoadAmounts, largest: float
+    answer: StressMaxima, loads: PinLoads, deviation: LoadAmounts, largest: float
 ) -> tuple[Ints, Floats]:
     """The numbers (I,) of the intervals in which the stress may exceed `largest`, and the stress
     (I,), Pa, that they may reach.
 
-    off: deviations of the loads from their chords.
+    deviation: of the loads from their chords, in each interval.
     largest: largest stress at the instants, Pa.
     """
     # A first bound, the same for all intervals, rules out most of them without a search in each.
-    rise = CHORD_FACTOR * answer.largest(off)[0]
+    rise = CHORD_FACTOR * answer.largest(deviation)[0]
     at = answer.maxima(loads, max(0.0, largest - rise))
     ends = np.maximum(at[1:], at[:-1])
     near = np.flatnonzero(ends + rise > largest)
     if not len(near):  # as for loads that do not deviate from their chords
         return near, np.zeros(0)
-    return near, ends[near] + CHORD_FACTOR * answer.maxima(off.at(near))
+    return near, ends[near] + CHORD_FACTOR * answer.maxima(deviation.at(near))
 
 
 def _chord_deviation(loads: PinLoads, between: Between) -> LoadAmounts:
@@ -69,8 +69,9 @@ def _chord_deviation(loads: PinLoads, between: Between) -> LoadAmounts:
     times = _times(loads)
     middle = between(0.5 * (times[1:] + times[:-1]))
     long = np.diff(times) > MIN_INTERVAL * np.ptp(times)
-    off = chord_deviation(loads, middle)
-    return replace(off, acting={u: both * long[:, None] for u, both in off.acting.items()})
+    deviation = chord_deviation(loads, middle)
+    acting = {unit: both * long[:, None] for unit, both in deviation.acting.items()}
+    return replace(deviation, acting=acting)
 
 
 def through_time(
@@ -115,24 +116,24 @@ def with_crest(answer: StressMaxima, loads: PinLoads, between: Between) -> PinLo
     times = _times(loads)
     value, k = answer.largest(loads)
     low, high = times[max(k - 1, 0)], times[min(k + 1, len(times) - 1)]
-    best, stands = loads.at(np.array([k])), 0
+    best, passes_without_gain = loads.at(np.array([k])), 0
     # Sample the interval about the maximum and shrink it to the neighbours of the best sample.
-    while stands < CREST_REPEATS:
+    while passes_without_gain < CREST_REPEATS:
         near = np.linspace(low, high, CREST_POINTS)
         here = between(near)
         top, i = answer.largest(here)
-        stands += top <= value * (1.0 + CREST_TOLERANCE)
+        passes_without_gain += top <= value * (1.0 + CREST_TOLERANCE)
         if top > value:
             value, best = top, here.at(np.array([i]))
         low, high = near[max(i - 1, 0)], near[min(i + 1, CREST_POINTS - 1)]
     return loads.merged(best)
 
 
-def knots(loads: PinLoads, straight: float, fewest: int) -> Ints:
+def knots(loads: PinLoads, tolerance: float, min_intervals: int) -> Ints:
     """The numbers of the instants between which the loads at all other instants lie near the chord.
 
-    straight: largest deviation from the chord, relative to the largest load.
-    fewest: least number of intervals.
+    tolerance: largest deviation from the chord, relative to the largest load.
+    min_intervals: least number of intervals.
     """
     times, count = _times(loads), len(loads)
     vectors = [
@@ -141,8 +142,8 @@ def knots(loads: PinLoads, straight: float, fewest: int) -> Ints:
     ]
     values = np.concatenate(vectors, axis=1)
     knot = np.zeros(count, dtype=bool)
-    knot[np.linspace(0, count - 1, min(count, fewest + 1)).round().astype(np.int64)] = True
-    return np.flatnonzero(needed(times, values, np.full_like(values, straight), knot))
+    knot[np.linspace(0, count - 1, min(count, min_intervals + 1)).round().astype(np.int64)] = True
+    return np.flatnonzero(needed(times, values, np.full_like(values, tolerance), knot))
 
 
 def _times(loads: PinLoads) -> Floats:

@@ -51,9 +51,9 @@ class Requirement:
     A support adds:
     minor: cases whose maximum times their required factor is certainly far below that of another
     case, and not known to the tolerance.
-    elsewhere: for each case, the stress of sections, Pa; a surface that certainly has less stress
-    needs no finer mesh.
-    besides: for each case, the relative error in addition to that of meshes and instants.
+    section_stress: for each case, the largest stress of sections, Pa; a surface that certainly has
+    less stress needs no finer mesh.
+    other_errors: for each case, the relative error in addition to that of meshes and instants.
     """
 
     tolerance: float = 0.02
@@ -70,8 +70,8 @@ class Requirement:
     factors: Mapping[str, float] = field(default_factory=dict)
     every: bool = True
     minor: Collection[str] = ()
-    elsewhere: Mapping[str, float] = field(default_factory=dict)
-    besides: Mapping[str, float] = field(default_factory=dict)
+    section_stress: Mapping[str, float] = field(default_factory=dict)
+    other_errors: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def for_ratio(self) -> bool:
@@ -89,9 +89,9 @@ class Requirement:
         It is what other errors leave, but at least MIN_TOLERANCE_SHARE of the tolerance, and
         NEGLIGIBLE_SHARE of the other errors.
         """
-        besides = self.besides.get(case, 0.0)
-        least = max(MIN_TOLERANCE_SHARE * self.tolerance, NEGLIGIBLE_SHARE * besides)
-        return max(self.tolerance - besides, least)
+        others = self.other_errors.get(case, 0.0)
+        least = max(MIN_TOLERANCE_SHARE * self.tolerance, NEGLIGIBLE_SHARE * others)
+        return max(self.tolerance - others, least)
 
 
 def decided(requirement: Requirement, material: Material, low: float, high: float) -> bool:
@@ -133,4 +133,4 @@ def decides(requirement: Requirement, material: Material, seen: MeshHistory) -> 
 
 def below_sections(requirement: Requirement, seen: MeshHistory) -> bool:
     """Return whether sections certainly have more stress than the surface."""
-    return bool(seen.range[1] <= requirement.elsewhere.get(seen.case, 0.0))
+    return bool(seen.range[1] <= requirement.section_stress.get(seen.case, 0.0))

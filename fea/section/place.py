@@ -72,7 +72,7 @@ def found_section(
     """
     loads, rise = over_time(answer, loads, between, tolerance)
     at = answer.place(loads)
-    parts = ErrorParts(mesh=0.0, time=rise, model=answer.held_twice(at) * at.value)
+    parts = ErrorParts(mesh=0.0, time=rise, model=answer.error_between_clamps(at) * at.value)
     if cells is not None:
         parts = replace(parts, mesh=FLEXIBILITY_ERROR * at.value, cells=cells * at.value)
     return FoundSection(at, parts, loads.at(np.array([at.instant])))

@@ -142,7 +142,7 @@ class SectionField:
             0,
         )
 
-    def _felt(self, loads: Loads) -> LoadAmounts:
+    def _acting_on_sections(self, loads: Loads) -> LoadAmounts:
         """The loads without those that cause no section forces."""
         amounts = {load: x for load, x in loads.coefficients().items() if loads_sections(load)}
         return LoadAmounts(loads.case, amounts, len(loads))
@@ -165,7 +165,7 @@ class SectionField:
 
     def around(self, loads: Loads) -> Circumference:
         """The stress around the circumference at these points, under some loads."""
-        return Circumference(self.fields, self._felt(loads))
+        return Circumference(self.fields, self._acting_on_sections(loads))
 
     def _top(self, loads: Loads) -> Crest:
         return self.around(loads).top(self.all)
@@ -173,7 +173,7 @@ class SectionField:
     def place(self, loads: Loads) -> AtSection:
         """The location and instant of the largest stress, and the section forces there."""
         top = self._top(loads)
-        amounts = shares(self.forces.loads, self._felt(loads))[top.instant]
+        amounts = shares(self.forces.loads, self._acting_on_sections(loads))[top.instant]
         at = self._at(self._near(top.point), amounts, top.instant, top.angle)
         return replace(at, course=self._course(loads, top.instant))
 
@@ -183,7 +183,7 @@ class SectionField:
         Each result is bitwise independent of which other instants there are.
         """
         top = crest_of_each(self.around(loads), self.all)
-        amounts = shares(self.forces.loads, self._felt(loads))
+        amounts = shares(self.forces.loads, self._acting_on_sections(loads))
         return [
             self._at(self._near(point), amounts[k], k, angle)
             for k, (point, angle) in enumerate(
@@ -227,7 +227,7 @@ class SectionField:
 
         They are NaN in clamps, and between two clamps, where statics does not determine them.
         """
-        amounts = shares(self.forces.loads, self._felt(loads))[instant]
+        amounts = shares(self.forces.loads, self._acting_on_sections(loads))[instant]
         known = np.zeros(len(self.forces.sections), dtype=bool)
         for span in self.forces.spans:
             known[span.first : span.last] = not (span.left and span.right)
@@ -242,7 +242,7 @@ class SectionField:
 
         return at
 
-    def held_twice(self, at: AtSection) -> float:
+    def error_between_clamps(self, at: AtSection) -> float:
         """The relative error of the section forces at a point between two clamps; 0 elsewhere."""
         spans = self.forces.spans
         (span,) = (s for s in spans if s.first <= at.cell < s.last)

@@ -113,38 +113,38 @@ def refine(at: Attempt, model: Model, posed: MeshProblem, why: Reason) -> dict[s
     """
     held, requirement = at.held, at.requirement
     meshes, material = model.meshes, at.problem.material
-    seen = {
+    histories = {
         c.case: MeshHistory(held.pin.name, c.case, model.name, (), (), meshes) for c in posed.cases
     }
     notes = dict(held.notes)
     before: MeshBefore | None = None
     for level in range(requirement.meshes or meshes.max_meshes):
         if before is not None and (limit := _limit(model, posed, before, level)) is not None:
-            notes = {case: notes.get(case, NO_REASON) + limit for case in seen}
+            notes = {case: notes.get(case, NO_REASON) + limit for case in histories}
             break
         at.progress(f"pin {held.pin.name}, {model.name} model, mesh {level + 1}")
         start = time.perf_counter()
-        mesh, below = model.solve(posed, level, before), before
+        mesh, previous = model.solve(posed, level, before), before
         # The first mesh shows between which instants of a motion the maximum may lie. Instants are
         # added there for all meshes.
         if not level:
             posed = replace(posed, cases=_through_time(at, mesh, posed))
         for case in posed.cases:
             maximum, end = mesh.maximum(case), time.perf_counter()
-            seen[case.case] = seen[case.case].appended(maximum, end - start)
+            histories[case.case] = histories[case.case].appended(maximum, end - start)
             start = end
-        if all(accurate_enough(requirement, material, s) for s in seen.values()):
+        if all(accurate_enough(requirement, material, x) for x in histories.values()):
             break
         # The results on this mesh show where the next one must be finer.
-        before = MeshBefore(mesh, {case: s.results[-1] for case, s in seen.items()})
+        before = MeshBefore(mesh, {case: x.results[-1] for case, x in histories.items()})
     # Verdicts come last, since the instant of the maximum is refined only on the last mesh.
     out = {}
     for case in posed.cases:
-        loads, history = _at_crest(mesh, case, seen[case.case], at.between(case.case))
+        loads, history = _at_crest(mesh, case, histories[case.case], at.between(case.case))
         reasons = notes.get(case.case, NO_REASON), why + met(requirement, material, history)
         reading = _reading(reasons, mesh, loads, history)
-        if material.hardened and below is not None and below.solution is not None:
-            coarser = below.solution.field(case.case)
+        if material.hardened and previous is not None and previous.solution is not None:
+            coarser = previous.solution.field(case.case)
             reading = replace(reading, coarser=coarser, mesh_ratio=meshes.ratio)
         out[case.case] = held.finished(reading, requirement)
     return out
@@ -229,7 +229,7 @@ def _through_time(at: Attempt, mesh: MeshSolution, posed: MeshProblem) -> tuple[
     out = []
     for case in posed.cases:
         if (between := at.between(case.case)) is not None:
-            tolerance = max(posed.tolerance, at.requirement.besides.get(case.case, 0.0))
+            tolerance = max(posed.tolerance, at.requirement.other_errors.get(case.case, 0.0))
             case = through_time(mesh.field(case.case), case, between, tolerance)
         out.append(case)
     return tuple(out)
@@ -246,11 +246,11 @@ def _at_crest(
     # The error between instants is the possible rise of the maximum above that at all instants,
     # including the crest. If the crest is not a new instant, the mesh result stays as it is.
     field, last = mesh.field(case.case), seen.results[-1]
-    more = with_crest(field, case, between)
-    if len(more) > len(case):
-        last = mesh.maximum(more)
-    last = replace(last, between=rise_between(field, more, between))
-    return more, replace(seen, results=(*seen.results[:-1], last))
+    loads = with_crest(field, case, between)
+    if len(loads) > len(case):
+        last = mesh.maximum(loads)
+    last = replace(last, between=rise_between(field, loads, between))
+    return loads, replace(seen, results=(*seen.results[:-1], last))
 
 
 def _reading(

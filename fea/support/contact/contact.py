@@ -72,9 +72,9 @@ class ContactProblem:
     tail: n u_n / p_n of pin and lugs together for higher harmonics, (R,) m/Pa.
     tilt: tilt stiffness of the lugs, (B,) N m/rad; inf where guided, 0 where free.
     sectors: number M of equal sectors; the first is centred on x.
-    besides: displacement of cells under forces on cells that a body without rotational symmetry
+    added: displacement of cells under forces on cells that a body without rotational symmetry
     adds, (U, U) m/N.
-    gone: mask (U,) of the cells that cuts have removed.
+    removed: mask (U,) of the cells that cuts have removed.
     """
 
     def __init__(
@@ -84,17 +84,17 @@ class ContactProblem:
         tail: Floats,
         tilt: Sequence[float],
         sectors: int,
-        besides: Floats | None = None,
-        gone: Mask | None = None,
+        added: Floats | None = None,
+        removed: Mask | None = None,
     ) -> None:
         self.bands, self.sectors, self._cells = bands, sectors, Sectors(sectors)
         self._count = int(bands.links.max()) + 1
         self._tail = float(np.max(tail))
         area = self.cells_area(bands)
-        self._elastic = CellFlexibility(flexibility, tail, area[::sectors], sectors, besides)
+        self._elastic = CellFlexibility(flexibility, tail, area[::sectors], sectors, added)
         # A gap as wide as the pin never closes.
-        self._beyond = 0.0 if gone is None else gone * bands.radius.max()
-        self._even = besides is None and gone is None
+        self._removed_gap = 0.0 if removed is None else removed * bands.radius.max()
+        self._even = added is None and removed is None
         self._fit(bands, tilt)
 
     @property
@@ -137,7 +137,7 @@ class ContactProblem:
         self.area = self.cells_area(bands)
         self._e_r = np.tile(self._cells.normals, (len(bands.z), 1))  # (U, 2)
         self._link = np.repeat(bands.links[bands.band], len(self._cells))
-        self._open = np.repeat(bands.gap, len(self._cells)) + self._beyond
+        self._open = np.repeat(bands.gap, len(self._cells)) + self._removed_gap
         self._motions, self._tilts = self.rigid(bands, tilt)
         # The largest gap change of each motion: a turn counts as the shift that it causes farthest
         # from the middle.
@@ -249,10 +249,10 @@ class ContactProblem:
             if (key := active.tobytes()) in seen:
                 return None  # a cycle
             seen.add(key)
-            active = (active & ~wrong_force) | self._chosen(gap, wrong_gap, active)
+            active = (active & ~wrong_force) | self._cells_to_close(gap, wrong_gap, active)
         return None
 
-    def _chosen(self, gap: Floats, overlaps: Mask, active: Mask) -> Mask:
+    def _cells_to_close(self, gap: Floats, overlaps: Mask, active: Mask) -> Mask:
         """A mask of the overlapping cells to close in the next step."""
         # Where fewer cells touch than are needed to hold the pin, the pin turns far and most other
         # cells overlap. Only the deepest cell of each band is then near those that will touch.
@@ -291,7 +291,7 @@ class ContactProblem:
         for _ in range(MAX_SPRING_ROUNDS):
             least = partial(self._on_springs, pull=pull, spring=spring)
             energy = partial(self._energy, pull=pull, spring=spring)
-            cells, force = least_energy_cells(force, least, energy, self._chosen)
+            cells, force = least_energy_cells(force, least, energy, self._cells_to_close)
             if (state := self._settled(required, cells)) is not None:
                 return state
             before, missing = missing, required - self._motions.T @ force

@@ -151,7 +151,7 @@ class HeldContact:
         """
         requirement = with_minor(requirement, self.compared)
         cells = {case: x.surface.cells.surface for case, x in self.compared.items()}
-        return replace(requirement, besides=cells, elsewhere=self._in_sections())
+        return replace(requirement, other_errors=cells, section_stress=self._in_sections())
 
     def _in_sections(self) -> dict[str, float]:
         """The largest stress of the sections, Pa, for each case.

@@ -105,7 +105,7 @@ JointsUnderChanges = tuple[list[tuple[JointChange, PressedJoint]], list[str]]
 
 # The joint as given on the cells of the varied joints: stress, relative error from the cells, and
 # contact.
-LikeGiven = tuple[AtPlaces, AtPlaces, PressedJoint]
+AsGiven = tuple[AtPlaces, AtPlaces, PressedJoint]
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ class JointChanges:
     """Contacts, each at one instant, whose joint is changed.
 
     at: the contacts with the joint as given.
-    likes: the joints as given on the cells of the varied joints (LikeGiven).
+    as_given: the joints as given on the cells of the varied joints (AsGiven).
     own_cells: whether varied joints are solved on the model's own cells instead of cells twice as
     large.
     """
@@ -121,7 +121,7 @@ class JointChanges:
     model: ContactModel
     at: Sequence[JointContact]
     requirement: Requirement
-    likes: Sequence[LikeGiven]
+    as_given: Sequence[AsGiven]
     own_cells: bool
 
     def by(
@@ -145,7 +145,7 @@ class JointChanges:
         ]
         stress = iter(at_places(model, self.requirement, loads) if any(loads) else [])
         out = []
-        for contact, like, (solved, missing) in zip(self.at, self.likes, every, strict=True):
+        for contact, like, (solved, missing) in zip(self.at, self.as_given, every, strict=True):
             over = [self._variation(contact, like, *one, stress) for one in solved]
             out.append(ChangedContact(tuple(over), tuple(missing)))
         return out, patterns
@@ -153,7 +153,7 @@ class JointChanges:
     def _variation(
         self,
         contact: JointContact,
-        like: LikeGiven,
+        like: AsGiven,
         change: JointChange,
         joint: PressedJoint,
         stress: Iterator[AtPlaces],
@@ -207,7 +207,7 @@ class JointChanges:
 
     def _given(self, k: int) -> Mask:
         """The cells in contact in the joint as given."""
-        states = self.at[k].contact if self.own_cells else self.likes[k][2].states
+        states = self.at[k].contact if self.own_cells else self.as_given[k][2].states
         return states[0].active
 
 

@@ -73,7 +73,7 @@ def least_energy_cells(
     force: Floats,
     least: Least,
     energy: Callable[[Floats], float],
-    chosen: Callable[[Floats, Mask, Mask], Mask],
+    cells_to_close: Callable[[Floats, Mask, Mask], Mask],
 ) -> tuple[Mask, Floats]:
     """The cells (U,) in contact where the energy is least, and their forces (U,), N.
 
@@ -81,7 +81,8 @@ def least_energy_cells(
     least: returns the forces (U,) N, of any sign, that minimise the energy over given cells in
     contact, and a function for the gaps (U,) m.
     energy: returns the energy of forces (U,).
-    chosen: returns the cells to close together, from gaps, overlapping cells and cells in contact.
+    cells_to_close: returns the cells to close together, from gaps, overlapping cells and cells in
+    contact.
 
     Raises: SolveError where round-off hides the minimum.
     """
@@ -95,7 +96,7 @@ def least_energy_cells(
         deepest[int(np.where(overlaps, gap, np.inf).argmin())] = True
         # Closing several cells may not lower the energy, since all of them may open again. Closing
         # the deepest cell alone always does.
-        for closing in (chosen(gap, overlaps, active), deepest):
+        for closing in (cells_to_close(gap, overlaps, active), deepest):
             next_active, next_force, gap = _descent(active | closing, force, least, energy)
             if next_active.tobytes() not in minima:
                 break

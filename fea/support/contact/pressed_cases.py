@@ -203,6 +203,7 @@ class PressedCases:
     """The pressures of all cases at any time, with each instant solved once.
 
     All pressures are made of the same patterns, so that they act on one mesh.
+    others: for each case, other loads whose pressures the patterns must reproduce.
     instants: for each case, the loads from whose pressures the patterns are made.
     failed: for each case without contact, the error.
     patterns: complete set of patterns for any pressures; None: patterns are made from the pressures
@@ -214,7 +215,7 @@ class PressedCases:
         model: ContactModel,
         cases: tuple[PinLoads, ...],
         between: Mapping[str, Between],
-        besides: Mapping[str, PinLoads],
+        others: Mapping[str, PinLoads],
         cut: bool,
         patterns: PressureModes | None = None,
     ) -> None:
@@ -223,7 +224,7 @@ class PressedCases:
         self.failed: dict[str, SolveError] = {}
         self.instants: dict[str, PinLoads] = {}
         self._known: dict[tuple[str, float], ContactState] = {}
-        self._besides: dict[str, Floats] = {}
+        self._other_waves: dict[str, Floats] = {}
         self.patterns = patterns
         self.sections: dict[str, SectionField] = {}
         # Contact of all cases is solved first, since the patterns are made from all of it. A case
@@ -232,9 +233,9 @@ class PressedCases:
             instants = _instants(case, between.get(case.case))
             try:
                 self.states(instants)
-                if case.case in besides:
-                    states = model.pressed(besides[case.case])
-                    self._besides[case.case] = model.waves(states)
+                if case.case in others:
+                    states = model.pressed(others[case.case])
+                    self._other_waves[case.case] = model.waves(states)
             except SolveError as error:
                 self.failed[case.case] = error
                 continue
@@ -279,7 +280,7 @@ class PressedCases:
 
     def follow(self, near: Mapping[str, Candidates]) -> None:
         """Make the patterns: accurate for instants that may govern, rough for the others."""
-        parts = [(waves, MODE_TOLERANCE) for waves in self._besides.values()]
+        parts = [(waves, MODE_TOLERANCE) for waves in self._other_waves.values()]
         for case, links in self.instants.items():
             waves, may = self.model.waves(self.states(links)), near[case].may
             parts += [(waves[:, may], MODE_TOLERANCE), (waves[:, ~may], ROUGH_MODE_TOLERANCE)]

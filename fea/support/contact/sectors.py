@@ -79,14 +79,14 @@ class CellFlexibility:
     tail: n u_n / p_n for higher harmonics, (R,) m/Pa.
     area: of one sector of each ring, (R,) m^2.
     sectors: number M around each ring.
-    besides: displacement that a body without rotational symmetry adds, (R M, R M) m/N.
+    added: displacement that a body without rotational symmetry adds, (R M, R M) m/N.
     """
 
     def __init__(
-        self, flexibility: Floats, tail: Floats, area: Floats, sectors: int, besides: Floats | None
+        self, flexibility: Floats, tail: Floats, area: Floats, sectors: int, added: Floats | None
     ) -> None:
         self._flexibility, self._tail, self._area = flexibility, tail, area
-        self._sectors, self._besides = sectors, besides
+        self._sectors, self._added = sectors, added
         self._made: dict[Sectors, Floats] = {}
 
     def of(self, cells: Sectors) -> Floats:
@@ -94,8 +94,8 @@ class CellFlexibility:
         if cells not in self._made:
             out = self._made[cells] = cells.between(self._apart)
             out /= np.repeat(self._area, len(cells))  # in place: of many cells it has 250 MB
-            if self._besides is not None:
-                out += self._besides
+            if self._added is not None:
+                out += self._added
         return self._made[cells]
 
     @cached_property

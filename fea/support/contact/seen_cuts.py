@@ -54,7 +54,7 @@ class SeenCuts:
         """
         return next(iter(self.cut.cuts.values())).angle
 
-    def gone(self, bands: Bands, sectors: int) -> Mask:
+    def removed(self, bands: Bands, sectors: int) -> Mask:
         """A mask (U,) of the cells that cuts remove."""
         part = (np.arange(CELL_POINTS) + 0.5) / CELL_POINTS - 0.5
         turns = (np.arange(sectors)[:, None] + part).ravel() * 2.0 * np.pi / sectors + self.angle
@@ -84,7 +84,7 @@ class SeenCuts:
         on_cells = groups[ring][:, :, None] * waves[n, :, phase][:, None, :]
         area = bands.length * bands.radius * 2.0 * np.pi / sectors
         amounts = (on_cells / area[:, None]).reshape(len(self.of), -1)
-        here = ~self.gone(bands, sectors)
+        here = ~self.removed(bands, sectors)
         # The forces of all cells together are in balance. Single unit loads are not, and tractions
         # on all bands close their balance. The unbalanced part is therefore projected out, which
         # removes at most a rigid motion of the pin.

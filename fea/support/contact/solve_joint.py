@@ -43,7 +43,7 @@ from fea.support.contact.pressure_loads import (
 )
 from fea.support.contact.resolution import USUAL, Resolution
 from fea.support.contact.seen_cuts import SeenCuts, seen_cuts
-from fea.support.lugs.changes import with_stiffness
+from fea.support.lugs.changes import softened
 from fea.support.lugs.fit import fitted, on_structure
 from fea.support.lugs.links import link_forces, link_moments, link_numbers, tilting_bands
 from fea.support.lugs.lug import Bushing, Lug
@@ -56,7 +56,7 @@ LUG_SIZE_DIGITS = 12  # digits to which lugs of the same size agree
 # Harmonics, as a multiple of the sectors, below which the rings of a lug are coupled; from there on
 # each ring is a half-plane (tail).
 COUPLED_HARMONICS_PER_SECTOR = 4
-Alike = tuple[float, Material, Bushing | None, bytes, Material]
+FlexibilityKey = tuple[float, Material, Bushing | None, bytes, Material]
 
 
 class ContactModel:
@@ -85,8 +85,8 @@ class ContactModel:
         self.on_pin, self.of_pin = self._pin_flexibility()
         self.of_lugs = np.zeros_like(self.of_pin)
         self.wavy = np.zeros((2, len(self.high), *self.of_pin.shape[1:]))  # of the pin, of the lugs
-        self.on_lugs: dict[Alike, RingBody] = {}
-        for key, equal in self.alike().items():
+        self.on_lugs: dict[FlexibilityKey, RingBody] = {}
+        for key, equal in self.equal_lugs().items():
             (_, lug, ends), *_ = equal
             self.on_lugs[key], low, wavy = self._lug_flexibility(lug, ends)
             for rows, *_ in equal:
@@ -194,7 +194,7 @@ class ContactModel:
         radius = self.whole.band(lug.connection).radius
         return wavy_flexibility(lug, self.material, radius, ends, self.high)
 
-    def likeness(self, lug: Lug, ends: Floats) -> Alike:
+    def flexibility_key(self, lug: Lug, ends: Floats) -> FlexibilityKey:
         """The properties that decide the flexibility of a lug's rings, and that of the pin for
         short waves on them.
         """
@@ -202,11 +202,11 @@ class ContactModel:
         size = np.round(np.append(ends, bore) / lug.outer_diameter, LUG_SIZE_DIGITS)
         return lug.outer_diameter, lug.material, lug.bushing, size.tobytes(), self.material
 
-    def alike(self) -> dict[Alike, list[tuple[slice, Lug, Floats]]]:
+    def equal_lugs(self) -> dict[FlexibilityKey, list[tuple[slice, Lug, Floats]]]:
         """The lugs grouped by equal flexibility, in the form of `by_lug`."""
-        groups: dict[Alike, list[tuple[slice, Lug, Floats]]] = {}
+        groups: dict[FlexibilityKey, list[tuple[slice, Lug, Floats]]] = {}
         for rows, lug, ends in self.by_lug():
-            groups.setdefault(self.likeness(lug, ends), []).append((rows, lug, ends))
+            groups.setdefault(self.flexibility_key(lug, ends), []).append((rows, lug, ends))
         return groups
 
     def by_lug(self) -> Iterator[tuple[slice, Lug, Floats]]:
@@ -237,7 +237,7 @@ class ContactModel:
         other = copy.copy(self)
         for known in ("contact", "flexibility", "bands", "on_shaft"):
             other.__dict__.pop(known, None)
-        other.lugs = tuple(with_stiffness(*both) for both in zip(lugs, softness, strict=True))
+        other.lugs = tuple(softened(*both) for both in zip(lugs, softness, strict=True))
         if set(softness) == {1.0}:
             tilts = [lug.tilt for lug in lugs]
             other.__dict__["flexibility"] = self.flexibility
@@ -277,8 +277,8 @@ class ContactModel:
         if self.cuts is None:
             return ContactProblem(bands, flexibility, tail, tilt, sectors)
         groups = np.eye(len(self.rings)) if groups is None else groups
-        added, gone = self.cuts.added(bands, sectors, groups), self.cuts.gone(bands, sectors)
-        return ContactProblem(bands, flexibility, tail, tilt, sectors, added, gone)
+        added, removed = self.cuts.added(bands, sectors, groups), self.cuts.removed(bands, sectors)
+        return ContactProblem(bands, flexibility, tail, tilt, sectors, added, removed)
 
     @cached_property
     def bands(self) -> Bands:

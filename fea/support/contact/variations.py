@@ -24,8 +24,8 @@ from fea.support.contact.cell_error import (
 from fea.support.contact.coarser_cells import on_coarser_cells
 from fea.support.contact.friction import friction_variations, rubbed, rubbed_across, rubs
 from fea.support.contact.joint_changes import (
+    AsGiven,
     JointChanges,
-    LikeGiven,
     PressedJoint,
     VariedPressures,
     at_places,
@@ -167,7 +167,7 @@ def compare(
         [loads_of(model, patterns, x, contact) for x in (*both, in_half_the_harmonics(both[1]))]
         for contact, both in zip(at, exact, strict=True)
     ]
-    stress, out, likes = at_places(model, requirement, every), [], []
+    stress, out, as_given = at_places(model, requirement, every), [], []
     for contact, both in zip(at, exact, strict=True):
         first, twice, roughest = (stress.pop(0) for _ in range(3))
         arc = contact.half_angle(model.bands, model.tail)
@@ -175,10 +175,10 @@ def compare(
         out.append(ResolutionComparison(first, cells, contact.loads.links, (), half_angle=arc))
         # Varied joints are compared with the joint as given on the same cells.
         stress_like, like = (first, both[0]) if _large_cells(model) else (twice, both[1])
-        likes.append((stress_like, cells, like))
+        as_given.append((stress_like, cells, like))
     which = (True,) * len(at) if vary is None else vary(out)
     if any(which):
-        ratios = _over_joint(model, at, requirement, patterns, likes, which)
+        ratios = _over_joint(model, at, requirement, patterns, as_given, which)
         out = [replace(x, over=a, left_out=b) for x, (a, b) in zip(out, ratios, strict=True)]
     return tuple(out)
 
@@ -196,23 +196,23 @@ def _over_joint(
     at: Sequence[JointContact],
     requirement: Requirement,
     known: PressureModes,
-    likes: Sequence[LikeGiven],
+    as_given: Sequence[AsGiven],
     vary: Sequence[bool],
 ) -> list[tuple[tuple[Variation, ...], str]]:
     """The variations of each contact, and a remark on those that are not included.
 
     known: existing patterns of pressures.
-    likes: the joints as given on the cells of the varied joints.
+    as_given: the joints as given on the cells of the varied joints.
     vary: for each contact, whether its joint is varied.
     """
     changes = tuple(joint_variations(model.whole, model.lugs)) if any(vary) else ()
-    joints = JointChanges(model, at, requirement, likes, _large_cells(model))
-    changed, known = joints.by([changes if so else () for so in vary], known)
+    joints = JointChanges(model, at, requirement, as_given, _large_cells(model))
+    changed, known = joints.by([changes if varied else () for varied in vary], known)
     by_friction = _by_friction(model, requirement, known, at, vary)
     out = []
-    for contact, more in zip(changed, by_friction, strict=True):
+    for contact, friction in zip(changed, by_friction, strict=True):
         left_out = f"not included: {'; '.join(contact.missing)}" if contact.missing else ""
-        out.append(((*contact.over, *more), left_out))
+        out.append(((*contact.over, *friction), left_out))
     return out
 
 
@@ -243,8 +243,8 @@ def _by_friction(
     # The traction of friction is uniform along each ring. Its steps at the edges would be
     # singularities that exist only for that reason, so that they are not read.
     edges = edges_of_loads(model.pin, model.rings, model.material, requirement.distance)
-    for contact, so in zip(at, vary, strict=True):
-        if not so:
+    for contact, varied in zip(at, vary, strict=True):
+        if not varied:
             out.append(())
             continue
         without, changed = rubbed(model, contact, known)
@@ -273,8 +273,8 @@ def uncompared(
     own = [PressedJoint(model.waves(x.contact), list(x.contact)) for x in at]
     loads = [[loads_of(model, known, *both)] for both in zip(own, at, strict=True)]
     stress = at_places(model, requirement, loads)
-    likes = [(x, NOWHERE, joint) for x, joint in zip(stress, own, strict=True)]
-    over = _over_joint(model, at, requirement, known, likes, (True,) * len(at))
+    as_given = [(x, NOWHERE, joint) for x, joint in zip(stress, own, strict=True)]
+    over = _over_joint(model, at, requirement, known, as_given, (True,) * len(at))
     return tuple(
         ResolutionComparison(like, NOWHERE, x.loads.links, *varied)
         for x, like, varied in zip(at, stress, over, strict=True)

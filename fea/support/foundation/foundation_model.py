@@ -204,9 +204,9 @@ class FoundationModel:
 
     def _respond(self, free: Mask) -> Response:
         beam, number = self._beam(self._stiffness)
-        still = np.flatnonzero(self.structure).tolist() or [0]
+        fixed = np.flatnonzero(self.structure).tolist() or [0]
         tilt = [0.0 if f else lug.tilt for f, lug in zip(free, self.lugs, strict=True)]
-        response = respond(beam, self.bands.middles, tilt, still)
+        response = respond(beam, self.bands.middles, tilt, fixed)
         belongs = (number == np.arange(len(self.rings))[:, None]).astype(float)
         middles = 0.5 * (beam.stations[1:] + beam.stations[:-1])
         arms = belongs * (middles - self.bands.z[:, None])

@@ -87,20 +87,20 @@ def refined(stations: Floats, bending: Floats, foundation: Floats) -> Floats:
 
 
 def respond(
-    beam: SupportedBeam, middles: Floats, tilt: Sequence[float], still: Sequence[int] = (0,)
+    beam: SupportedBeam, middles: Floats, tilt: Sequence[float], fixed: Sequence[int] = (0,)
 ) -> Response:
     """The response of a beam in its lugs.
 
     middles: z of the middles of the lugs, (B,) m.
     tilt: tilt stiffness of the lugs, (B,) N m/rad; inf: guided, 0: free.
-    still: numbers of the fixed lugs. If there is only one and all lugs are free to tilt, it is
+    fixed: numbers of the fixed lugs. If there is only one and all lugs are free to tilt, it is
     guided and reacts the remaining couple.
     """
     length = float(beam.stations[-1] - beam.stations[0]) / len(beam)
     stiff = 1.0 / float(beam.bending.max() * length**2)  # N; scales all numbers to about 1
     held = np.asarray(tilt, dtype=float) / (stiff * length)
-    if len(still) == 1 and not held.any():
-        held[still[0]] = np.inf
+    if len(fixed) == 1 and not held.any():
+        held[fixed[0]] = np.inf
     unit = replace(
         beam,
         stations=beam.stations / length,
@@ -109,7 +109,7 @@ def respond(
         foundation=beam.foundation * length**2 / stiff,
         mass=beam.mass * length,
     )
-    response = _System(unit, np.asarray(middles) / length, held, still).solve()
+    response = _System(unit, np.asarray(middles) / length, held, fixed).solve()
     per = np.ones(response.force.shape[1])
     per[len(middles) + 1 :] = 1.0 / length  # couples of 1 N m instead of 1 N times `length`
     return Response(response.force * per, response.moment * length * per)
@@ -123,9 +123,9 @@ class _System:
     """
 
     def __init__(
-        self, beam: SupportedBeam, middles: Floats, tilt: Floats, still: Sequence[int]
+        self, beam: SupportedBeam, middles: Floats, tilt: Floats, fixed: Sequence[int]
     ) -> None:
-        self.beam, self.middles, self.tilt, self.still = beam, middles, tilt, still
+        self.beam, self.middles, self.tilt, self.fixed = beam, middles, tilt, fixed
         self.lengths = np.diff(beam.stations)
         self.steps = expm(_rates(beam) * self.lengths[:, None, None])
         self.motions = STATE_COUNT * (len(beam) + 1)  # number of the first shift of a lug
@@ -169,7 +169,7 @@ class _System:
         """Set the equations of each lug: its force, or no shift if it is fixed, and its couple."""
         for b, stiffness in enumerate(self.tilt.tolist()):
             force, couple = self._reactions(b)
-            if b in self.still:
+            if b in self.fixed:
                 rows[2 * b] = np.eye(self.size)[self.motions + 2 * b]
             else:
                 rows[2 * b], loads[2 * b, b] = force[:-1], 1.0

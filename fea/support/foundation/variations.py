@@ -20,7 +20,7 @@ from fea.support.contact.bending import growth_across, growth_of_lugs
 from fea.support.foundation.bounds import StressBounds, band_forces, stress_bounds
 from fea.support.foundation.foundation_model import FoundationModel, JointFoundation
 from fea.support.foundation.stress import FoundationStress
-from fea.support.lugs.changes import JointChange, joint_variations, pressed_in, with_stiffness
+from fea.support.lugs.changes import JointChange, joint_variations, pressed_in, softened
 from fea.support.lugs.fit import beyond_foundations
 from fea.support.lugs.lug import Lug
 from fea.support.records import JointRange, JointResult, Variation
@@ -59,7 +59,7 @@ class FoundationRange:
         """
         own = own or self.own.model.solve(loads)
         if len(loads) > 1:
-            loads = loads.at(_that_may_govern(self.own, own))
+            loads = loads.at(_governing_candidates(self.own, own))
             own = self.own.model.solve(loads)
         given = stress_bounds(self.own, own)
         if given.bounds is None:
@@ -130,7 +130,7 @@ def _held(
     return (model.solve(loads.at(held)) if len(held) else None), errors
 
 
-def _that_may_govern(stress: FoundationStress, joint: JointFoundation) -> Ints:
+def _governing_candidates(stress: FoundationStress, joint: JointFoundation) -> Ints:
     """The instants that may govern in a varied joint.
 
     They are those of the largest stress of the surface and on the axis, of the largest bending
@@ -181,6 +181,6 @@ def _changed(given: FoundationStress, change: JointChange) -> FoundationStress |
         other = given.model.with_clearances(list(change.lugs))
     else:
         both = zip(change.lugs, change.softness, strict=True)
-        lugs = [with_stiffness(*x) for x in both]
+        lugs = [softened(*x) for x in both]
         other = FoundationModel(given.model.given, given.model.material, lugs)
     return replace(given, model=other)

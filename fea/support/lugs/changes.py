@@ -103,9 +103,9 @@ def pressed_in(change: JointChange) -> bool:
     return any(lug.clearance < 0.0 for lug in change.lugs)
 
 
-def with_stiffness(lug: Lug, times: float) -> Lug:
-    """The lug and its bushing with their moduli divided by `times`."""
-    return lug.with_materials(lambda m: replace(m, youngs_modulus=m.youngs_modulus / times))
+def softened(lug: Lug, softness: float) -> Lug:
+    """The lug and its bushing with their moduli divided by a factor."""
+    return lug.with_materials(lambda m: replace(m, youngs_modulus=m.youngs_modulus / softness))
 
 
 def _with_clearance(pin: Pin, lug: Lug, end: int) -> tuple[Lug, str]:
