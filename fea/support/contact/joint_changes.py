@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -24,6 +24,7 @@ from fea.section.section_stress import SectionField
 from fea.singular.singularities import singularities_of
 from fea.support.contact.bending import LoadedJoint, growth_across, growth_of_lugs
 from fea.support.contact.cell_error import (
+    MIN_HARMONICS_OF_ORDER,
     MIN_HARMONICS_PER_ARC,
     NOWHERE,
     AtPlaces,
@@ -71,18 +72,24 @@ class PressedJoint:
     states: the contact on the cells.
     per_arc: number of harmonics that the cells follow, times the half angle of contact in rad.
     lugs: of a varied joint.
+    large: the same contact on cells twice as large, if these did not follow the arcs of contact.
+    own_cells: whether the cells are those of the model, not cells twice as large.
     """
 
     waves: Floats
     states: list[ContactState]
     per_arc: float = math.inf
     lugs: tuple[Lug, ...] = ()
+    large: PressedJoint | None = None
+    own_cells: bool = True
 
     @property
     def with_rougher(self) -> tuple[PressedJoint, ...]:
         """This joint; on narrow arcs also the joint with half the harmonics, which shows the error
-        of the cells.
+        of the cells. It is that on cells twice as large, if it was solved there.
         """
+        if self.large is not None:
+            return self, in_half_the_harmonics(self.large)
         narrow = self.per_arc < MIN_HARMONICS_PER_ARC
         return (self, in_half_the_harmonics(self)) if narrow else (self,)
 
@@ -113,15 +120,16 @@ class JointChanges:
     """Contacts, each at one instant, whose joint is changed.
 
     at: the contacts with the joint as given.
-    as_given: the joints as given on the cells of the varied joints (AsGiven).
-    own_cells: whether varied joints are solved on the model's own cells instead of cells twice as
-    large.
+    as_given: for each contact, the joint as given on cells twice as large and on the model's own
+    cells.
+    own_cells: whether all changed joints are solved on the model's own cells. Otherwise they are
+    solved on cells twice as large, which cost less, where these follow the arcs of contact.
     """
 
     model: ContactModel
     at: Sequence[JointContact]
     requirement: Requirement
-    as_given: Sequence[AsGiven]
+    as_given: Sequence[tuple[AsGiven, AsGiven]]
     own_cells: bool
 
     def by(
@@ -146,8 +154,9 @@ class JointChanges:
         stress = iter(at_places(model, self.requirement, loads) if any(loads) else [])
         out = []
         for contact, like, (solved, missing) in zip(self.at, self.as_given, every, strict=True):
-            over = [self._variation(contact, like, *one, stress) for one in solved]
-            out.append(ChangedContact(tuple(over), tuple(missing)))
+            over = [self._variation(contact, like[one.own_cells], change, one, stress)
+                    for change, one in solved]  # fmt: skip
+            out.append(ChangedContact(largest_of(over, low=min), tuple(missing)))
         return out, patterns
 
     def _variation(
@@ -183,32 +192,113 @@ class JointChanges:
         for k, of_contact in enumerate(changes):
             for change in of_contact:  # the same change of several contacts needs one model
                 wanted.setdefault(f"{change.what} {change.value}", []).append((k, change))
-        highest = self.model.cells.highest * (1.0 if self.own_cells else 0.5)
         # Joints with the same gaps touch nearly the same cells, so that each starts from the cells
         # of the first. For other gaps the usual first guess, which estimates the width of contact,
         # is nearer.
         gaps = self.model.bands.gap.tobytes()
-        touching = {(k, gaps): self._given(k) for k in range(len(self.at))}
+        touching = {
+            (k, own, gaps): self._given(k, own)
+            for k in range(len(self.at))
+            for own in (False, True)
+        }
         for name, of_change in wanted.items():
             _, change = of_change[0]
             other = self.model.varied(change.lugs, change.softness)
-            cells = _own_cells(other) if self.own_cells else on_coarser_cells(other)
+            large = None if self.own_cells else on_coarser_cells(other)
             for k, _ in of_change:
-                contact, (solved, missing) = self.at[k], out[k]
-                like = k, other.bands.gap.tobytes()
+                solved, missing = out[k]
                 try:
-                    joint = on_cells(other, contact.loads.links, *cells, touching.get(like))
-                    touching.setdefault(like, joint.states[0].active)
-                    per_arc = highest * contact.half_angle(other.bands, other.tail)
-                    solved.append((change, replace(joint, per_arc=per_arc, lugs=other.lugs)))
+                    joints = self._on_cells_that_follow(k, other, large, touching)
+                    solved += [(change, joint) for joint in joints]
                 except SolveError as error:
                     missing.append(f"{name} ({error})")
         return out
 
-    def _given(self, k: int) -> Mask:
-        """The cells in contact in the joint as given."""
-        states = self.at[k].contact if self.own_cells else self.as_given[k][2].states
-        return states[0].active
+    def _on_cells_that_follow(
+        self,
+        k: int,
+        other: ContactModel,
+        large: tuple[ContactProblem, Floats] | None,
+        touching: dict[tuple[int, bool, bytes], Mask | None],
+    ) -> list[PressedJoint]:
+        """The contact in another joint, on the cells that follow its arcs of contact.
+
+        These are the large cells if they follow the arcs, otherwise the model's own cells. If the
+        own cells do not follow them either, both contacts count, since the error of either may be
+        estimated too small. The arguments are those of `_joint`.
+        """
+        if large is None:
+            return [self._joint(k, other, None, touching)]
+        joint = self._joint(k, other, large, touching)
+        if joint.per_arc >= MIN_HARMONICS_PER_ARC:
+            return [joint]
+        own = replace(self._joint(k, other, None, touching), large=joint)
+        return [joint, own] if own.per_arc < MIN_HARMONICS_OF_ORDER else [own]
+
+    def _joint(
+        self,
+        k: int,
+        other: ContactModel,
+        large: tuple[ContactProblem, Floats] | None,
+        touching: dict[tuple[int, bool, bytes], Mask | None],
+    ) -> PressedJoint:
+        """The contact in another joint.
+
+        k: number of the contact. other: model of the other joint.
+        large: problem on cells twice as large, from `on_coarser_cells`; None for own cells.
+        touching: cells in contact with which the search starts, by contact, kind of cells and gaps;
+        the first result for each is added.
+        """
+        own, contact = large is None, self.at[k]
+        like = k, own, other.bands.gap.tobytes()
+        cells = large or _own_cells(other)
+        joint = on_cells(other, contact.loads.links, *cells, touching.get(like))
+        touching.setdefault(like, joint.states[0].active)
+        highest = self.model.cells.highest * (1.0 if own else 0.5)
+        per_arc = highest * contact.half_angle(other.bands, other.tail)
+        return replace(joint, per_arc=per_arc, lugs=other.lugs, own_cells=own)
+
+    def _given(self, k: int, own: bool) -> Mask | None:
+        """The cells in contact in the joint as given, on own cells or on cells twice as large."""
+        if own:
+            return self.at[k].contact[0].active
+        return self.as_given[k][0][2].states[0].active if self.as_given else None
+
+
+def largest_of(
+    every: Iterable[Variation], low: Callable[[Iterable[float]], float] = max
+) -> tuple[Variation, ...]:
+    """The variations of a case whose joint is varied more than once: for each change the largest
+    stress and forces.
+
+    every: all variations, relative to the same stress.
+    low: combines the lower ends of intervals. At several instants it is `max`, since the largest
+    stress is at least that of any instant; for several sets of cells at one instant it is `min`,
+    since any of them may be right.
+    """
+    of = dict[tuple[str, str], list[Variation]]()
+    for x in every:
+        of.setdefault((x.what, x.value), []).append(x)
+    return tuple(_largest(alike, low) for alike in of.values())
+
+
+def _largest(alike: Sequence[Variation], low: Callable[[Iterable[float]], float]) -> Variation:
+    ends = [x.interval or (x.max_von_mises, x.max_von_mises) for x in alike]
+    least, most = low(end for end, _ in ends), max(end for _, end in ends)
+    # A variation without an interval of its own has the error of the row.
+    plain = max((x.max_von_mises for x in alike if x.interval is None), default=0.0)
+    lugs = dict[str, float]()
+    for name, ratio in (pair for x in alike for pair in x.lugs):
+        lugs[name] = max(ratio, lugs.get(name, ratio))
+    return replace(
+        alike[0],
+        max_von_mises=max(x.max_von_mises for x in alike),
+        interval=(least, most) if most > plain else None,
+        beneath=max(x.beneath or 0.0 for x in alike),
+        across=max(x.across for x in alike),
+        surface=max(x.surface for x in alike),
+        lugs=tuple(lugs.items()),
+    )
 
 
 def loaded(model: ContactModel, joint: PressedJoint, contact: JointContact) -> LoadedJoint:

@@ -8,7 +8,7 @@ used.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -93,37 +93,6 @@ def scaled(x: Variation, row: float, below: float) -> Variation:
     return replace(x, max_von_mises=row * x.max_von_mises, interval=interval, beneath=deep)
 
 
-def largest_of(every: Iterable[Variation]) -> tuple[Variation, ...]:
-    """The variations of a case whose joint is varied at several instants: for each change the
-    largest stress and forces at any of the instants.
-
-    every: variations at all instants, relative to the same stress.
-    """
-    of = dict[tuple[str, str], list[Variation]]()
-    for x in every:
-        of.setdefault((x.what, x.value), []).append(x)
-    return tuple(_largest(at) for at in of.values())
-
-
-def _largest(at: Sequence[Variation]) -> Variation:
-    ends = [x.interval or (x.max_von_mises, x.max_von_mises) for x in at]
-    low, high = max(low for low, _ in ends), max(high for _, high in ends)
-    # A variation without an interval of its own has the error of the row.
-    plain = max((x.max_von_mises for x in at if x.interval is None), default=0.0)
-    lugs = dict[str, float]()
-    for name, ratio in (pair for x in at for pair in x.lugs):
-        lugs[name] = max(ratio, lugs.get(name, ratio))
-    return replace(
-        at[0],
-        max_von_mises=max(x.max_von_mises for x in at),
-        interval=(low, high) if high > plain else None,
-        beneath=max(x.beneath or 0.0 for x in at),
-        across=max(x.across for x in at),
-        surface=max(x.surface for x in at),
-        lugs=tuple(lugs.items()),
-    )
-
-
 def joint_range(over: Sequence[Variation], largest: float, below: float = 0.0) -> JointRange:
     """The range over the joint of a maximum and of the stress beneath contact.
 
@@ -173,9 +142,8 @@ def compare(
         arc = contact.half_angle(model.bands, model.tail)
         cells = by_cells(first, roughest, model.cells.rings, arc * model.cells.highest)
         out.append(ResolutionComparison(first, cells, contact.loads.links, (), half_angle=arc))
-        # Varied joints are compared with the joint as given on the same cells.
-        stress_like, like = (first, both[0]) if _large_cells(model) else (twice, both[1])
-        as_given.append((stress_like, cells, like))
+        own, large = both
+        as_given.append(((twice, cells, large), (first, cells, own)))
     which = (True,) * len(at) if vary is None else vary(out)
     if any(which):
         ratios = _over_joint(model, at, requirement, patterns, as_given, which)
@@ -184,10 +152,7 @@ def compare(
 
 
 def _large_cells(model: ContactModel) -> bool:
-    """Whether the model's own cells are so large that varied joints are solved on these cells.
-
-    Otherwise varied joints are solved on cells twice as large, which cost less.
-    """
+    """Whether the model's own cells are so large that all varied joints are solved on them."""
     return model.cells.rings < USUAL_RING_COUNT
 
 
@@ -196,13 +161,13 @@ def _over_joint(
     at: Sequence[JointContact],
     requirement: Requirement,
     known: PressureModes,
-    as_given: Sequence[AsGiven],
+    as_given: Sequence[tuple[AsGiven, AsGiven]],
     vary: Sequence[bool],
 ) -> list[tuple[tuple[Variation, ...], str]]:
     """The variations of each contact, and a remark on those that are not included.
 
     known: existing patterns of pressures.
-    as_given: the joints as given on the cells of the varied joints.
+    as_given: the joints as given, on cells twice as large and on own cells.
     vary: for each contact, whether its joint is varied.
     """
     changes = tuple(joint_variations(model.whole, model.lugs)) if any(vary) else ()
@@ -273,7 +238,7 @@ def uncompared(
     own = [PressedJoint(model.waves(x.contact), list(x.contact)) for x in at]
     loads = [[loads_of(model, known, *both)] for both in zip(own, at, strict=True)]
     stress = at_places(model, requirement, loads)
-    as_given = [(x, NOWHERE, joint) for x, joint in zip(stress, own, strict=True)]
+    as_given = [((x, NOWHERE, joint),) * 2 for x, joint in zip(stress, own, strict=True)]
     over = _over_joint(model, at, requirement, known, as_given, (True,) * len(at))
     return tuple(
         ResolutionComparison(like, NOWHERE, x.loads.links, *varied)
