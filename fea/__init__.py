@@ -1,5 +1,6 @@
-"""Fea: from a pin's mesh, material and forces to its maximum von Mises stress, error and verdict.
+"""The finite element analysis of a pin: its maximum von Mises stress, with error and verdict.
 
-SI units. This room imports geometry and nothing else of ours. Its front door is
-`fea.solve.solve.solve_pin`; nothing is imported here, because scikit-fem takes a while.
+All units are SI. Of the project's packages it imports only `geometry` and `pinbase`. The entry
+point is `fea.solve.solve.solve_pin`. Nothing is imported here, since scikit-fem takes long to
+import.
 """

@@ -103,7 +103,7 @@ class ContactProblem:
         return self._cells.angles
 
     def cells_area(self, bands: Bands) -> Floats:
-        """The areas of all cells of bands with as many rings, (U,) m^2."""
+        """The areas of all cells, (U,) m^2, on bands with as many rings as this problem has."""
         of_ring = bands.length * bands.radius * 2.0 * np.pi / self.sectors
         return np.outer(of_ring, self._cells.sizes).ravel()
 
@@ -167,7 +167,8 @@ class ContactProblem:
         return not self.bands.gap.any()
 
     def rigid(self, bands: Bands, tilt: Sequence[float]) -> tuple[Floats, Floats]:
-        """The changes of the gap by rigid motions of lugs and pin, on bands with as many rings.
+        """The changes of the gap by rigid motions of lugs and pin, on bands with as many rings as
+        this problem has.
 
         The first array, (U, Y), is for motions without stiffness: shifts of the lugs, turn of the
         pin, tilts of the free lugs. The second array, (U, S), is for elastic tilts. Each column is

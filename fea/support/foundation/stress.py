@@ -102,7 +102,7 @@ class FoundationStress:
         return von_mises_maxima(self.harmonics(joint))
 
     def lacking(self, joint: JointFoundation, von_mises: Floats) -> list[str]:
-        """The notches under load for which no valid stress concentration factor is known, in words.
+        """The notches under load, and pressed shoulders, without a valid notch factor, in words.
 
         von_mises: at the points and instants, (S, T) Pa.
         """
