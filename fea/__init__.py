@@ -1,6 +1,6 @@
-"""The finite element analysis of a pin: its maximum von Mises stress, with error and verdict.
+"""Fea: from a pin's mesh, material and forces to its maximum von Mises stress, error and verdict.
 
-All units are SI. Of the project's packages it imports only `geometry` and `pinbase`. The entry
-point is `fea.solve.solve.solve_pin`. Nothing is imported here, since scikit-fem takes long to
-import.
+All quantities are in SI units. This package imports geometry and pinbase and nothing else of ours.
+Its entry point is `fea.solve.solve.solve_pin`. Nothing is imported here, because importing
+scikit-fem takes a while.
 """

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache, partial
+from typing import Literal
 
 import numpy as np
 
@@ -51,6 +53,8 @@ from pinbase.arrays import Mask
 # on it.
 VARIATION_MODE_TOLERANCE = 1e-2
 
+Cells = Literal["own", "large"]  # the cells of the model, or cells twice as large
+
 
 @dataclass(frozen=True)
 class VariedPressures:
@@ -72,21 +76,21 @@ class PressedJoint:
     states: the contact on the cells.
     per_arc: number of harmonics that the cells follow, times the half angle of contact in rad.
     lugs: of a varied joint.
-    large: the same contact on cells twice as large, if these did not follow the arcs of contact.
-    own_cells: whether the cells are those of the model, not cells twice as large.
+    cells: on which the contact is solved.
+    large: the same contact on large cells, if the arcs of contact are narrow.
     """
 
     waves: Floats
     states: list[ContactState]
     per_arc: float = math.inf
     lugs: tuple[Lug, ...] = ()
+    cells: Cells = "own"
     large: PressedJoint | None = None
-    own_cells: bool = True
 
     @property
     def with_rougher(self) -> tuple[PressedJoint, ...]:
         """This joint; on narrow arcs also the joint with half the harmonics, which shows the error
-        of the cells. It is that on cells twice as large, if it was solved there.
+        of the cells. It is that on large cells, if it was solved on these.
         """
         if self.large is not None:
             return self, in_half_the_harmonics(self.large)
@@ -110,6 +114,10 @@ class ChangedContact:
 JointsUnderChanges = tuple[list[tuple[JointChange, PressedJoint]], list[str]]
 
 
+# The cells in contact with which the search starts, by number of the contact, cells and gaps.
+Touching = dict[tuple[int, Cells, bytes], Mask]
+# A function that returns the contact problem on some cells, and which rings belong to its rings.
+Problems = Callable[[Cells], tuple[ContactProblem, Floats]]
 # The joint as given on the cells of the varied joints: stress, relative error from the cells, and
 # contact.
 AsGiven = tuple[AtPlaces, AtPlaces, PressedJoint]
@@ -120,17 +128,16 @@ class JointChanges:
     """Contacts, each at one instant, whose joint is changed.
 
     at: the contacts with the joint as given.
-    as_given: for each contact, the joint as given on cells twice as large and on the model's own
-    cells.
-    own_cells: whether all changed joints are solved on the model's own cells. Otherwise they are
-    solved on cells twice as large, which cost less, where these follow the arcs of contact.
+    as_given: for each contact, the joint as given on these cells.
+    cells: on which changed joints are solved. Second cells, if there are any, are used where the
+    arcs of contact are too narrow for the first.
     """
 
     model: ContactModel
     at: Sequence[JointContact]
     requirement: Requirement
-    as_given: Sequence[tuple[AsGiven, AsGiven]]
-    own_cells: bool
+    as_given: Sequence[Mapping[Cells, AsGiven]]
+    cells: tuple[Cells, ...]
 
     def by(
         self, changes: Sequence[Sequence[JointChange]], known: PressureModes
@@ -141,20 +148,17 @@ class JointChanges:
         """
         model = self.model
         every = self.joints(changes)
-        joints = [[joint for _, joint in solved] for solved, _ in every]
+        joints = [[x for _, one in solved for x in one.with_rougher] for solved, _ in every]
         parts = [(x.waves, VARIATION_MODE_TOLERANCE) for x in itertools.chain(*joints)]
         patterns = model.patterns(parts, known) if parts else known
         loads = [
-            [
-                loads_of(model, patterns, one, contact)
-                for one in itertools.chain(*(x.with_rougher for x in of_contact))
-            ]
+            [loads_of(model, patterns, one, contact) for one in of_contact]
             for contact, of_contact in zip(self.at, joints, strict=True)
         ]
         stress = iter(at_places(model, self.requirement, loads) if any(loads) else [])
         out = []
         for contact, like, (solved, missing) in zip(self.at, self.as_given, every, strict=True):
-            over = [self._variation(contact, like[one.own_cells], change, one, stress)
+            over = [self._variation(contact, like[one.cells], change, one, stress)
                     for change, one in solved]  # fmt: skip
             out.append(ChangedContact(largest_of(over, low=min), tuple(missing)))
         return out, patterns
@@ -197,72 +201,61 @@ class JointChanges:
         # is nearer.
         gaps = self.model.bands.gap.tobytes()
         touching = {
-            (k, own, gaps): self._given(k, own)
-            for k in range(len(self.at))
-            for own in (False, True)
+            (k, on, gaps): self._given(k, on) for k in range(len(self.at)) for on in self.cells
         }
         for name, of_change in wanted.items():
             _, change = of_change[0]
             other = self.model.varied(change.lugs, change.softness)
-            large = None if self.own_cells else on_coarser_cells(other)
+            problems = cache(partial(_problem, other))
             for k, _ in of_change:
                 solved, missing = out[k]
                 try:
-                    joints = self._on_cells_that_follow(k, other, large, touching)
+                    joints = self._on_cells_that_follow(k, other, problems, touching)
                     solved += [(change, joint) for joint in joints]
                 except SolveError as error:
                     missing.append(f"{name} ({error})")
         return out
 
     def _on_cells_that_follow(
-        self,
-        k: int,
-        other: ContactModel,
-        large: tuple[ContactProblem, Floats] | None,
-        touching: dict[tuple[int, bool, bytes], Mask | None],
+        self, k: int, other: ContactModel, problems: Problems, touching: Touching
     ) -> list[PressedJoint]:
         """The contact in another joint, on the cells that follow its arcs of contact.
 
-        These are the large cells if they follow the arcs, otherwise the model's own cells. If the
+        These are the first cells if they follow the arcs, otherwise the model's own cells. If the
         own cells do not follow them either, both contacts count, since the error of either may be
         estimated too small. The arguments are those of `_joint`.
         """
-        if large is None:
-            return [self._joint(k, other, None, touching)]
-        joint = self._joint(k, other, large, touching)
-        if joint.per_arc >= MIN_HARMONICS_PER_ARC:
+        first, *more = self.cells
+        joint = self._joint(k, other, first, problems, touching)
+        if joint.per_arc >= MIN_HARMONICS_PER_ARC or not more:
             return [joint]
-        own = replace(self._joint(k, other, None, touching), large=joint)
-        return [joint, own] if own.per_arc < MIN_HARMONICS_OF_ORDER else [own]
+        second = self._joint(k, other, more[0], problems, touching)
+        own, large = (joint, second) if first == "own" else (second, joint)
+        own = replace(own, large=large)
+        return [large, own] if own.per_arc < MIN_HARMONICS_OF_ORDER else [own]
 
     def _joint(
-        self,
-        k: int,
-        other: ContactModel,
-        large: tuple[ContactProblem, Floats] | None,
-        touching: dict[tuple[int, bool, bytes], Mask | None],
+        self, k: int, other: ContactModel, cells: Cells, problems: Problems, touching: Touching
     ) -> PressedJoint:
-        """The contact in another joint.
+        """The contact in another joint on some cells.
 
-        k: number of the contact. other: model of the other joint.
-        large: problem on cells twice as large, from `on_coarser_cells`; None for own cells.
-        touching: cells in contact with which the search starts, by contact, kind of cells and gaps;
-        the first result for each is added.
+        k: number of the contact.
+        other: model of the other joint.
+        problems: returns the contact problem of the other joint on cells.
+        touching: cells in contact with which the search starts; the first result for other gaps is
+        added.
         """
-        own, contact = large is None, self.at[k]
-        like = k, own, other.bands.gap.tobytes()
-        cells = large or _own_cells(other)
-        joint = on_cells(other, contact.loads.links, *cells, touching.get(like))
+        contact, like = self.at[k], (k, cells, other.bands.gap.tobytes())
+        joint = on_cells(other, contact.loads.links, *problems(cells), touching.get(like))
         touching.setdefault(like, joint.states[0].active)
-        highest = self.model.cells.highest * (1.0 if own else 0.5)
+        highest = self.model.cells.highest * (1.0 if cells == "own" else 0.5)
         per_arc = highest * contact.half_angle(other.bands, other.tail)
-        return replace(joint, per_arc=per_arc, lugs=other.lugs, own_cells=own)
+        return replace(joint, per_arc=per_arc, lugs=other.lugs, cells=cells)
 
-    def _given(self, k: int, own: bool) -> Mask | None:
+    def _given(self, k: int, cells: Cells) -> Mask:
         """The cells in contact in the joint as given, on own cells or on cells twice as large."""
-        if own:
-            return self.at[k].contact[0].active
-        return self.as_given[k][0][2].states[0].active if self.as_given else None
+        states = self.at[k].contact if cells == "own" else self.as_given[k][cells][2].states
+        return states[0].active
 
 
 def largest_of(
@@ -396,5 +389,5 @@ def in_half_the_harmonics(joint: PressedJoint) -> PressedJoint:
     return replace(joint, waves=waves)
 
 
-def _own_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
-    return model.contact, np.eye(len(model.rings))
+def _problem(model: ContactModel, cells: Cells) -> tuple[ContactProblem, Floats]:
+    return (model.contact, np.eye(len(model.rings))) if cells == "own" else on_coarser_cells(model)

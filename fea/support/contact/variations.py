@@ -8,7 +8,7 @@ used.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -25,6 +25,7 @@ from fea.support.contact.coarser_cells import on_coarser_cells
 from fea.support.contact.friction import friction_variations, rubbed, rubbed_across, rubs
 from fea.support.contact.joint_changes import (
     AsGiven,
+    Cells,
     JointChanges,
     PressedJoint,
     VariedPressures,
@@ -136,14 +137,15 @@ def compare(
         [loads_of(model, patterns, x, contact) for x in (*both, in_half_the_harmonics(both[1]))]
         for contact, both in zip(at, exact, strict=True)
     ]
-    stress, out, as_given = at_places(model, requirement, every), [], []
+    as_given: list[Mapping[Cells, AsGiven]] = []
+    stress, out = at_places(model, requirement, every), []
     for contact, both in zip(at, exact, strict=True):
         first, twice, roughest = (stress.pop(0) for _ in range(3))
         arc = contact.half_angle(model.bands, model.tail)
         cells = by_cells(first, roughest, model.cells.rings, arc * model.cells.highest)
         out.append(ResolutionComparison(first, cells, contact.loads.links, (), half_angle=arc))
         own, large = both
-        as_given.append(((twice, cells, large), (first, cells, own)))
+        as_given.append({"own": (first, cells, own), "large": (twice, cells, large)})
     which = (True,) * len(at) if vary is None else vary(out)
     if any(which):
         ratios = _over_joint(model, at, requirement, patterns, as_given, which)
@@ -151,27 +153,28 @@ def compare(
     return tuple(out)
 
 
-def _large_cells(model: ContactModel) -> bool:
-    """Whether the model's own cells are so large that all varied joints are solved on them."""
-    return model.cells.rings < USUAL_RING_COUNT
-
-
 def _over_joint(
     model: ContactModel,
     at: Sequence[JointContact],
     requirement: Requirement,
     known: PressureModes,
-    as_given: Sequence[tuple[AsGiven, AsGiven]],
+    as_given: Sequence[Mapping[Cells, AsGiven]],
     vary: Sequence[bool],
 ) -> list[tuple[tuple[Variation, ...], str]]:
     """The variations of each contact, and a remark on those that are not included.
 
     known: existing patterns of pressures.
-    as_given: the joints as given, on cells twice as large and on own cells.
+    as_given: for each contact, the joint as given, on the cells on which it was solved.
     vary: for each contact, whether its joint is varied.
     """
     changes = tuple(joint_variations(model.whole, model.lugs)) if any(vary) else ()
-    joints = JointChanges(model, at, requirement, as_given, _large_cells(model))
+    tried: tuple[Cells, ...] = ("large", "own")
+    if model.cells.rings < USUAL_RING_COUNT:  # even larger cells serve only to show the error
+        tried = "own", "large"
+    known_on = as_given[0] if as_given else {}
+    joints = JointChanges(
+        model, at, requirement, as_given, tuple(x for x in tried if x in known_on)
+    )
     changed, known = joints.by([changes if varied else () for varied in vary], known)
     by_friction = _by_friction(model, requirement, known, at, vary)
     out = []
@@ -185,7 +188,7 @@ def varied_pressures(model: ContactModel, contact: JointContact) -> tuple[Varied
     """The pressures of a contact at one instant, first with the joint as given, then under each
     change of the joint that can be solved, without friction; all on the model's own cells.
     """
-    joints = JointChanges(model, [contact], Requirement(), (), own_cells=True)
+    joints = JointChanges(model, [contact], Requirement(), (), ("own",))
     ((solved, _),) = joints.joints([tuple(joint_variations(model.whole, model.lugs))])
     varied = (VariedPressures(x.lugs, x.waves) for _, x in solved)
     return (VariedPressures(model.lugs, model.waves(contact.contact)), *varied)
@@ -238,7 +241,8 @@ def uncompared(
     own = [PressedJoint(model.waves(x.contact), list(x.contact)) for x in at]
     loads = [[loads_of(model, known, *both)] for both in zip(own, at, strict=True)]
     stress = at_places(model, requirement, loads)
-    as_given = [((x, NOWHERE, joint),) * 2 for x, joint in zip(stress, own, strict=True)]
+    as_given: list[Mapping[Cells, AsGiven]]
+    as_given = [{"own": (x, NOWHERE, joint)} for x, joint in zip(stress, own, strict=True)]
     over = _over_joint(model, at, requirement, known, as_given, (True,) * len(at))
     return tuple(
         ResolutionComparison(like, NOWHERE, x.loads.links, *varied)
