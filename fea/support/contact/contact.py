@@ -58,10 +58,9 @@ SIGN_TOLERANCE = 1e-12  # of the largest pressure or gap: a wrong sign below it 
 # A spring, relative to the stiffness of the cells, that holds a lug which has lost all contact. It
 # is far too soft to change the contact of any other lug.
 SOFT_SPRING_STIFFNESS = 1e-13
-# The responses of sets of cells that are kept, counted as one number for each cell and motion.
+# Responses of sets of cells that are kept, counted as one number for each cell and motion.
 MAX_KEPT_NUMBERS = 4_000_000
-# Solved states that are kept, by their loads: single instants are requested repeatedly.
-MAX_KEPT_STATES = 64
+MAX_KEPT_STATES = 64  # solved states that are kept: single instants are requested repeatedly
 
 
 class ContactProblem:
@@ -139,9 +138,7 @@ class ContactProblem:
         self._link = np.repeat(bands.links[bands.band], len(self._cells))
         self._open = np.repeat(bands.gap, len(self._cells)) + self._removed_gap
         self._motions, self._tilts = self.rigid(bands, tilt)
-        # The largest gap change of each motion: a turn counts as the shift that it causes farthest
-        # from the middle.
-        largest = np.abs(self._motions).max(axis=0)
+        largest = np.abs(self._motions).max(axis=0)  # a turn counts as the shift at the far end
         self._reach = np.where(largest > 0.0, largest, 1.0)
         self._answers: dict[bytes, Answer] = {}
         self._states: dict[bytes, ContactState] = {}
@@ -156,9 +153,7 @@ class ContactProblem:
 
     @property
     def _softest(self) -> float:
-        """The largest compliance, m/N: the largest entry of a positive definite matrix is on its
-        diagonal.
-        """
+        """The largest compliance, m/N; of a positive definite matrix it is on the diagonal."""
         return float(self._compliance.diagonal().max())
 
     @property
@@ -167,13 +162,11 @@ class ContactProblem:
         return not self.bands.gap.any()
 
     def rigid(self, bands: Bands, tilt: Sequence[float]) -> tuple[Floats, Floats]:
-        """The changes of the gap by rigid motions of lugs and pin, on bands with as many rings as
-        this problem has.
+        """The changes of the gap by rigid motions, on bands with as many rings as this problem has.
 
         The first array, (U, Y), is for motions without stiffness: shifts of the lugs, turn of the
-        pin, tilts of the free lugs. The second array, (U, S), is for elastic tilts. Each column is
-        divided by the square root of the tilt stiffness, so that the array times its transpose is
-        the compliance of the tilts.
+        pin, tilts of free lugs. The second, (U, S), is for elastic tilts, each divided by the root
+        of its stiffness, so that the array times its transpose is the compliance of the tilts.
         """
         # With symmetry about x, nothing moves along y.
         e_r = self._e_r[:, :1] if self._cells.mirrored else self._e_r
@@ -204,8 +197,7 @@ class ContactProblem:
         start: mask (R, M) of the cells in contact at a neighbouring instant.
         moments: on the pin along x and y, by the lugs that are free to tilt, (B, 2) N m.
 
-        Raises: SolveError where no set of cells in contact is found or no contact can react the
-        loads.
+        Raises: SolveError where no cells in contact are found, or no contact can react the loads.
         """
         forces = np.asarray(forces, dtype=np.float64)
         required = self.required_resultants(forces, couple, moments)
@@ -230,9 +222,7 @@ class ContactProblem:
         return bool(size[ALONG_Y].max() <= BALANCE_TOLERANCE * size.max())
 
     def _settled(self, required: Floats, active: Mask) -> ContactState | None:
-        """Return the contact that the active set finds from a first guess of the cells in contact;
-        None where it does not settle.
-        """
+        """Return the contact that the active set finds from a guess; None if it does not settle."""
         # Each step solves the linear contact of the guessed cells, then corrects the guess: cells
         # in tension open, cells that penetrate close. This is a semismooth Newton method
         # (Hintermueller et al.), which needs few steps even from a poor guess.
@@ -243,8 +233,7 @@ class ContactProblem:
             wrong_force = active & (force < -SIGN_TOLERANCE * np.abs(force).max(initial=0.0))
             wrong_gap = ~active & (gap < -SIGN_TOLERANCE * np.abs(gap).max(initial=0.0))
             if not (wrong_force | wrong_gap).any():
-                # Cells whose forces miss the required resultants, as in one of two free lugs, are
-                # no solution.
+                # Forces that miss the required resultants, as in one of two free lugs, are none.
                 balanced = self._balances(force, required, answer)
                 return self._state(force, gap, motion, step) if balanced else None
             if (key := active.tobytes()) in seen:
@@ -282,10 +271,9 @@ class ContactProblem:
         """
         size = float(np.abs(required / self._reach).max())
         require_forces((self._motions / self._reach).T, required / self._reach / (size or 1.0))
-        # Springs hold the pin and the lugs, since without them the energy would have no bound. The
-        # springs first pull with the loads. Each round adds the part of the loads that has not
-        # reached the cells, until nothing is missing (the method of multipliers). Small parts of
-        # the loads need softer springs, so that the pin moves as far as the gaps are wide.
+        # Springs hold the pin and the lugs. They first pull with the loads; each round adds the
+        # part of the loads that has not reached the cells, until nothing is missing (the method of
+        # multipliers). Small parts need softer springs, so that the pin moves across the gaps.
         give = float(np.abs(self.bands.gap).max()) + size * self._softest
         spring, pull, missing = SPRING_FORCE * (size or 1.0) / give, required, required
         force = np.maximum(self._answer(first).on_springs(pull, spring)[0], 0.0)
@@ -307,10 +295,7 @@ class ContactProblem:
         return self._answer(active).on_springs(pull, spring)
 
     def _energy(self, force: Floats, pull: Floats, spring: float) -> float:
-        """The energy of cell forces (U,) N with springs of a stiffness, N/m, in N m.
-
-        It is least for the forces of contact.
-        """
+        """The energy, N m, of cell forces (U,), N, with springs, N/m; it is least in contact."""
         rows = np.flatnonzero(force)
         some = force[rows]
         stretched = (self._motions[rows].T @ some - pull) / self._reach
@@ -349,10 +334,8 @@ class ContactProblem:
         couple: tuple[float, float] = (0.0, 0.0),
         moments: Floats | None = None,
     ) -> Floats:
-        """The resultants (Y,) that the cells' forces must have, one for each rigid motion.
-
-        The links' forces change sign, since the cells push the pin against e_r. The arguments are
-        those of `solve`.
+        """The resultants (Y,) that the cells' forces must have, by rigid motion, under the loads of
+        `solve`. The links' forces change sign, since the cells push the pin against e_r.
         """
         mx, my = couple  # x: by forces along -y at z, y: by forces along x at z
         free = np.array(self.tilt) == 0.0

@@ -118,9 +118,7 @@ class ContactModel:
         return self._memo.get((*key, self.cells.across, self.cells.highest), make)
 
     def _lug_flexibility(self, lug: Lug, ends: Floats) -> tuple[RingBody, Floats, Floats]:
-        """The rings of a lug on a mesh, their flexibility, and the flexibility of pin and lug for
-        short waves (`wavy_of`).
-        """
+        """The rings of a lug on a mesh, their flexibility, and that for short waves (`wavy_of`)."""
 
         def make() -> tuple[RingBody, Floats, Floats]:
             body = lug_rings(self.eye(lug, ends), lug, self.cells.across)
@@ -153,9 +151,7 @@ class ContactModel:
         self.rings = tuple(name for c, ends in self.ends.items() for name in rings(c, ends))
 
     def without_meshes(self) -> ContactModel:
-        """The model ready for contact, without the meshes that only derivatives and other shapes
-        need.
-        """
+        """The model ready for contact, without meshes, which only derivatives and shapes need."""
         other = copy.copy(self)
         other._memo = Memo()
         for meshes in ("on_pin", "on_lugs", "first"):
@@ -188,16 +184,12 @@ class ContactModel:
         return annulus(self.whole, lug.connection, lug.outer_diameter, ends)
 
     def wavy_of(self, lug: Lug, ends: Floats) -> Floats:
-        """The flexibility of pin and lug for short waves, on the lug's rings
-        (fea.support.contact.flexibility.wavy_flexibility).
-        """
+        """The flexibility of pin and lug for short waves, on the lug's rings."""
         radius = self.whole.band(lug.connection).radius
         return wavy_flexibility(lug, self.material, radius, ends, self.high)
 
     def flexibility_key(self, lug: Lug, ends: Floats) -> FlexibilityKey:
-        """The properties that decide the flexibility of a lug's rings, and that of the pin for
-        short waves on them.
-        """
+        """The properties that decide a lug's flexibility, and that of the pin for short waves."""
         bore = 2.0 * self.whole.band(lug.connection).radius
         size = np.round(np.append(ends, bore) / lug.outer_diameter, LUG_SIZE_DIGITS)
         return lug.outer_diameter, lug.material, lug.bushing, size.tobytes(), self.material
@@ -210,9 +202,7 @@ class ContactModel:
         return groups
 
     def by_lug(self) -> Iterator[tuple[slice, Lug, Floats]]:
-        """Yield for each lug the numbers of its rings, the lug, and the rings' ends along its band,
-        m.
-        """
+        """Yield for each lug the numbers of its rings, the lug, and the rings' ends in it, m."""
         first = 0
         for lug, ends in zip(self.lugs, self.ends.values(), strict=True):
             rows = slice(first, first + len(ends) - 1)
