@@ -150,7 +150,7 @@ class Teeth:
 class Sharing:
     """A rule by which redundant connections and teeth share their load, as springs do.
 
-    stiffness: of each connection, in any unit.
+    stiffness: stiffness of each connection, in any unit.
     """
 
     connections: tuple[str, ...]

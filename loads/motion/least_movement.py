@@ -76,7 +76,7 @@ def least_movement(
     loops = PlanarEquations(draw(at))
     scale = loops.linkage.length_scale
     ways = _ways(loops, reach)
-    if not ways:  # of a structure, or at a dead point
+    if not ways:  # a structure, or a drawing at a dead point
         return LeastMovement(dict.fromkeys(at, (0.0, 0.0)), 0.0, ())
     drives = np.concatenate([drives for drives, _ in ways])
     q = np.concatenate([q for _, q in ways])
