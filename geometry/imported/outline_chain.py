@@ -260,18 +260,18 @@ def _chain(sides: list[MeridianSide]) -> list[MeridianSide]:
     starts = [s for s in sides if s.start[0] == 0.0 or s.end[0] == 0.0]
     first = starts[0] if starts else sides[0]
     chain = [first if not starts or first.start[0] == 0.0 else first.reversed()]
-    left = [s for s in sides if s is not first]
-    while left and chain[-1].end[0] != 0.0:
+    remaining = [s for s in sides if s is not first]
+    while remaining and chain[-1].end[0] != 0.0:
         at = chain[-1].end
-        following = [s for s in left if at in (s.start, s.end)]
+        following = [s for s in remaining if at in (s.start, s.end)]
         if len(following) > 1:
             raise ValueError("more than two of its faces of revolution meet in a circle")
         if not following:
             break
-        left.remove(following[0])
+        remaining.remove(following[0])
         chain.append(following[0] if following[0].start == at else following[0].reversed())
     closed = chain[0].start == chain[-1].end
-    if left or not (closed or chain[0].start[0] == chain[-1].end[0] == 0.0):
+    if remaining or not (closed or chain[0].start[0] == chain[-1].end[0] == 0.0):
         raise ValueError("its faces of revolution do not form one closed outline")
     return chain
 

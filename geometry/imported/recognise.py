@@ -295,7 +295,7 @@ def _surfaces(
         key = tuple(round(x / (10.0 * FACE_TOLERANCE * size)) for x in (side.start[0], z0, z1))
         names.setdefault(key, set()).add(side.name)
         ends[key] = z0 - start, z1 - start
-    return {name: ends[key] for key, (name, *more) in names.items() if not more}
+    return {name: ends[key] for key, (name, *others) in names.items() if not others}
 
 
 def _require_volume(file: BodyFile, profile: RecognisedProfile, volume: float) -> None:

@@ -68,9 +68,11 @@ class CutFaces:
         flats, rounded = self._flats([f for f in planes if f.tag not in used], bent)
         used |= rounded
         holes = [self._hole(pin, c) for c in across]
-        left = [f for f in bent if f.tag not in used and not rounds_mouth(pin, f, holes)]
+        remaining = [f for f in bent if f.tag not in used and not rounds_mouth(pin, f, holes)]
         passages = [self._passage(pin, c) for c in along]
-        return _once([*holes, *holes_aslant(left, self.size), *sides, *flats, *slots, *passages])
+        return _once(
+            [*holes, *holes_aslant(remaining, self.size), *sides, *flats, *slots, *passages]
+        )
 
     @property
     def near(self) -> float:

@@ -55,8 +55,8 @@ class Removed:
         try:
             cuts = CutFaces(self.faces, size).cuts(pin)
             with gmsh_model(pin.name) as gmsh:
-                left = cut_solid(gmsh, pin, CutPin.of(pin, cuts).cuts)
-                removed = sum(solid_volume(gmsh, e) for e in _lacking(gmsh, left, pin))
+                solid = cut_solid(gmsh, pin, CutPin.of(pin, cuts).cuts)
+                removed = sum(solid_volume(gmsh, e) for e in _lacking(gmsh, solid, pin))
         except (ValueError, MeshError):  # GeometryError is a ValueError
             return (self.recess,)
         known = abs(removed - self.volume) < KNOWN_VOLUME * self.volume
@@ -86,9 +86,9 @@ def _lacking(gmsh: Any, body: Entity, pin: Pin) -> list[Entity]:
     occ = gmsh.model.occ
     gmsh.model.mesh.clear()
     gmsh.option.setNumber("Geometry.ToleranceBoolean", BOOLEAN_TOLERANCE * pin.length)
-    left, _ = occ.cut([revolve(gmsh, meridian(pin))], [body])
+    lacking, _ = occ.cut([revolve(gmsh, meridian(pin))], [body])
     occ.synchronize()
-    return [(d, t) for d, t in left if occ.getMass(d, t) > LEAST_VOLUME * pin.volume]
+    return [(d, t) for d, t in lacking if occ.getMass(d, t) > LEAST_VOLUME * pin.volume]
 
 
 def _removed(gmsh: Any, solid: Entity, pin: Pin) -> Removed:

@@ -40,8 +40,8 @@ def clipped(z: Floats, cells: Ints, low: float, high: float) -> tuple[Ints, sp.c
     """
     to_nodes = sp.eye(len(z), format="csr")
     for level, sign in ((low, 1.0), (high, -1.0)):
-        cells, more = _one_side(sign * (np.asarray(to_nodes @ z) - level), cells)
-        to_nodes = (more @ to_nodes).tocsr()
+        cells, to_new = _one_side(sign * (np.asarray(to_nodes @ z) - level), cells)
+        to_nodes = (to_new @ to_nodes).tocsr()
     return cells, to_nodes
 
 

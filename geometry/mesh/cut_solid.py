@@ -70,18 +70,18 @@ def cut_solid(gmsh: Any, pin: Pin, cuts: Cuts, sector: float = 2.0 * math.pi) ->
     tools = [tool for cut in cuts.values() for tool in _tool(gmsh, pin, cut, reach)]
     if any(isinstance(cut, Recess) for cut in cuts.values()):
         gmsh.option.setNumber("Geometry.ToleranceBoolean", BOOLEAN_TOLERANCE * pin.length)
-    left, _ = occ.cut([body], tools)
+    pieces, _ = occ.cut([body], tools)
     occ.synchronize()
-    if rounded and len(left) == 1:
+    if rounded and len(pieces) == 1:
         for hole in rounded:
-            left = _round_mouths(gmsh, left, hole, pin)
-    if len(left) != 1:
+            pieces = _round_mouths(gmsh, pieces, hole, pin)
+    if len(pieces) != 1:
         raise GeometryError(
-            f"pin {pin.name}: the cuts split the pin into {len(left)} pieces; move them or make "
+            f"pin {pin.name}: the cuts split the pin into {len(pieces)} pieces; move them or make "
             "them smaller",
             "cut-apart",
         )
-    return int(left[0][0]), int(left[0][1])
+    return int(pieces[0][0]), int(pieces[0][1])
 
 
 def _tool(gmsh: Any, pin: Pin, cut: Cut, reach: float) -> list[Entity]:

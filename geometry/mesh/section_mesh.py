@@ -98,9 +98,9 @@ def meridian_mesh(
     outline = meridian(pin)
     with gmsh_model(pin.name) as gmsh:
         _draw(gmsh, outline, spots)
-        more = (grade.scaled(1.0 / unit) for grade in finer)
+        further = (grade.scaled(1.0 / unit) for grade in finer)
         largest = _stretch_sizes(gmsh, stretches(pin, size), size.growth)
-        _set_sizes(gmsh, largest, [*grades(pin, size, spots, quiet), *more])
+        _set_sizes(gmsh, largest, [*grades(pin, size, spots, quiet), *further])
         gmsh.model.mesh.generate(2)
         return _collect(gmsh, unit, outline)
 

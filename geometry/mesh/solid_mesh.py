@@ -121,17 +121,17 @@ def _mesh(
     pin, profile = pin.scaled(1.0 / unit), profile.scaled(1.0 / unit)
     edges = tuple(z / unit for z in edges)
     with gmsh_model(pin.name) as gmsh:
-        more: list[int] = []
+        cut_fields: list[int] = []
         if pin.cuts:
             cut_solid(gmsh, profile, pin.cuts)
             parts = named_parts(gmsh, profile, pin.cuts)
             surfaces, far = name_faces(parts, pin.cuts), _far(profile, size)
-            more = grade(gmsh, profile, pin.cuts, parts, far, size.across, size.growth)
+            cut_fields = grade(gmsh, profile, pin.cuts, parts, far, size.across, size.growth)
         else:
             outline = meridian(profile)
             revolve(gmsh, outline)
             surfaces = _name_surfaces(gmsh, profile, outline)
-        set_sizes(gmsh, profile, size, edges, more)
+        set_sizes(gmsh, profile, size, edges, cut_fields)
         if element != "linear":
             require_few(gmsh, pin.name, most)
         gmsh.model.mesh.generate(3)
@@ -190,9 +190,9 @@ def _name_surfaces(gmsh: Any, pin: Pin, outline: tuple[Edge, ...]) -> dict[str, 
 
 
 def set_sizes(
-    gmsh: Any, pin: Pin, size: MeshSize, edges: tuple[float, ...], more: list[int]
+    gmsh: Any, pin: Pin, size: MeshSize, edges: tuple[float, ...], fields: list[int]
 ) -> None:
-    """Set the element size to the minimum of gradings around all features, and of `more` fields.
+    """Set the element size to the minimum of gradings around all features and of `fields`.
 
     Features are sharp corners, circles at z = `edges` (m), roundings and bores.
     """
@@ -206,7 +206,7 @@ def set_sizes(
         arc = min(far, rounding.radius * math.pi / 2 / size.arc)
         circles.append((*rounding.at, arc, 1.3 * rounding.reach))
     # Around a circle the size is h within the distance `flat`, then grows: d + |d| is zero inside.
-    tags = list(more)
+    tags = list(fields)
     for r, z, h, flat in dict.fromkeys(circles):
         d = f"Sqrt((Sqrt(x*x+y*y)-{r!r})^2+(z-{z!r})^2)-{flat!r}"
         tags.append(formula_size(gmsh, f"{h!r}+{size.growth / 2!r}*(({d})+Fabs({d}))"))

@@ -212,9 +212,9 @@ class Hole(Drilled):
             return
         outer = outer_radius(pin, self.z)
         require(positive(self.depth), "the depth must be positive", "not-positive")
-        left = abs(outer - self.depth - self.bottom.height(self.diameter) - pin.radii(self.z)[0])
+        to_bore = abs(outer - self.depth - self.bottom.height(self.diameter) - pin.radii(self.z)[0])
         require(
-            left >= MIN_WALL_RATIO * self.diameter or not pin.radii(self.z)[0],
+            to_bore >= MIN_WALL_RATIO * self.diameter or not pin.radii(self.z)[0],
             f"its bottom is less than {MIN_WALL_RATIO:g} times its diameter from the "
             "surface of the bore; deepen it into the bore, or reduce its depth",
             "thin-wall",

@@ -366,7 +366,9 @@ def _terminal(direction: int, of: Callable[[Floats], float]) -> Any:
 def _destroyed(d: Drop, event: str, time: float, y: Floats, mode: Mode) -> LandingError:
     """The error for a strut that bottoms, with the remaining energy, or a tyre beyond its table."""
     f = forces(d, y, mode)
-    left = 0.5 * d.mass * float(y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE] * d.sprung / d.mass) ** 2
+    remaining = (
+        0.5 * d.mass * float(y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE] * d.sprung / d.mass) ** 2
+    )
     sinking = NumberInSI(float(y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE]), "velocity")
     where = f"{time:.4g} s after touch-down, the aircraft still sinking at "
     if event == "bottoms":
@@ -377,7 +379,7 @@ def _destroyed(d: Drop, event: str, time: float, y: Floats, mode: Mode) -> Landi
                 f" {where}",
                 sinking,
                 " (about ",
-                NumberInSI(left, "energy"),
+                NumberInSI(remaining, "energy"),
                 " are left): a longer stroke, a higher gas pressure or a smaller orifice is needed",
             ],
             "strut-bottoms",

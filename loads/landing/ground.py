@@ -85,11 +85,11 @@ class GroundedWheel:
         contact: tuple[str, Vector] = (AXLE, (0.0, 0.0, 0.0))
         if self.radius is not None:
             contact = CONTACT, _scaled(up, -self.radius)
-        of_drag = contact if self.braked else (AXLE, (0.0, 0.0, 0.0))
+        drag_place = contact if self.braked else (AXLE, (0.0, 0.0, 0.0))
         forces = (
             WheelForce("vertical", rule.vertical, reference, "up", up, *contact),
             WheelForce("drag", abs(rule.drag), reference, "aft" if rule.drag > 0.0 else "forward",
-                       drag, *of_drag),
+                       drag, *drag_place),
             WheelForce("side", rule.side, reference, towards, self.sideways(towards), *contact),
         )  # fmt: skip
         return tuple(force for force in forces if force.factor)

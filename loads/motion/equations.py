@@ -12,7 +12,7 @@ from pinbase.arrays import Floats
 MIN_PARTICIPATION = 1e-6  # relative to the largest component of a null vector
 
 
-CLOSING_GEARS = (("the ratios of its gears", "the gears"),)  # of Equations.besides_lengths
+CLOSING_GEARS = (("the ratios of its gears", "the gears"),)  # of Equations.closing_conditions
 
 
 class Equations(Protocol):
@@ -82,7 +82,7 @@ class Equations(Protocol):
         ...
 
     @property
-    def besides_lengths(self) -> tuple[tuple[str, str], ...]:
+    def closing_conditions(self) -> tuple[tuple[str, str], ...]:
         """Pairs (condition, input to check): what redundant links need to close besides lengths."""
         ...
 

@@ -50,9 +50,9 @@ def elimination(pattern: NDArray[np.bool_]) -> tuple[Step, ...]:
     """
     nonzero = pattern.copy()  # rows of R, which keep a column, are emptied
     fill, steps = nonzero.T.astype(np.int64) @ nonzero > 0, list[Step]()
-    left, rows = np.ones(nonzero.shape[1], dtype=bool), np.ones(len(nonzero), dtype=bool)
-    while left.any():
-        column = int(np.where(left, fill.sum(axis=1), nonzero.size + 1).argmin())
+    remaining, rows = np.ones(nonzero.shape[1], dtype=bool), np.ones(len(nonzero), dtype=bool)
+    while remaining.any():
+        column = int(np.where(remaining, fill.sum(axis=1), nonzero.size + 1).argmin())
         front = np.flatnonzero(nonzero[:, column])
         if not len(front):  # no row has the column: the system is rank deficient
             front = np.flatnonzero(rows)[:1]
@@ -63,7 +63,7 @@ def elimination(pattern: NDArray[np.bool_]) -> tuple[Step, ...]:
         # eliminated one. The first row is now a row of R and takes no further part.
         nonzero[front] = others
         nonzero[front[0]] = False
-        rows[front[0]] = left[column] = False
+        rows[front[0]] = remaining[column] = False
         for c in np.flatnonzero(others):
             fill[c] = nonzero[nonzero[:, c]].any(axis=0)
     return tuple(steps)

@@ -24,7 +24,7 @@ class PlanarEquations(Loops):
         return tuple(isinstance(d, Slider) for d in self.linkage.drives)
 
     @property
-    def besides_lengths(self) -> tuple[tuple[str, str], ...]:
+    def closing_conditions(self) -> tuple[tuple[str, str], ...]:
         """Pairs (condition, input to check): what redundant links need to close besides lengths."""
         return CLOSING_GEARS * bool(self.linkage.teeth)
 

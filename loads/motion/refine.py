@@ -244,7 +244,7 @@ def resolved(
         solved[1][1].reshape(len(low), PANEL_DEGREE + 1, -1),
         np.zeros(len(low), dtype=bool),
     )
-    done, left = list[_Panels](), list[_Panels]()
+    done, unresolved = list[_Panels](), list[_Panels]()
     middle = 0.5 * (_PANEL_NODES[1:] + _PANEL_NODES[:-1])
     weights, used = _weights(middle), 0
     # In each round, evaluate all active panels halfway between their nodes. Panels whose polynomial
@@ -252,7 +252,7 @@ def resolved(
     for depth in range(MAX_PANEL_HALVINGS + 1):
         between = _Panels.times(active.low, active.high, middle)
         if used and used + between.size > max_evaluations:
-            left.append(active)
+            unresolved.append(active)
             break
         new = at(between.ravel())
         used += between.size
@@ -268,8 +268,8 @@ def resolved(
         if not len(active.low):
             break
         if depth == MAX_PANEL_HALVINGS:
-            left.append(active)
-    return _gathered(solved, done, left, ends)
+            unresolved.append(active)
+    return _gathered(solved, done, unresolved, ends)
 
 
 def _spans(times: Floats, corners: Floats | tuple[float, ...]) -> Floats:
@@ -335,15 +335,15 @@ def _sample_errors(
 
 
 def _gathered(
-    known: list[tuple[Floats, Floats]], done: list[_Panels], left: list[_Panels], ends: Floats
+    known: list[tuple[Floats, Floats]], done: list[_Panels], unresolved: list[_Panels], ends: Floats
 ) -> Resolved:
     """The result of the refinement.
 
     known: times and values of all evaluations. done: resolved panels.
-    left: panels that are not resolved and become `rough`. ends: ends of the spans, s.
+    unresolved: panels that are not resolved and become `rough`. ends: ends of the spans, s.
     """
     times, first = np.unique(np.concatenate([t for t, _ in known]), return_index=True)
-    parts = done + [replace(p, rough=np.ones(len(p.low), dtype=bool)) for p in left]
+    parts = done + [replace(p, rough=np.ones(len(p.low), dtype=bool)) for p in unresolved]
     low, high, values, rough = (
         np.concatenate([getattr(p, field.name) for p in parts]) for field in fields(_Panels)
     )
@@ -351,11 +351,11 @@ def _gathered(
     cuts = np.concatenate([ends[:1], 0.5 * (panels.high[:-1] + panels.low[1:]), ends[-1:]])
     for end in ends[1:-1]:  # put the cut exactly at the corner, in spite of round-off
         cuts[np.abs(cuts - end).argmin()] = end
-    unresolved = [np.stack([p.low, p.high], axis=1) for p in left]
+    intervals = [np.stack([p.low, p.high], axis=1) for p in unresolved]
     return Resolved(
         times=times,
         values=np.concatenate([v for _, v in known])[first],
-        unresolved=_joined(np.concatenate(unresolved)) if left else np.empty((0, 2)),
+        unresolved=_joined(np.concatenate(intervals)) if unresolved else np.empty((0, 2)),
         ends=cuts,
         panels=panels,
     )

@@ -66,7 +66,10 @@ class MotionBlocked(LinkageError):
         gap: float = 0.0,
     ) -> None:
         self.kind, self.gap = kind, gap
-        self.driven, self.besides_lengths = equations.linkage.driven, equations.besides_lengths
+        self.driven, self.closing_conditions = (
+            equations.linkage.driven,
+            equations.closing_conditions,
+        )
         self.along_lengths, self.drawn = equations.along_lengths, equations.drawn_drives
         self.reached, self.wanted = reached, wanted
         self.bodies, self.connections = bodies, connections
@@ -85,8 +88,8 @@ class MotionBlocked(LinkageError):
         bodies, connections = _listed(self.bodies), _listed(self.connections)
         if self.kind == "open":
             apart = f" (at best {show(self.gap, True)} apart)" if self.gap else ""
-            what = "".join(f" or {decides}" for decides, _ in self.besides_lengths)
-            where = "".join(f" and {described}" for _, described in self.besides_lengths)
+            what = "".join(f" or {decides}" for decides, _ in self.closing_conditions)
+            where = "".join(f" and {described}" for _, described in self.closing_conditions)
             moved = np.abs(self.reached - self.drawn) > AS_DRAWN * np.abs(self.wanted - self.drawn)
             beyond = f"does not close beyond {at(self.reached)}"
             if not moved.any():

@@ -125,10 +125,10 @@ class Quantities:
         value[has] = measured.T[rows.measured[has]]
         self.value = value
         # Points and spans: the arms from the centres of mass, and the vector between the points.
-        apart = np.r_[0:n, m : rows.count]
-        base, moving = rows.base[apart], rows.moving[apart]
-        self.base_arm = _turned(R[base], rows.base_point[apart])
-        self.moving_arm = _turned(R[moving], rows.moving_point[apart])
+        point_rows = np.r_[0:n, m : rows.count]
+        base, moving = rows.base[point_rows], rows.moving[point_rows]
+        self.base_arm = _turned(R[base], rows.base_point[point_rows])
+        self.moving_arm = _turned(R[moving], rows.moving_point[point_rows])
         place = np.moveaxis(centre, 0, -1)
         self.between = place[moving] + self.moving_arm - place[base] - self.base_arm
         e = _turned(R[rows.base[:n]], rows.first[:n])
@@ -136,10 +136,10 @@ class Quantities:
         self.e = still * e + (1.0 - still) * rows.first[:n, :, None]
         # Square: n = a' cos(theta) - a sin(theta), m = -dn / d theta, and b.
         angle = value[n:m, None]
-        sine = _turned(R[rows.base[n:m]], rows.first[n:m])
-        cosine = _turned(R[rows.base[n:m]], rows.second[n:m])
-        self.n = np.cos(angle) * sine - np.sin(angle) * cosine
-        self.m = np.sin(angle) * sine + np.cos(angle) * cosine
+        first = _turned(R[rows.base[n:m]], rows.first[n:m])
+        second = _turned(R[rows.base[n:m]], rows.second[n:m])
+        self.n = np.cos(angle) * first - np.sin(angle) * second
+        self.m = np.sin(angle) * first + np.cos(angle) * second
         self.b = _turned(R[rows.moving[n:m]], rows.other[n:m])
 
     @cached_property
@@ -197,13 +197,13 @@ class Quantities:
         """Parts of the second derivatives that are quadratic in the rates, (T, R) m/s^2."""
         rows, n = self.rows, self.rows.points
         m = n + rows.square
-        apart = np.r_[0:n, m : rows.count]
+        point_rows = np.r_[0:n, m : rows.count]
         spin, velocity = np.moveaxis(rates.spin, 0, -1), np.moveaxis(rates.velocity, 0, -1)
-        of_base, of_moving = spin[rows.base[apart]], spin[rows.moving[apart]]
+        of_base, of_moving = spin[rows.base[point_rows]], spin[rows.moving[point_rows]]
         base_speed = _cross(of_base, self.base_arm)
         moving_speed = _cross(of_moving, self.moving_arm)
-        speed = velocity[rows.moving[apart]] + moving_speed
-        speed = speed - velocity[rows.base[apart]] - base_speed
+        speed = velocity[rows.moving[point_rows]] + moving_speed
+        speed = speed - velocity[rows.base[point_rows]] - base_speed
         bend = _cross(of_moving, moving_speed) - _cross(of_base, base_speed)
         e_rate = _cross(of_base[:n], self.e) * rows.turns[:n, None, None]
         points = _dot(self.e, bend[:n]) + 2.0 * _dot(e_rate, speed[:n])

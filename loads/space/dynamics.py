@@ -118,11 +118,12 @@ def space_reactions(
     determine the wrenches.
     """
 
-    def solved(over: Mapping[str, SpaceLinkage]) -> SpaceDynamics:
+    def solved(alternatives: Mapping[str, SpaceLinkage]) -> SpaceDynamics:
         # Each batch gets the whole motion, so that the matrices of its own are not kept in memory.
         parts = [
             replace(
-                _Balance(part, tuple(loads), friction).dynamics(case, timed, over), motion=motion
+                _Balance(part, tuple(loads), friction).dynamics(case, timed, alternatives),
+                motion=motion,
             )
             for part in motion.parts
         ]
@@ -131,8 +132,8 @@ def space_reactions(
 
     linkage, stressed = motion.linkage, motion.mobility.shared
     whole = solved(others(linkage, stressed) if variants else {})
-    more = groups(linkage, stressed, whole.range) if whole.range else {}
-    return replace(whole, range=whole.range | solved(more).range) if more else whole
+    grouped = groups(linkage, stressed, whole.range) if whole.range else {}
+    return replace(whole, range=whole.range | solved(grouped).range) if grouped else whole
 
 
 @dataclass(frozen=True)
@@ -162,16 +163,18 @@ class _Balance:
         self.sources = [*self._teeth(), *(self._rubbing() if friction else ())]
         self.shared = motion.mobility.shared
 
-    def dynamics(self, case: str, timed: bool, over: Mapping[str, SpaceLinkage]) -> SpaceDynamics:
+    def dynamics(
+        self, case: str, timed: bool, alternatives: Mapping[str, SpaceLinkage]
+    ) -> SpaceDynamics:
         """Wrenches and drive forces of the batch.
 
         case, timed: as for `space_reactions`.
-        over: linkages with other stiffness of links, by a text that says what differs.
+        alternatives: linkages with other stiffness of links, by a text that says what differs.
         """
         required = self._required()
         f = self.motion.force_factors.solve_transposed(required)
         reactions, drive, friction = self._solved(self.linkage, f, case, timed)
-        every = over if self.motion.force_factors.spare else {}
+        every = alternatives if self.motion.force_factors.spare else {}
         range_ = {text: self._solved(x, f, case, timed)[0] for text, x in every.items()}
         return SpaceDynamics(
             reactions,

@@ -326,7 +326,7 @@ class SpaceEquations:
         return tuple(not isinstance(d, JointAngle | BodyAngle) for d in self.linkage.drives)
 
     @property
-    def besides_lengths(self) -> tuple[tuple[str, str], ...]:
+    def closing_conditions(self) -> tuple[tuple[str, str], ...]:
         """Pairs (condition, input to check): what redundant links need to close besides lengths."""
         axes = ("the directions of its axes", "their axes")
         return axes, *CLOSING_GEARS * bool(self.linkage.ratios)
