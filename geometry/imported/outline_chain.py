@@ -228,6 +228,7 @@ def _connected(sides: Sequence[MeridianSide], near: float) -> list[MeridianSide]
         joined = replace(side, start=start, end=end)
         if not any(_same(joined, other, near) for other in unique):
             unique.append(joined)
+    # Drop sides with an end at which no other side begins (unless on the axis), until none is left.
     while True:
         ends = [p for s in unique for p in (s.start, s.end)]
         leading = [

@@ -54,6 +54,8 @@ def prisms(faces: Sequence[SampledFace], near: float) -> list[list[PrismFace]]:
     """
     planes = [plane for face in faces if (plane := PrismFace.of(face, near)) is not None]
     out = []
+    # Follow planes from edge to edge around the axis. A closed chain with all edges on one cylinder
+    # is a prism.
     while planes:
         chain = [planes.pop()]
         while following := [p for p in planes if np.abs(p.low - chain[-1].high).max() < near]:

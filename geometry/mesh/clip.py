@@ -48,6 +48,9 @@ def clipped(z: Floats, cells: Ints, low: float, high: float) -> tuple[Ints, sp.c
 def _one_side(above: Floats, cells: Ints) -> tuple[Ints, sp.csr_matrix]:
     """The parts of cells where values (N,) at the nodes are positive, as for `clipped`."""
     patterns = LEFT_OF_TRIANGLE if cells.shape[1] == 3 else LEFT_OF_TETRAHEDRON
+    # Sort the corners of each cell by value, so that the kept corners come first. Cells without
+    # negative corners are kept whole; all others are cut by the pattern of their number of kept
+    # corners.
     order = np.argsort(-above[cells], axis=1, kind="stable")
     count = np.sum(above[cells] > 0.0, axis=1)
     out, ends = [cells[(above[cells] >= 0.0).all(axis=1)]], [np.zeros((0, 2), dtype=np.int64)]
@@ -65,6 +68,7 @@ def _one_side(above: Floats, cells: Ints) -> tuple[Ints, sp.csr_matrix]:
                 ends.append(nodes[:, list(corner)])
                 first += len(nodes)
             out.append(np.stack(columns, axis=1))
+    # New nodes: on each cut edge, where the linear interpolation is zero.
     edges = np.concatenate(ends)
     a, b = above[edges].T
     part = a / np.where(a == b, 1.0, a - b)

@@ -79,6 +79,7 @@ class _Cells:
         middles = box[0] + side * _grid(*(np.arange(n) + 0.5 for n in counts))
         found: list[tuple[Floats, Floats, Floats]] = []
         least, many = longest, 0
+        # Divide cells into eight until each is small compared with its elements.
         while len(middles):
             h = sizes.at(middles)
             done = side <= CELL_SIZE_RATIO * h

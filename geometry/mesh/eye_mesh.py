@@ -46,6 +46,8 @@ def _layers(ends: list[float], size: float) -> list[Floats]:
     size: thickness of the first layer, m; layers grow outwards.
     """
     radii, step = [], size
+    # Between each two ends, the number of layers follows from the geometric series that begins with
+    # `step`; the layers are then stretched to fit.
     for start, end in pairwise(ends):
         ratio = 1.0 + (end - start) * (LAYER_GROWTH - 1.0) / step
         count = max(1, int(np.ceil(np.log(ratio) / np.log(LAYER_GROWTH) - 1e-9)))

@@ -55,13 +55,16 @@ def ring_ends(
         return _to_the_peak(
             band.length, edge_radius, beside * coarser, RING_GROWTH**coarser, longest
         )
+    # Rings of the straight part, graded towards its ends.
     flat = band.length - 2.0 * edge_radius
     inner = np.zeros(1)
     if flat > 1e-9 * band.length:
         inner = graded(flat, max(count, math.ceil(0.5 * math.pi * flat / longest - 1e-9)))
+    # Sharp edges: cut the outermost rings into parts.
     if not edge_radius:
         first, last = (_parts(float(inner[1]), most) for most in longest_last)
         return np.concatenate([first, inner[1:-1], flat - last[::-1]])
+    # Rounded edges: rings whose distances from the start of the rounding grow as squares.
     rounded = max(2, count // 4, math.ceil(2.0 * edge_radius / longest))
     outer = edge_radius * (np.arange(1, rounded + 1) / rounded) ** 2
     return np.concatenate(

@@ -84,14 +84,17 @@ def least_movement(
     members, gap = loops.apart(q[widest], drives[widest])
     moves, damping = np.zeros(places.size), 1.0
     for _ in range(MAX_STEPS):
+        # The conditions, linear in the movements: A (moves - old moves) + open_by = 0.
         A, open_by = _conditions(draw, loops, names, places + moves.reshape(-1, 2), (q, drives))
         wide = float(np.abs(open_by).max(initial=0.0)) / scale
         if wide <= CLOSED_GAP:
             return LeastMovement(_at(names, moves.reshape(-1, 2)), gap, members)
+        # Least squares with damping of the whole movement, which keeps it least.
         damping = max(min(wide, DAMPING_RATIO * damping), MIN_DAMPING)
         weight = np.sqrt(damping) * np.eye(moves.size)
         side = np.append(A @ moves - open_by, np.zeros(moves.size))
         moves = np.linalg.lstsq(np.concatenate([A, weight]), side, rcond=None)[0]
+        # Fit the coordinates of all samples to the moved joints.
         loops = PlanarEquations(draw(_at(names, places + moves.reshape(-1, 2))))
         if (settled := _settled(loops, q, drives)) is None:
             return None
@@ -118,6 +121,7 @@ def _ways(loops: PlanarEquations, reach: tuple[Floats, Floats]) -> list[tuple[Fl
     if count > MAX_CORNERS:
         corners[1] = high
     ways = []
+    # Follow the straight way to each corner in equal steps; each sample starts from the one before.
     for corner in corners:
         longest = float(np.abs((corner - drawn) * loops.drive_scale).max()) / scale
         steps = int(np.clip(np.ceil(longest / MAX_SAMPLE_STEP), MIN_SAMPLES, MAX_SAMPLES))
@@ -186,6 +190,7 @@ def _conditions(
         moved.flat[k] += step
         other = PlanarEquations(draw(_at(names, moved)))
         by_place[..., k] = (_rows(other, q, drives) - rows) / step
+    # Left null vectors of the slopes combine rows so that coordinates have no effect.
     left = np.swapaxes(np.linalg.svd(_slopes(loops, q))[0][:, :, loops.columns :], 1, 2)
     A = left @ by_place
     return A.reshape(-1, places.size), (left @ rows[..., None]).ravel()

@@ -79,6 +79,8 @@ def shortest(gaps: Complex) -> Floats:
     count = gaps.shape[1]
     combined, gaps = np.eye(count), gaps.copy()
     size = np.abs(gaps).max(initial=0.0)
+    # Replace a gap, those with most nonzeros first, by its sum or difference with another gap as
+    # long as this reduces its number of nonzeros.
     improved = True
     while improved:
         improved = False

@@ -36,9 +36,8 @@ class SpaceEquations:
     """The equations of one linkage in space.
 
     They are those of joints, measured coordinates, lengths of Euler parameters, ratios of gears,
-    then drives. All equations are in m and all columns are scaled to lengths, so that the Jacobian
-    is dimensionless. The multiplier of a drive is its force, or its torque over the length scale,
-    N.
+    then drives. All are in m and all columns are scaled to lengths, so that the Jacobian is
+    dimensionless. The multiplier of a drive is its force, or its torque over the length scale, N.
     """
 
     def __init__(self, linkage: SpaceLinkage) -> None:
@@ -141,8 +140,7 @@ class SpaceEquations:
     def turned(self, pose: SpacePose, parameters: Floats) -> Floats:
         """Angular rates (T, B, 3) about world axes from rates (T, B, 4) of Euler parameters.
 
-        Second rates of Euler parameters give angular accelerations (T, B, 3) likewise, because
-        E' p' vanishes and, with |p| = 1, so does p . p'.
+        Second rates give angular accelerations likewise, because E' p' and p . p' vanish.
         """
         return np.asarray((turning(pose.turn[:, :-1]) @ parameters[..., None])[..., 0])
 
@@ -255,14 +253,12 @@ class SpaceEquations:
         return not isinstance(self.linkage.measured[self._at[name]], JointAngle | BodyAngle)
 
     def force_factors(self, pose: SpacePose, weights: Floats) -> Factors:
-        """Orthogonal factors of the Jacobian for forces.
+        """Orthogonal factors of the Jacobian with forces of joints, teeth and sets as multipliers.
 
-        Its multipliers are the forces in joints and teeth, and those of sets of actuators. Where
-        teeth mesh, the row of a ratio is the speed at which they slide along the pitch circles. If
-        the joints are closed, this is equivalent to the ratio of the angles, but its multiplier is
-        a force at the pitch point, which the bearings carry. By virtual work the row of a set is
-        the sum of the rows of its actuators, each weighted by the actuator's force per unit of the
-        multiplier.
+        Where teeth mesh, the row of a ratio is the speed at which they slide along the pitch
+        circles. If the joints are closed, this is equivalent to the ratio of the angles, but its
+        multiplier is a force at the pitch point, which the bearings carry. By virtual work the row
+        of a set of actuators is the sum of their rows, each weighted by the actuator's force.
 
         weights: (T, A, D) force of each actuator, N or N m, per unit of its set's multiplier.
         """
@@ -349,10 +345,7 @@ class SpaceEquations:
         return tuple(b.name for b, v in named if v > least * largest.max())
 
     def advice(self, pose: SpacePose, rates: Floats) -> str:
-        """Advice on how to stop motions possible with locked drives, if all are spins of links.
-
-        pose: pose of a single instant. rates: (k, n) rates of the coordinates, one row per motion.
-        """
+        """Advice on how to stop k motions (k, n) with locked drives, if all are spins of links."""
         spinning = list[str]()
         for motion in rates:
             each = self.rates(pose, motion[None])

@@ -30,6 +30,8 @@ def straight(
     and of the pins that it carries from its middle plane, m. Links whose z nothing determines have
     a mean z of 0.
     """
+    # Unknowns: the starts of the pins whose z is not stated, then the middle planes of the bodies.
+    # Each body on a pin gives an equation: its height on the pin is in its middle plane.
     free = [j.name for j in linkage.joints if j.name not in stated]
     bodies = [b.name for b in linkage.bodies]
     rows, sides = list[Floats](), list[float]()
@@ -52,7 +54,9 @@ def straight(
             rows.append(row)
             sides.append(0.0)
     placed, _, rank, _ = np.linalg.lstsq(np.array(rows), np.array(sides), rcond=None)
-    loose = np.linalg.svd(np.array(rows))[2][rank:].T  # movements along z that nothing determines
+    # Movements along z that nothing determines are chosen so that the middle planes of the bodies
+    # are as close to z = 0 as possible.
+    loose = np.linalg.svd(np.array(rows))[2][rank:].T
     placed = (
         placed - loose @ np.linalg.lstsq(loose[len(free) :], placed[len(free) :], rcond=None)[0]
     )

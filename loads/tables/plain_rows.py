@@ -53,6 +53,7 @@ def split(content: bytes) -> tuple[bytes, PlainRows | None]:
     last = content.rfind(b"<row ", 0, end)
     if not 0 <= start <= last < end:
         return content, None
+    # Without their digits, the last rows of numbers are repetitions of the skeleton of one row.
     skeleton, row = (_skeleton(content[a:end]) for a in (start, last))
     count = skeleton.count(row)
     if count < MIN_PLAIN_ROWS or not WITHOUT_NUMBERS.fullmatch(row):

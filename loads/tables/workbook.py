@@ -85,10 +85,7 @@ def workbook_grid(file: str, content: bytes, reading: FileReading) -> TableGrid:
 
 
 def _sheet_name(file: str, sheets: Mapping[str, str], wanted: str | None) -> str:
-    """The name of the sheet to read.
-
-    Raises: TableError where the study must name a sheet, or names one that does not exist.
-    """
+    """The name of the sheet to read. Raises: TableError where it is missing or must be stated."""
     names = ", ".join(map(repr, list(sheets)[:MAX_SHOWN_SHEETS]))
     if wanted is None and len(sheets) > 1:
         raise TableError(
