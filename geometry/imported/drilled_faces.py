@@ -1,4 +1,4 @@
-"""Faces left by a drill: cylinders, holes that are oblique or off the axis, rounded mouths."""
+"""Cylinders left by a drill, holes that are oblique or off the axis, and rounded mouths."""
 
 from __future__ import annotations
 

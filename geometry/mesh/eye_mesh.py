@@ -1,4 +1,4 @@
-"""The mesh of a lug's eye: its rectangular section as a grid of triangles, fine at the bore."""
+"""The mesh of a lug's eye, whose rectangular section is a grid of triangles, fine at the bore."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tetrahedra of gmsh: repair of distorted elements, and conversion with named surfaces."""
+"""Repair of distorted tetrahedra of gmsh, and their conversion with named surfaces."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The mesh of a lug in its plane: quadratic triangles, equally spaced around the bore."""
+"""The mesh of a lug in its plane by quadratic triangles, equally spaced around the bore."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Validity of elements: detection of inverted elements, and of elements folded over neighbours.
+"""Detection of invalid elements, which are inverted or folded over their neighbours.
 
 Assembly uses the magnitude of det J, not its sign, so that an invalid mesh would still yield
 numbers.

@@ -1,4 +1,4 @@
-"""The mesh of a pin's meridian section: quadratic curved triangles, with a named outline."""
+"""The mesh of a pin's meridian section by quadratic curved triangles, with a named outline."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Element sizes of a section's mesh, by position: the minimum of several gradings."""
+"""Element sizes of a section's mesh, by position, as the minimum of several gradings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Edges of cuts in a drawing: the view of a pin from y, with x upwards and z to the right.
+"""Edges of cuts in a drawing, the view of a pin from y, with x upwards and z to the right.
 
 Edges on the side of y are visible; edges inside or behind the pin are hidden. Notches are the
 rectangles that cuts remove from the pin's silhouette, or from its section with the plane y = 0.

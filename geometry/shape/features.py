@@ -1,4 +1,4 @@
-"""Cuts in a profile: removed volumes, each with its surfaces, extent and symmetries."""
+"""Cuts in a profile as removed volumes, each with its surfaces, extent and symmetries."""
 
 from __future__ import annotations
 

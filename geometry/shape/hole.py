@@ -1,4 +1,4 @@
-"""Holes across the pin: blind or through; through holes may also be off the axis or oblique."""
+"""Holes across the pin, blind or through; through holes may also be off the axis or oblique."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Milled cuts: flats, keyways and slots."""
+"""Milled cuts, which are flats, keyways and slots."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A pin as a body of revolution: its segments along z, bands on which links bear, exact volume."""
+"""A pin as a body of revolution, with segments along z, bands on which links bear, exact volume."""
 
 from __future__ import annotations
 

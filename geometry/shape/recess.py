@@ -1,4 +1,4 @@
-"""Recesses: volumes of any shape, taken from a CAD file, that are removed from a profile."""
+"""Recesses, which are volumes of any shape, from a CAD file, that are removed from a profile."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A segment of a pin's profile: a cylinder or a cone."""
+"""A segment of a pin's profile, which is a cylinder or a cone."""
 
 from __future__ import annotations
 

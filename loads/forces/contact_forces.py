@@ -1,4 +1,4 @@
-"""Forces in proportion to contact forces: friction of sliders and pins, radial forces of teeth."""
+"""Friction of sliders and pins, and radial forces of teeth, in proportion to contact forces."""
 
 from __future__ import annotations
 

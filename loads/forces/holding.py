@@ -1,4 +1,4 @@
-"""Forces of the actuators that hold a linkage against its loads: drives, locks or stops.
+"""Forces of the drives, locks or stops that hold a linkage against its loads.
 
 Positions follow from the drives. Forces follow from virtual work with a multiplier for every set of
 actuators. The multiplier of a single actuator is its force. Several actuators in parallel divide

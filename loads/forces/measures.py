@@ -1,4 +1,4 @@
-"""Quantities on which a force can depend: time, a slider's or turn's position, a distance."""
+"""Quantities on which a force can depend, as time, a slider's or turn's position, or a distance."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reactions: the force of each body on its pin at every instant; computed, stated or tabulated."""
+"""The force of each body on its pin at every instant, computed, stated or tabulated."""
 
 from __future__ import annotations
 

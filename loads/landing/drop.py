@@ -1,4 +1,4 @@
-"""The drop of one leg: a sprung and an unsprung mass, a strut, a tyre and a wheel.
+"""The drop of one leg with a sprung and an unsprung mass, a strut, a tyre and a wheel.
 
 Downwards is positive. z2, the distance that the axle has fallen since touch-down, is the deflection
 of the tyre; u is the rise of the axle relative to the aircraft. The strut is at rest (extended

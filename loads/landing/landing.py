@@ -1,4 +1,4 @@
-"""The history of a drop: forces, motion and energies at any time, and their largest values."""
+"""Forces, motion and energies of a drop at any time, and their largest values."""
 
 from __future__ import annotations
 

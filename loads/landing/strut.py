@@ -1,4 +1,4 @@
-"""Forces of a shock strut: a gas or linear spring, an orifice, and friction.
+"""Forces of a shock strut by a gas or linear spring, an orifice, and friction.
 
 The form is that of Milwitzky & Cook, NACA TR 1154 (1953). Force and stroke are positive in
 compression.

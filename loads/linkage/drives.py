@@ -1,4 +1,4 @@
-"""Laws of motion of a drive: exact value and first two derivatives at given times.
+"""Laws of motion of a drive, with exact value and first two derivatives at given times.
 
 Values are lengths of a slider (m) or angles (rad). A drive is at rest before the first and after
 the last time of its law.

@@ -1,4 +1,4 @@
-"""A planar linkage as data: its parts together, checked for contradictions."""
+"""A planar linkage as data, whose parts are checked for contradictions."""
 
 from __future__ import annotations
 

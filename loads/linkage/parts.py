@@ -1,4 +1,4 @@
-"""The parts of a planar linkage as data: bodies, pins, sliders, turns, teeth, shared loads."""
+"""The parts of a planar linkage as data, such as bodies, pins, sliders, turns and teeth."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Singular drawings: whether a linkage is drawn at a change point or a dead point."""
+"""Whether a linkage is drawn in a singular position, a change point or a dead point."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Mobility by the rank of the loop equations: unconstrained bodies and redundant connections."""
+"""Mobility by the rank of the loop equations, with loose bodies and redundant connections."""
 
 from __future__ import annotations
 

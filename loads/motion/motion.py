@@ -1,4 +1,4 @@
-"""Motion of a linkage: exact positions, velocities, accelerations and energies at every instant."""
+"""Motion of a linkage, with exact positions, velocities and accelerations at every instant."""
 
 from __future__ import annotations
 

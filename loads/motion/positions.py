@@ -1,4 +1,4 @@
-"""Positions under given drives: continuation that cannot jump branches, then Newton's method."""
+"""Positions under given drives, by continuation that cannot jump branches and Newton's method."""
 
 from __future__ import annotations
 

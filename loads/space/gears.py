@@ -1,4 +1,4 @@
-"""Gears and racks in space: the ratio of two turns, and the force where the teeth meet.
+"""Gears and racks in space, with the ratio of two turns, and the force where the teeth meet.
 
 Gears with parallel axes roll on each other along pitch circles. Gears with intersecting axes roll
 on pitch cones, whose apexes are at the intersection. Per unit force tangential to the circles (t),

@@ -1,4 +1,4 @@
-"""Bodies of a linkage in space whose ground moves: an aircraft that turns, a vehicle, a ship.
+"""Bodies of a linkage in space whose ground moves, as an aircraft that turns, a vehicle or a ship.
 
 The linkage is solved in axes that move with its ground. In these axes the ground's motion is a
 load: the inertia forces due to the motion of the ground, and the change of gravity as the axes

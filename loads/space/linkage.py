@@ -1,4 +1,4 @@
-"""A linkage in space as data: rigid bodies, joints between pairs of them, measured coordinates."""
+"""A linkage in space as data, with rigid bodies, joints between pairs of them, and coordinates."""
 
 from __future__ import annotations
 

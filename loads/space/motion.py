@@ -1,4 +1,4 @@
-"""Motion of a linkage in space: exact positions, velocities and accelerations at every instant."""
+"""Motion of a linkage in space, with exact positions, velocities and accelerations."""
 
 from __future__ import annotations
 

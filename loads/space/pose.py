@@ -1,4 +1,4 @@
-"""The position of a linkage in space: positions and rotations of its bodies."""
+"""Positions and rotations of the bodies of a linkage in space."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Teeth of gears in space: their pitch points, forces, and rows of the equations."""
+"""Pitch points and forces of gears in space, and the rows of their equations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reading of files that a user names: only regular files up to a limited size.
+"""Reading of files that a user names, only if regular and up to a limited size.
 
 A pipe would block, a device has no end, and a file that is far too large is not a study or table.
 """

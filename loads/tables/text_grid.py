@@ -1,4 +1,4 @@
-"""The table in a text: long tables of numbers are read at once, others cell by cell."""
+"""The table in a text, in which long tables of numbers are read at once, others cell by cell."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The rows of a text table: its encoding, comments and separators."""
+"""The rows of a text table, from its encoding, comments and separators."""
 
 from __future__ import annotations
 

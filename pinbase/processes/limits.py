@@ -1,4 +1,4 @@
-"""Limits on a piece of work: enforced by the kernel on Linux, by a thread elsewhere."""
+"""Limits on a piece of work, enforced by the kernel on Linux, by a thread elsewhere."""
 
 from __future__ import annotations
 
