@@ -220,7 +220,7 @@ def wider_eyes(old: Study, new: Study, name: str) -> dict[str, float]:
         before, after = (hole_in_eye(x, name, at) for x in (old, new))
         least = min(allowed.eye_ratio, lug.outer_diameter / before) * after
         if lug.outer_diameter < least * (1.0 - 1e-9):
-            stated = table.like_the_other.get(at, at)  # of both ears
+            stated = table.shared_lugs.get(at, at)  # of both ears
             out[stated] = max(least, out.get(stated, 0.0))
     return out
 
