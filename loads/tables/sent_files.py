@@ -61,7 +61,11 @@ def stamp(path: Path) -> str:
         content = content_sent(path)
         if content is not None:
             return hashlib.sha256(content).hexdigest()
-        return str(path.stat().st_mtime_ns) if os.path.isfile(path) else ""
+        if not os.path.isfile(path):
+            return ""
+        # A copy that keeps its time, or a second write within a tick of the clock, changes others.
+        about = path.stat()
+        return f"{about.st_mtime_ns} {about.st_ctime_ns} {about.st_size} {about.st_ino}"
     except FileNotFoundError:
         return ""
 
