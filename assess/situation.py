@@ -307,8 +307,8 @@ def with_supports(pin: Pin, loads: PinLoads, structure: Sequence[str]) -> PinLoa
     """Return the loads with the forces of the structure's lugs added.
 
     The forces follow from the equilibrium of transverse forces and moments, so there must be two
-    lugs; None if there is another number. The weight of the pin is not included: the tractions that
-    close the balance carry it.
+    lugs; None if there is another number. The weight of the pin is not included: tractions for the
+    residual imbalance carry it.
 
     structure: the names of the lugs' bands. If empty, the loads are returned unchanged.
     """

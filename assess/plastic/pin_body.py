@@ -110,7 +110,8 @@ def pin_body(
     acting: unit loads with phase and amount. Without clamps their small imbalance is closed as in
     fea.core.tractions.
 
-    Raises: SolveError for a body load on a material without density.
+    Raises: SolveError for a pin with neither clamps nor connections, and for a body load on a
+    material without density.
     """
     sector = sector_of(acting)
     mesh = hexahedra(pin, fineness, sector.quarters)
