@@ -25,10 +25,10 @@ MIN_MEASURED_MEMORY = 0.1  # MB: less cannot be distinguished from the libraries
 
 @dataclass(frozen=True)
 class MeasureLimits:
-    """Limits on measurements.
+    """The limits on a measurement.
 
-    seconds: of a process in all, s.
-    memory: of a process above its libraries, MB.
+    seconds: total time of a process, s.
+    memory: memory of a process in addition to its libraries, MB.
     """
 
     seconds: float = 120.0
@@ -39,7 +39,7 @@ class MeasureLimits:
 class Measured:
     """A measured solution.
 
-    result: maximum on the mesh, None where it `failed`, for that reason.
+    result: maximum on the mesh; None if the solution failed, for the reason `failed`.
     seconds: the median of the runs, s, each from the mesh to the maximum over the motion, without
     the start of the interpreter and imports.
     memory: the largest during the first run above the process with its libraries loaded, MB.
@@ -60,7 +60,7 @@ class MeasureJob:
     """A mesh of a model to be solved `runs` times.
 
     before: results on coarser meshes (fea.solve.single_mesh).
-    reference: whether it may take any time.
+    reference: whether the time is not limited.
     """
 
     problem: Problem | JointProblem
@@ -74,7 +74,7 @@ Measure = Callable[[MeasureJob], Measured]
 
 
 def measure(job: MeasureJob, limits: MeasureLimits) -> Measured:
-    """Solve a mesh in its own process, a new Python, which is ended when it passes a limit."""
+    """Solve a mesh in a new Python process, which is ended when it exceeds a limit."""
     seconds = math.inf if job.reference else limits.seconds
     start, passed = time.monotonic(), ""
 
@@ -95,8 +95,9 @@ def measure(job: MeasureJob, limits: MeasureLimits) -> Measured:
 
 
 def memory(pid: int | str, what: str) -> float:
-    """Return the memory of a process, MB: "VmRSS", the present one, or "VmHWM", the largest so
-    far.
+    """Return the memory of a process, MB.
+
+    what: "VmRSS" for the present memory, "VmHWM" for the largest so far.
     """
     try:
         match = re.search(rf"{what}:\s+(\d+)", Path(f"/proc/{pid}/status").read_text())

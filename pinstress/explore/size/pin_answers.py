@@ -1,4 +1,4 @@
-"""A pin of a trial study, solved roughly, quickly or as a run solves it."""
+"""A pin of a trial study, solved roughly, quickly, or fully as in a run."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study, raw_study
 from reports.data.results import Results
 
-# Of the largest stress: cases with less are solved until it is decided that they reach the factor
+# Cases whose stress is below this share of the largest are solved only until it is decided that
+# they reach the factor
 COUNTING_SHARE = 0.5
 
 Tell = Callable[[str], None]
@@ -31,7 +32,7 @@ Tell = Callable[[str], None]
 
 @dataclass(frozen=True)
 class FullSolution:
-    """The tasks of a pin as a run solves them, and the outcomes of the first ones, which count."""
+    """A pin solved as in a run: the plan, and the outcomes of its first tasks, which count."""
 
     plan: Plan
     outcomes: tuple[PinOutcome, ...]
@@ -44,12 +45,12 @@ class FullSolution:
 
 @dataclass(frozen=True)
 class PinAnswer:
-    """The factors of a pin by one solution.
+    """The result of one solution of a pin.
 
-    trial: its factors.
+    trial: the factors.
     worst: the maximum that decides the factor.
-    counting: the cases whose stress comes near the largest.
-    solution: of a full solution only.
+    counting: the cases whose stress is near the largest.
+    solution: for a full solution only, else None.
     """
 
     trial: PinTrial
@@ -60,13 +61,13 @@ class PinAnswer:
 
 @dataclass(frozen=True)
 class SizedStudy:
-    """The study in which a pin is tried.
+    """The study in which trial sizes of a pin are solved.
 
-    plan: of the study as it is.
-    others: scales of the pins so far.
+    plan: of the study as given.
+    others: scales of the pins so far, by name.
     required: the factor to reach.
-    memo: of flexibilities and meshes that trials have in common.
-    more: by case, times the factor that requirements demand there, as SizingGoal has it.
+    memo: flexibilities and meshes that trials share.
+    more: multiples of the factor that requirements demand, by case, as in SizingGoal.
     """
 
     plan: Plan
@@ -80,9 +81,10 @@ class SizedStudy:
     def at(self, scale: float, rounded: bool = False) -> Study:
         """Return the study with the pin at a scale.
 
-        rounded: to standard diameters, if there are any.
+        rounded: whether to round to standard diameters, if there are any.
 
-        Raises: InputError for a shape that cannot be, NoSizeError for want of a standard diameter.
+        Raises: InputError for an impossible shape, NoSizeError if no standard diameter is large
+        enough.
         """
         standard = self.standard if rounded else None
         scales = {**self.others, self.pin: scale}
@@ -97,12 +99,13 @@ class SizedStudy:
     def quick(
         self, scale: float, accuracy: Accuracy, cases: tuple[str, ...] | None, tell: Tell
     ) -> PinAnswer:
-        """Solve a pin without what a full solution knows of its error.
+        """Solve a pin without the error estimates of a full solution.
 
-        A full solution will have an error within the tolerance, which is counted.
+        An error of the size of the tolerance is added instead, since a full solution will have an
+        error within it.
 
-        accuracy: "rough", on few cells of contact, or "quick".
-        cases: by default all.
+        accuracy: "rough", with few contact cells, or "quick".
+        cases: names of the load cases; all by default.
         """
         trial = self.at(scale)
         plan = self._plan(trial, cases)
@@ -122,9 +125,9 @@ class SizedStudy:
         return _answer(scale, accuracy, peaks, plan.tasks, tolerance, self.more)
 
     def full(self, scale: float, counting: tuple[str, ...], tell: Tell) -> PinAnswer:
-        """Solve the cases that count of a pin as a run does, with standard diameters.
+        """Solve the cases of a pin that count as in a run, with standard diameters.
 
-        counting: their names.
+        counting: the names of these cases.
         """
         plan, rest = self._plan(self.at(scale, rounded=True), None), list[Task]()
         first = plan.tasks
@@ -134,8 +137,8 @@ class SizedStudy:
         return self._full(scale, plan, [judged(plan, task, tell, self.memo) for task in first])
 
     def whole(self, answer: PinAnswer, tell: Tell) -> PinAnswer:
-        """Solve the other cases of a full solution, of which only whether they reach the factor is
-        decided.
+        """Solve the other cases of a full solution, until it is decided whether they reach the
+        factor.
         """
         assert answer.solution is not None
         plan, outcomes = answer.solution.plan, answer.solution.outcomes
@@ -150,7 +153,7 @@ class SizedStudy:
         return replace(answer, solution=FullSolution(plan, tuple(outcomes)))
 
     def _plan(self, trial: Study, cases: tuple[str, ...] | None) -> Plan:
-        # Only a pin whose weight its linkage carries changes its own loads.
+        # A pin changes its own loads only if the linkage carries its weight.
         loads_of = reused_loads(raw_study(trial), self.memo)
         cases = cases or tuple(self.plan.loads)
         plan = prepare(trial, pins=[self.pin], cases=cases, loads_of=loads_of)
@@ -160,7 +163,7 @@ class SizedStudy:
 
 
 def _split(tasks: list[Task], counting: tuple[str, ...]) -> tuple[list[Task], list[Task]]:
-    """Return the tasks of the cases that count, and those of the others."""
+    """Return the tasks of the cases that count, and the tasks of the other cases."""
     parts: tuple[list[Task], list[Task]] = ([], [])
     for task in tasks:
         for part, counts in zip(parts, (True, False), strict=True):
@@ -177,12 +180,12 @@ def _answer(
     tolerance: float | None,
     more: Mapping[str, float],
 ) -> PinAnswer:
-    """Return what the maxima of a pin in all cases say.
+    """Return the result of a pin from its maxima in all cases.
 
-    tolerance: largest error that counts, relative; None for the error as it is.
-    more: by case, times the factor that is demanded there; stress counts as often.
+    tolerance: relative error to be added, as in `design_stresses`; None for the error as found.
+    more: multiples of the factor, by case; the stress is multiplied by them.
 
-    Raises: NoSizeError for a pin that is not solved.
+    Raises: NoSizeError if the pin is not solved.
     """
     for peak in peaks:
         if why := why_unsolved(peak):
@@ -220,13 +223,14 @@ def _answer(
 def design_stresses(peak: Maximum, tolerance: float | None = None) -> tuple[float, float]:
     """Return the stresses that decide, Pa: of the row and beneath contact, with their errors.
 
-    tolerance: largest error that counts; None for the error as it is.
+    tolerance: relative error that is added to the stresses of a trial instead of their own; None
+    for the errors as found.
     """
     if tolerance is None:
         return row_stress(peak), beneath(peak)
     row = (peak.max_von_mises or 0.0) * (1.0 + tolerance * (peak.verdict != "singular"))
     contact = peak.places and peak.places.contact
-    if contact:  # its own error is not known in a trial
+    if contact:  # the error of this stress is not known in a trial
         return row, contact.beneath * (1.0 + tolerance)
     return min(row_stress(peak), row), 0.0
 
@@ -234,6 +238,6 @@ def design_stresses(peak: Maximum, tolerance: float | None = None) -> tuple[floa
 def row_stress(peak: Maximum) -> float:
     """Return the stress of a row that decides, Pa: the maximum with its error.
 
-    A singular maximum decides nothing; it is replaced by that outside the excluded zones.
+    A singular row counts with the maximum outside the excluded zones, without an error.
     """
     return (peak.max_von_mises if peak.verdict == "singular" else peak.upper_end) or 0.0
