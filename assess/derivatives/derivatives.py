@@ -77,21 +77,21 @@ class Adjoint:
     top: the maximum.
     waves: the harmonic components of the load that contribute to the stress there.
     among: (S,) mask of the points that may govern, all by default.
-    like: another adjoint solution on the same mesh, whose matrices this one reuses.
+    reused: another adjoint solution on the same mesh, whose matrices this one reuses.
     """
 
     def __init__(
-        self, solved: SolvedCase, among: Mask | None = None, like: Adjoint | None = None
+        self, solved: SolvedCase, among: Mask | None = None, reused: Adjoint | None = None
     ) -> None:
         self.solved = solved
         self.fields = solved.solution.fields
         mesh = solved.solution.mesh
-        shared_model = like and like.model
+        shared_model = reused and reused.model
         self.model: HarmonicModel = shared_model or HarmonicModel(
             solved.pin, mesh, solved.material, solved.clamps
         )
-        if like and like.solved.zones == solved.zones:
-            self.outline_nodes, self.interior = like.outline_nodes, like.interior
+        if reused and reused.solved.zones == solved.zones:
+            self.outline_nodes, self.interior = reused.outline_nodes, reused.interior
         self.space, self.outline = self.model.space, self.model.outline
         self.around = reader(self.fields, solved.loads, solved.material.poisson_ratio)
         self.read_at = self.around.fields

@@ -121,13 +121,13 @@ def _of_change(
     """
     (weight, angle), (kind, one), (loads, before) = where, change, base
     if kind:
-        more = replace(loads, moments=loads.moments + times * one)
+        changed = replace(loads, moments=loads.moments + times * one)
     else:
-        more = replace(loads, forces=loads.forces + times * one)
-    now, total = more.coefficients(), np.zeros(6)
+        changed = replace(loads, forces=loads.forces + times * one)
+    after, total = changed.coefficients(), np.zeros(6)
     none = np.zeros((1, 2))
-    for load in dict.fromkeys([*now, *before]):
-        parts = rotated(load.n, now.get(load, none)[0] - before.get(load, none)[0], angle)
+    for load in dict.fromkeys([*after, *before]):
+        parts = rotated(load.n, after.get(load, none)[0] - before.get(load, none)[0], angle)
         if load not in at:
             total += np.nan if parts.any() else 0.0
             continue

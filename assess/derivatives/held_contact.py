@@ -53,8 +53,8 @@ class FixedContact:
         self._at = self._contact.adjoint(
             pressed.active, self._wanted / self._contact.area, right_hand_side
         )
-        self.changing = _close(pressed.pressure, pressed.active)
-        self.changing += _close(pressed.gap, ~pressed.active)
+        self.changing = _nearly_zero(pressed.pressure, pressed.active)
+        self.changing += _nearly_zero(pressed.gap, ~pressed.active)
         shape = pressed.pressure.shape
         both = self._at.by_gap.reshape(shape), self._at.force.reshape(shape)
         self._l, self._f = (np.fft.fft(x, axis=1) for x in both)  # harmonics, (R, M)
@@ -119,7 +119,7 @@ class FixedContact:
         return float(self._at.by_required @ self._right_hand_side(self._model, links))
 
 
-def _close(values: Floats, some: Mask) -> int:
+def _nearly_zero(values: Floats, some: Mask) -> int:
     """Return how many of the selected values are nearly zero, relative to the largest of them."""
     chosen = values[some]
     return int((chosen < SWITCHING_TOLERANCE * chosen.max(initial=0.0)).sum())

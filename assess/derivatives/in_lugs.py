@@ -247,10 +247,10 @@ class _InLugs:
             for a, axis in enumerate(TRANSVERSE_AXES):
                 one = np.zeros_like(links.forces)
                 one[:, c, a] = step
-                more = replace(links, forces=links.forces + one)
-                out[surface, axis] = (self.contact.by_loads(more) - before) / step
+                changed = replace(links, forces=links.forces + one)
+                out[surface, axis] = (self.contact.by_loads(changed) - before) / step
             if self._acts("forces"):
-                out[surface, "z"] = self._by_one("forces", c)
+                out[surface, "z"] = self._by_axial("forces", c)
         return out
 
     def _by_moments(self) -> By:
@@ -259,18 +259,18 @@ class _InLugs:
         tilting = links.tilting_links(length)
         links = replace(links, tilting=tilting)
         turns = enumerate(links.surfaces if self._acts("moments") else ())
-        out = {(surface, "z"): self._by_one("moments", c) for c, surface in turns}
+        out = {(surface, "z"): self._by_axial("moments", c) for c, surface in turns}
         scale = max(np.abs(links.forces).max() * length, np.abs(links.moments).max())
         step, before = JOINT_FORCE_STEP * float(scale), self.contact.by_loads(links)
         for surface in tilting:
             for a, axis in enumerate(TRANSVERSE_AXES):
                 one = np.zeros_like(links.moments)
                 one[:, links.surfaces.index(surface), a] = step
-                more = replace(links, moments=links.moments + one)
-                out[surface, axis] = (self.contact.by_loads(more) - before) / step
+                changed = replace(links, moments=links.moments + one)
+                out[surface, axis] = (self.contact.by_loads(changed) - before) / step
         return out
 
-    def _by_one(self, what: str, c: int) -> float:
+    def _by_axial(self, what: str, c: int) -> float:
         """Return the derivative by the axial force or axial moment of link c.
 
         what: "forces" or "moments".

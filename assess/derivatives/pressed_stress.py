@@ -131,9 +131,9 @@ class OfSurface:
         """Return the part due to the pin's material and the pressure exponent at a lug's edge."""
         adjoint, point, total = self._adjoint, self._adjoint.point, 0.0
         if isinstance(point, Continued):
-            more = change.rate(lambda one: one.on_shaft.exponent[point.cusp.ring])
-            if more:
-                total += float(more) * adjoint.by_exponent()
+            exponent = change.rate(lambda one: one.on_shaft.exponent[point.cusp.ring])
+            if exponent:
+                total += float(exponent) * adjoint.by_exponent()
         if poisson := float(change.rate(lambda one: one.material.poisson_ratio)):
             total += poisson * adjoint.by_poisson()
         if density := float(change.rate(lambda one: one.material.density or 0.0)):

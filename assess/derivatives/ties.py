@@ -36,18 +36,18 @@ def crests(
     answer: StressMaxima,
     solved: SolvedCase,
     maximum: float,
-    felt: Callable[[PinLoads], PinLoads] = lambda loads: loads,
+    acting_part: Callable[[PinLoads], PinLoads] = lambda loads: loads,
 ) -> tuple[float, ...]:
     """Return the times, s, of other peaks of a field's maximum over time that are nearly as high as
     the governing one.
 
-    felt: a function that returns the part of the loads which acts on the field.
+    acting_part: a function that returns the part of the loads which acts on the field.
     """
     every, times = solved.history, solved.loads.times
     if every is None or every.times is None or times is None:
         return ()
     least, now, at = (1.0 - solved.error) * maximum, float(times[0]), every.times
-    maxima = answer.maxima(felt(every), least)
+    maxima = answer.maxima(acting_part(every), least)
     high = np.flatnonzero(maxima > least)
     runs = np.split(high, np.flatnonzero(np.diff(high) > 1) + 1)
     return tuple(

@@ -136,12 +136,12 @@ def lighten_at(
         design = replace(design, at=at, settled=design.settled and _reached(design, at, aim))
         if design.settled:
             break
-        likely = {
+        extra = {
             (p.pin, p.case): p.safety_factor / at[p.pin, p.case]
             for p in design.results.pins
             if p.safety_factor and np.isfinite(at.get((p.pin, p.case), np.nan))
         }
-        design = lighten(study, replace(aim, likely=likely), pins, jobs, progress, log)
+        design = lighten(study, replace(aim, extra_multiples=extra), pins, jobs, progress, log)
     else:
         at = factors_at(design.study, [pin.pin for pin in design.pins], probability, progress)
         design = replace(design, at=at, settled=design.settled and _reached(design, at, aim))
@@ -160,7 +160,7 @@ def _reached(design: LightStudy, at: dict[Row, float], aim: WeightGoal) -> bool:
         low = [
             (low_factor(p) or 0.0) * at.get((p.pin, p.case), np.nan) / (p.safety_factor or 1.0) / x
             for p in rows
-            if (x := aim.more.get((p.pin, p.case), 1.0))
+            if (x := aim.multiples.get((p.pin, p.case), 1.0))
         ]
         if pin.factor is None or not low:
             continue

@@ -117,8 +117,8 @@ def _run(study: Study, pins: list[str], jobs: int) -> tuple[Results, dict[str, C
 def _raised(aim: WeightGoal, raised: Mapping[str, float], cases: Iterable[str]) -> WeightGoal:
     """Return the goal with the factors of each pin multiplied; raised: the multiple, by pin."""
     places = [(pin, case) for pin, times in raised.items() if times != 1.0 for case in cases]
-    more = {place: raised[place[0]] * aim.likely.get(place, 1.0) for place in places}
-    return replace(aim, likely={**aim.likely, **more})
+    changed = {place: raised[place[0]] * aim.extra_multiples.get(place, 1.0) for place in places}
+    return replace(aim, extra_multiples={**aim.extra_multiples, **changed})
 
 
 def _unconfirmed(
@@ -130,7 +130,7 @@ def _unconfirmed(
     raised: multiple of the required factor in the last search. changes: of the loads since then,
     one for each case.
     """
-    more = aim.of_pin(pin.pin)
+    multiples = aim.of_pin(pin.pin)
     rows = [p for p in results.pins if p.pin == pin.pin]
     ended = any(p.verdict == "unconverged" and p.decided and not p.minor for p in rows)
     if ended and all(p.decided is not False for p in rows):
@@ -138,7 +138,7 @@ def _unconfirmed(
     low = [
         f / times
         for p in rows
-        if (f := low_factor(p)) is not None and (times := more.get(p.case, 1.0))
+        if (f := low_factor(p)) is not None and (times := multiples.get(p.case, 1.0))
     ]
     if pin.factor is None or not low:
         return None

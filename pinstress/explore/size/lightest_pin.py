@@ -129,9 +129,9 @@ def lightest_pin(
         shape, known = problem.shape, start.values or {}
         values = np.array([known.get(d.key, d.value) for d in shape.dimensions])
         stress.at(values, SLOPE_RANGE)
-        sure = stress.sure(values)
-        before = problem.demanded(sure.governs) * float(np.exp(-sure.largest))
-        stress.watched = decided(sure.peaks) if start.decided is None else start.decided
+        fine = stress.verified(values)
+        before = problem.demanded(fine.governs) * float(np.exp(-fine.largest))
+        stress.watched = decided(fine.peaks) if start.decided is None else start.decided
         start = replace(start, decided=stress.watched)
         first = stress.at(values)
         search = WeightSearch(problem, stress, aim)
@@ -211,12 +211,12 @@ def problem_of(study: Study, plan: Plan, pin: str, aim: WeightGoal) -> SizingPro
             if any(kind_of(d.key) == kind for d in dimensions_of(study, shaft))
         ]
         return f"it has no {' or '.join(aim.vary)} to vary, only {' and '.join(has)}"
-    more = aim.of_pin(pin)
-    loads = {case: x for case, x in plan.loads.items() if more.get(case, 1.0)}
+    multiples = aim.of_pin(pin)
+    loads = {case: x for case, x in plan.loads.items() if multiples.get(case, 1.0)}
     if not loads:
         return "no factor is required of it"
     requirement = replace(plan.requirement, goal="value", varied=False)
-    return SizingProblem(study, pin, shape, requirement, loads, aim.required, more)
+    return SizingProblem(study, pin, shape, requirement, loads, aim.required, multiples)
 
 
 def _found(search: WeightSearch, near: SolvedPin, whole: tuple[float, ...] | None) -> Lightest:

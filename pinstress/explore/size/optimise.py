@@ -135,8 +135,10 @@ class Tangents:
     def then(self, x: Array, places: tuple[StressPlace, ...]) -> Tangents:
         """Return the tangents with those of all places that have a slope at a point added."""
         new = {p.name: (x, p.value, p.slope) for p in places if p.slope is not None}
-        more = {name: (one, *self.known.get(name, ()))[:MAX_TANGENTS] for name, one in new.items()}
-        return Tangents(self.known | more)
+        longer = {
+            name: (one, *self.known.get(name, ()))[:MAX_TANGENTS] for name, one in new.items()
+        }
+        return Tangents(self.known | longer)
 
     def completed(self, places: tuple[StressPlace, ...]) -> tuple[StressPlace, ...]:
         """Return the places, where those without a slope get their latest known one."""
@@ -259,11 +261,11 @@ def _merit(problem: WeightProblem, x: Array, stress: float) -> float:
     return (
         problem.weight(x)[0]
         + STRESS_PENALTY * max(0.0, stress)
-        + GEOMETRY_PENALTY * _broken(problem, x)
+        + GEOMETRY_PENALTY * _violation(problem, x)
     )
 
 
-def _broken(problem: WeightProblem, x: Array) -> float:
+def _violation(problem: WeightProblem, x: Array) -> float:
     """Return the largest violation of geometric limits."""
     return max(0.0, -float(problem.limits(x)[0].min(initial=0.0)))
 
@@ -283,8 +285,8 @@ def _step(
     # The last two variables are the excess of the stresses and of the geometric limits.
     def merit(y: Array) -> tuple[float, Array]:
         value, slope = problem.weight(y[:n])
-        more = STRESS_PENALTY * float(y[n]) + GEOMETRY_PENALTY * float(y[n + 1])
-        return value + more, np.append(slope, [STRESS_PENALTY, GEOMETRY_PENALTY])
+        penalty = STRESS_PENALTY * float(y[n]) + GEOMETRY_PENALTY * float(y[n + 1])
+        return value + penalty, np.append(slope, [STRESS_PENALTY, GEOMETRY_PENALTY])
 
     def limits(y: Array) -> Array:
         geometric = problem.limits(y[:n])[0] + y[n + 1]
@@ -302,7 +304,7 @@ def _step(
     some: Any = {"type": "ineq", "fun": limits, "jac": slopes}
     optimum = minimize(
         merit,
-        np.append(x, [excess(x), _broken(problem, x)]),
+        np.append(x, [excess(x), _violation(problem, x)]),
         jac=True,
         bounds=[*box, (0.0, None), (0.0, None)],
         constraints=some,

@@ -66,11 +66,11 @@ def study_with(
 
     Raises: InputError for an impossible shape.
     """
-    metre = study.system.factor("length")
+    length_unit = study.system.factor("length")
     for paths, value in values:
         for path in paths:
             where = _as_written(raw["pin"][pin], path)
-            raw = with_value(raw, ("pin", pin, *where), value / metre)
+            raw = with_value(raw, ("pin", pin, *where), value / length_unit)
     return with_raw(study, raw)
 
 
@@ -131,18 +131,18 @@ def _write(
     if math.isclose(value, to_si(old, "length", system), rel_tol=1e-12):
         return
     unit, one = unit_of(old, "length", system)
-    metre = system.factor("length")
-    steps, up = rounding_step(key, step, metre), ROUNDING_DIRECTIONS[kind_of(key)]
-    number = rounded(value / metre, steps, up) * metre / one
+    length_unit = system.factor("length")
+    steps, up = rounding_step(key, step, length_unit), ROUNDING_DIRECTIONS[kind_of(key)]
+    number = rounded(value / length_unit, steps, up) * length_unit / one
     if not math.isclose(number * one, to_si(old, "length", system), rel_tol=1e-12):
         replace_number(here, last, float(f"{number:.12g}"), unit)
 
 
-def rounding_step(key: str, step: float | None, metre: float) -> float | None:
+def rounding_step(key: str, step: float | None, length_unit: float) -> float | None:
     """Return the step, in the study's unit, to which a dimension is rounded; None for no step.
 
-    step: step to which diameters are rounded, m. metre: SI value of the study's unit of length, m.
+    step: step to which diameters are rounded, m. length_unit: the study's unit of length, m.
     """
     if step is None or kind_of(key) != "diameters":
         return None
-    return (step / 2.0 if key.startswith("meridian") else step) / metre
+    return (step / 2.0 if key.startswith("meridian") else step) / length_unit

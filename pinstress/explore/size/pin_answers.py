@@ -67,7 +67,7 @@ class SizedStudy:
     others: scales of the pins so far, by name.
     required: the factor to reach.
     memo: flexibilities and meshes that trials share.
-    more: multiples of the factor that requirements demand, by case, as in SizingGoal.
+    multiples: multiples of the factor that requirements demand, by case, as in SizingGoal.
     """
 
     plan: Plan
@@ -76,7 +76,7 @@ class SizedStudy:
     others: Mapping[str, float]
     standard: StandardDiameters | None = None
     memo: Memo = field(default_factory=Memo)
-    more: Mapping[str, float] = field(default_factory=dict)
+    multiples: Mapping[str, float] = field(default_factory=dict)
 
     def at(self, scale: float, rounded: bool = False) -> Study:
         """Return the study with the pin at a scale.
@@ -88,7 +88,7 @@ class SizedStudy:
         """
         standard = self.standard if rounded else None
         scales = {**self.others, self.pin: scale}
-        required = None if self.more else self.required
+        required = None if self.multiples else self.required
         return resized_study(self.plan.study, scales, standard, required)
 
     @property
@@ -122,7 +122,7 @@ class SizedStudy:
             for task in plan.tasks
             for solution in solutions(trial, task, requirement, tell, self.memo)
         ]
-        return _answer(scale, accuracy, peaks, plan.tasks, tolerance, self.more)
+        return _answer(scale, accuracy, peaks, plan.tasks, tolerance, self.multiples)
 
     def full(self, scale: float, counting: tuple[str, ...], tell: Tell) -> PinAnswer:
         """Solve the cases of a pin that count as in a run, with standard diameters.
@@ -144,12 +144,12 @@ class SizedStudy:
         plan, outcomes = answer.solution.plan, answer.solution.outcomes
         decide = replace(plan, requirement=replace(plan.requirement, goal="decide"))
         left = plan.tasks[len(outcomes) :]
-        more = [judged(decide, task, tell, self.memo) for task in left]
-        return self._full(answer.trial.scale, plan, [*outcomes, *more])
+        others = [judged(decide, task, tell, self.memo) for task in left]
+        return self._full(answer.trial.scale, plan, [*outcomes, *others])
 
     def _full(self, scale: float, plan: Plan, outcomes: list[PinOutcome]) -> PinAnswer:
         peaks = [row.maximum for outcome in outcomes for row in outcome.rows]
-        answer = _answer(scale, "full", peaks, plan.tasks, None, self.more)
+        answer = _answer(scale, "full", peaks, plan.tasks, None, self.multiples)
         return replace(answer, solution=FullSolution(plan, tuple(outcomes)))
 
     def _plan(self, trial: Study, cases: tuple[str, ...] | None) -> Plan:
@@ -178,12 +178,12 @@ def _answer(
     peaks: list[Maximum],
     todo: list[Task],
     tolerance: float | None,
-    more: Mapping[str, float],
+    multiples: Mapping[str, float],
 ) -> PinAnswer:
     """Return the result of a pin from its maxima in all cases.
 
     tolerance: relative error to be added, as in `design_stresses`; None for the error as found.
-    more: multiples of the factor, by case; the stress is multiplied by them.
+    multiples: multiples of the factor, by case; the stress is multiplied by them.
 
     Raises: NoSizeError if the pin is not solved.
     """
@@ -193,7 +193,7 @@ def _answer(
         if accuracy == "full" and not peak.bounded:
             raise NoSizeError(f"the error is unknown in case {peak.case}: {peak.note}")
     loaded = [peak for peak in peaks if peak.max_von_mises]
-    acting = [peak for peak in loaded if more.get(peak.case, 1.0)]
+    acting = [peak for peak in loaded if multiples.get(peak.case, 1.0)]
     if not acting:
         which = " in which a factor is required" if loaded else ""
         raise NoSizeError(f"no case{which} loads it")
@@ -201,7 +201,7 @@ def _answer(
     assert strength is not None  # a pin without strength is refused before
     stresses = []
     for peak in acting:
-        times = more.get(peak.case, 1.0)
+        times = multiples.get(peak.case, 1.0)
         of_row, below = design_stresses(peak, tolerance)
         stresses.append((times * of_row, times * below))
     row, below = (max(each) for each in zip(*stresses, strict=True))

@@ -57,11 +57,11 @@ class Limit:
     slope: Floats
     instead: Limit | None = None
 
-    def at(self, more: Floats) -> tuple[float, Floats]:
-        """Return the value and the gradient for dimensions that are larger by `more` (n,), m."""
-        value = self.constant + float(self.slope @ more)
+    def at(self, growth: Floats) -> tuple[float, Floats]:
+        """Return the value and the gradient for dimensions that are larger by `growth` (n,), m."""
+        value = self.constant + float(self.slope @ growth)
         if self.instead is not None:
-            other, slope = self.instead.at(more)
+            other, slope = self.instead.at(growth)
             if other > value:
                 return other, slope
         return value, self.slope
@@ -141,10 +141,10 @@ class VariedShape:
         )
 
     def _ends(self, values: Floats) -> _Ends:
-        more, now = values - self.values, self._now
+        growth, now = values - self.values, self._now
         outer, inner, fillets = self._rates
         return _Ends(
-            now.outer + outer @ more, now.inner + inner @ more, now.fillets + fillets @ more
+            now.outer + outer @ growth, now.inner + inner @ growth, now.fillets + fillets @ growth
         )
 
     @cached_property

@@ -7,7 +7,7 @@ beneath contact; all three must meet the factor. In a singular row stress is rea
 excluded distance, where the upper end of the reported range is.
 
 A pin in contact is searched on rough contact cells, which take at most a fifth of the time of the
-finest. The difference to the usual cells is found where it matters (`sure`) and added to all
+finest. The difference to the usual cells is found where it matters (`verified`) and added to all
 stresses on rough cells. Cases whose stress is far below the largest are left out until the pin has
 changed much.
 """
@@ -68,7 +68,7 @@ class SizingProblem:
     requirement: requirements on the solution.
     loads: by case, for the cases in which a factor is required.
     required: the required factor.
-    more: the multiple of the required factor that a case needs, by case; usually 1.
+    multiples: the multiple of the required factor that a case needs, by case; usually 1.
     """
 
     study: Study
@@ -77,11 +77,11 @@ class SizingProblem:
     requirement: Requirement
     loads: dict[str, CaseLoads]
     required: float
-    more: dict[str, float]
+    multiples: dict[str, float]
 
     def demanded(self, case: str) -> float:
         """Return the factor that is needed in a case."""
-        return self.required * self.more.get(case, 1.0)
+        return self.required * self.multiples.get(case, 1.0)
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ class PinStress:
         self._paths = [paths_of(shape.pin, d) for d in shape.dimensions]  # none of other pins
         self._known: set[str] = set()
         self._found: list[SolvedPin] = []
-        self._sure: list[SolvedPin] = []
+        self._verified: list[SolvedPin] = []
         self._finer: dict[str, float] = {}  # amount that finer cells add to the logarithm, by place
         self.in_contact = False
         self.watched: frozenset[str] = frozenset()
@@ -171,7 +171,7 @@ class PinStress:
             self._found.append(known)
         return self._as_finer(known)
 
-    def sure(self, values: Floats) -> SolvedPin:
+    def verified(self, values: Floats) -> SolvedPin:
         """Solve a design on the cells of a run, and correct the rough stresses of all designs by
         the difference.
 
@@ -180,15 +180,15 @@ class PinStress:
         rough = self.at(values)
         if not self.in_contact:
             return rough
-        if (known := _among(self._sure, values)) is None:
+        if (known := _among(self._verified, values)) is None:
             solution = self._solved(self._possible(values), None, 0.0, "usual")
             known = replace(solution, values=values)
-            self._sure.append(known)
+            self._verified.append(known)
         before = {p.name: p.value for p in rough.places}
         for place in known.places:
             if place.name in before:
-                more = place.value - before[place.name]
-                self._finer[place.name] = self._finer.get(place.name, 0.0) + more
+                added = place.value - before[place.name]
+                self._finer[place.name] = self._finer.get(place.name, 0.0) + added
         return self._watched(known)
 
     def of(self, study: Study) -> SolvedPin:
@@ -254,7 +254,7 @@ class PinStress:
             window = GRADIENT_WINDOW if part.name in self._known else UNKNOWN_PLACE_WINDOW
             slope = None
             if values is not None and value >= top - (window if abs(top) < far else 0.0):
-                slope = values * self._slope(part) + part.besides
+                slope = values * self._slope(part) + part.added_slopes
                 self._known.add(part.name)
             places.append(StressPlace(part.name, value, slope, part.guess))
         at = np.zeros(0) if values is None else values

@@ -41,7 +41,7 @@ class RowPart:
     slopes: a function that returns the derivatives (n,) of the logarithm of the stress by the
     dimensions, 1/m.
     guess: estimate of the derivatives by the logarithms of the dimensions, until they are known.
-    besides: terms to be added to the derivatives by the logarithms of the dimensions.
+    added_slopes: terms to be added to the derivatives by the logarithms of the dimensions.
     """
 
     name: str
@@ -49,7 +49,7 @@ class RowPart:
     stress: float
     slopes: Callable[[], Floats]
     guess: Floats | None = None
-    besides: Floats | float = 0.0
+    added_slopes: Floats | float = 0.0
 
 
 def no_slopes() -> Floats:
@@ -102,8 +102,8 @@ class SizedRow:
         section = []
         if stress := ends.get("section"):
             by = partial(self._of_section, solved, dimensions)
-            name, besides = f"{peak.case}, section", self._by_clamps(stress)
-            section = [RowPart(name, peak.case, stress, by, besides=besides)]
+            name, added = f"{peak.case}, section", self._by_clamps(stress)
+            section = [RowPart(name, peak.case, stress, by, added_slopes=added)]
         named = {name: (mask, k // 2) for k, (name, mask) in enumerate(masks)}
         return section + [
             RowPart(

@@ -199,8 +199,10 @@ def _reweigh(document: Any, old: Study, new: Study, name: str) -> None:
     joint = None if mechanism is None else mechanism.joint.get(name)
     if not density or joint is None or joint.fixed_in or joint.weight is None:
         return
-    more = weight(pin(new, name), density) - weight(pin(old, name), density)
-    _write(document["mechanism"]["joint"][name], "weight", joint.weight + more, "force", new.system)
+    heavier = weight(pin(new, name), density) - weight(pin(old, name), density)
+    _write(
+        document["mechanism"]["joint"][name], "weight", joint.weight + heavier, "force", new.system
+    )
 
 
 def _widen_eyes(document: Any, old: Study, new: Study, name: str) -> None:

@@ -110,20 +110,20 @@ def _instead(sized: SizedStudy, limit: SizeLimit, trial: PinTrial, worst: Maximu
     contact, the pressure is force over diameter and width.
     """
     study, required = sized.plan.study, sized.required
-    more = required / trial.factor
+    ratio = required / trial.factor
     strength = study.material_of(sized.pin).yield_strength or 0.0
     stress = study.system.factor("stress")
-    needed = engineering(rounded_up(strength * more / stress, 4))
+    needed = engineering(rounded_up(strength * ratio / stress, 4))
     yield (
         f"a yield strength of {needed} {study.system.stress}, not {engineering(strength / stress)}"
     )
     tasks = [t for t in sized.plan.tasks if t.pin.name == sized.pin and worst.case in t.impulses]
     if tasks:
         time = tasks[0].impulses[worst.case].time
-        needed = f"{engineering(rounded_up(time * more, 4))} {study.system.time}"
+        needed = f"{engineering(rounded_up(time * ratio, 4))} {study.system.time}"
         yield f"an impulse in {worst.case} of {needed}, not {short(time)}"
     else:
-        yield f"{engineering(rounded_down(1.0 / more, 4))} times the loads of {worst.case}"
+        yield f"{engineering(rounded_down(1.0 / ratio, 4))} times the loads of {worst.case}"
     if arrangement := _arrangement(sized, trial):
         yield arrangement
     if limit.scale != ENDLESS:
@@ -145,10 +145,10 @@ def _arrangement(sized: SizedStudy, trial: PinTrial) -> str:
     if trial.row < required:
         if planes < 1:
             return ""
-        more = planes + 2 * math.ceil(0.5 * planes * (required / trial.row - 1.0))
-        if more > MAX_SHEAR_PLANES:
+        needed = planes + 2 * math.ceil(0.5 * planes * (required / trial.row - 1.0))
+        if needed > MAX_SHEAR_PLANES:
             return ""
-        parts.append(f"about {more} shear planes, not {planes}, of the same width in all")
+        parts.append(f"about {needed} shear planes, not {planes}, of the same width in all")
     if trial.beneath < required:
         wider = required / trial.beneath
         if wider > MAX_WIDENING:

@@ -92,22 +92,22 @@ class SizingResult:
 class SizingGoal:
     """The goal of sizing: the required factor, and the permitted diameters (None for any).
 
-    more: multiples of the factor that requirements of the study demand, by pin and case; 0 for no
-    required factor. Empty if the factor applies to all.
+    multiples: multiples of the factor that requirements of the study demand, by pin and case; 0 for
+    no required factor. Empty if the factor applies to all.
     """
 
     required: float
     standard: StandardDiameters | None = None
-    more: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    multiples: Mapping[tuple[str, str], float] = field(default_factory=dict)
 
     @property
     def written(self) -> float | None:
         """The required factor to write into the new study; None if its requirements remain."""
-        return None if self.more else self.required
+        return None if self.multiples else self.required
 
     def of_pin(self, pin: str) -> dict[str, float]:
         """Return the multiples of the factor that a pin needs, by case."""
-        return {case: x for (name, case), x in self.more.items() if name == pin}
+        return {case: x for (name, case), x in self.multiples.items() if name == pin}
 
 
 @dataclass
@@ -166,13 +166,13 @@ def size_pin(
 
     Failures are reported in the result.
     """
-    more = goal.of_pin(pin)
+    multiples = goal.of_pin(pin)
     problem = why_fixed(plan.study, pin)
-    if more and not any(more.values()):
+    if multiples and not any(multiples.values()):
         problem = "no factor is required of it"
     if problem:
         return SizingResult(pin, why=problem)
-    sized = SizedStudy(plan, pin, goal.required, others, goal.standard, more=more)
+    sized = SizedStudy(plan, pin, goal.required, others, goal.standard, multiples=multiples)
     search = _Search(sized, tell, label or f"pin {pin}")
     result = SizingResult(pin)
     try:
@@ -180,7 +180,7 @@ def size_pin(
         result = replace(result, before=_nominal(plan.study, first.worst))
         result = _verified(search, _quickly(search), result)
     except NoSizeError as error:
-        result = replace(result, why=str(error) + _where(search.answers))
+        result = replace(result, why=str(error) + _beneath_note(search.answers))
     except (InputError, ArithmeticError, ArgumentError) as error:
         tried = ", ".join(f"{x.factor:.4g} at {x.scale:.3g}" for x in search.trials) or "none"
         why = f"a trial fails (factors by times its diameters: {tried}): {error}"
@@ -188,7 +188,7 @@ def size_pin(
     return replace(result, trials=len(search.answers), full=len(search.full))
 
 
-def _close(sized: SizedStudy) -> float:
+def _factor_tolerance(sized: SizedStudy) -> float:
     return CONTACT_FACTOR_TOLERANCE if sized.in_lugs else PLAIN_FACTOR_TOLERANCE
 
 
@@ -201,7 +201,7 @@ def _aim(sized: SizedStudy, accuracy: Accuracy) -> float:
         return sized.required * (1.0 + AIM_SHARE * PLAIN_FACTOR_TOLERANCE)
     contact = sized.in_lugs and accuracy == "quick"
     share = CONTACT_AIM_SHARE if contact else AIM_SHARE
-    return sized.required * (1.0 + share * _close(sized))
+    return sized.required * (1.0 + share * _factor_tolerance(sized))
 
 
 def _quickly(search: _Search) -> float:
@@ -210,7 +210,7 @@ def _quickly(search: _Search) -> float:
     Raises: NoSizeError if no scale suffices.
     """
     sized = search.sized
-    required, close = sized.required, _close(sized)
+    required, close = sized.required, _factor_tolerance(sized)
     start = search.trials[0]
     if sized.standard is None and required <= start.factor <= required * (1.0 + close):
         return start.scale  # the pin is close enough as given
@@ -294,7 +294,7 @@ def _accepted(answer: PinAnswer, search: _Search) -> bool:
     solutions.
     """
     sized = search.sized
-    close = _close(sized) * (1 if sized.in_lugs else len(search.full))
+    close = _factor_tolerance(sized) * (1 if sized.in_lugs else len(search.full))
     most = math.inf if sized.standard else sized.required * (1.0 + close)
     return sized.required <= answer.trial.factor <= most
 
@@ -340,7 +340,7 @@ def _next_standard(sized: SizedStudy, scale: float) -> float:
     return sized.standard.up(scale * least, unit) * (1.0 + NEXT_DIAMETER) / least
 
 
-def _where(answers: list[PinAnswer]) -> str:
+def _beneath_note(answers: list[PinAnswer]) -> str:
     """Return a text that names the stress beneath contact, if the last factor is of that stress;
     else empty.
     """

@@ -131,10 +131,10 @@ def loaded_more(plan: Plan, goal: SizingGoal, sized: Sequence[SizingResult]) -> 
         if content_of_loads(solved, raw_study(solved)) == content:
             continue
         after = after or all_loads(new, cases)
-        more = goal.of_pin(result.pin)
+        multiples = goal.of_pin(result.pin)
         change = changes_of_load(new, result.pin, all_loads(solved, cases), after)
         if any(
-            factor / (1.0 + change.get(case, 0.0)) < goal.required * more.get(case, 1.0)
+            factor / (1.0 + change.get(case, 0.0)) < goal.required * multiples.get(case, 1.0)
             for case, factor in result.judged.cases
         ):
             out.append(result.pin)
@@ -156,8 +156,8 @@ def changes_of_load(
         )
         largest = float(np.linalg.norm(old, axis=-1).max())
         if old.shape == new.shape:
-            more = float(np.linalg.norm(new - old, axis=-1).max())
+            change = float(np.linalg.norm(new - old, axis=-1).max())
         else:  # the motion is resolved at other instants
-            more = abs(float(np.linalg.norm(new, axis=-1).max()) - largest)
-        out[case] = more / largest if largest else float(more > 0.0)
+            change = abs(float(np.linalg.norm(new, axis=-1).max()) - largest)
+        out[case] = change / largest if largest else float(change > 0.0)
     return out

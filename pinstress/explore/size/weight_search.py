@@ -48,22 +48,22 @@ class WeightGoal:
     vary: kinds of dimensions (DIMENSION_KINDS) that may change.
     limits: geometric limits.
     step: step to which diameters are rounded up, m; None for no step.
-    more: as in SizingGoal.
-    likely: further multiples of the factor, by pin and case, that the nominal design needs so that
-    less likely designs reach the factor.
+    multiples: as in SizingGoal.
+    extra_multiples: further multiples of the factor, by pin and case, that the nominal design needs
+    so that less likely designs reach the factor.
     """
 
     required: float
     vary: tuple[str, ...] = DIMENSION_KINDS
     limits: Proportions = field(default_factory=Proportions)
     step: float | None = None
-    more: Mapping[tuple[str, str], float] = field(default_factory=dict)
-    likely: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    multiples: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    extra_multiples: Mapping[tuple[str, str], float] = field(default_factory=dict)
 
     @property
     def written(self) -> float | None:
         """The required factor to write into the new study; None if its requirements remain."""
-        return None if self.more else self.required
+        return None if self.multiples else self.required
 
     @property
     def standard(self) -> StandardDiameters | None:
@@ -73,8 +73,8 @@ class WeightGoal:
     def of_pin(self, pin: str) -> dict[str, float]:
         """Return the multiples of the factor that a pin needs, by case; 0 for no factor."""
         return {
-            place[1]: self.more.get(place, 1.0) * self.likely.get(place, 1.0)
-            for place in self.more.keys() | self.likely.keys()
+            place[1]: self.multiples.get(place, 1.0) * self.extra_multiples.get(place, 1.0)
+            for place in self.multiples.keys() | self.extra_multiples.keys()
             if place[0] == pin
         }
 
@@ -125,8 +125,8 @@ class WeightSearch:
 
     def written(self, values: Floats) -> Floats:
         """Return dimensions, m, rounded as they are written."""
-        metre = self.problem.study.system.factor("length")
-        return rounded_values(self.shape, values, self.aim.step, metre)
+        length_unit = self.problem.study.system.factor("length")
+        return rounded_values(self.shape, values, self.aim.step, length_unit)
 
     def keeps(self, values: Floats) -> bool:
         """Whether the geometric limits hold within the rounding of written digits."""
@@ -146,8 +146,8 @@ def optimum_of(search: WeightSearch, near: SolvedPin) -> Optimum:
         optimum = Optimum(x, search.weight(x)[0], places, optimality(search, x, places), 0)
     if search.stress.in_contact:
         for _ in range(MAX_CORRECTIONS):
-            sure = search.stress.sure(search.written(np.exp(optimum.x)))
-            if -CONTACT_STRESS_TOLERANCE <= sure.worst <= 0.0:
+            fine = search.stress.verified(search.written(np.exp(optimum.x)))
+            if -CONTACT_STRESS_TOLERANCE <= fine.worst <= 0.0:
                 break
             optimum = search.least_weight(optimum.x)
     return optimum
@@ -226,13 +226,13 @@ def repaired(search: WeightSearch, values: Floats) -> SolvedPin | None:
     """Return a design whose written dimensions reach the factor; the values are enlarged if
     necessary. None if no design is found.
     """
-    step, more = search.aim.step, 0.0
+    step, growth = search.aim.step, 0.0
     for k in range(MAX_REPAIRS if step is None else MAX_ROUNDING_STEPS):
-        solution = search.stress.sure(search.written(values * (1.0 + more)))
+        solution = search.stress.verified(search.written(values * (1.0 + growth)))
         if solution.worst <= 0.0:
             return solution
         if step is None:  # enlarge by more than the excess needs if the stress were tension
-            more += 0.6 * solution.worst + 5e-4 * (k + 1)
+            growth += 0.6 * solution.worst + 5e-4 * (k + 1)
         else:
-            more += 0.5 * step / float(values.min())
+            growth += 0.5 * step / float(values.min())
     return None

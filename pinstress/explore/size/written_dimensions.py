@@ -19,21 +19,23 @@ LIMIT_ROUNDING_TOLERANCE = (
 )
 
 
-def rounded_values(shape: VariedShape, values: Floats, step: float | None, metre: float) -> Floats:
+def rounded_values(
+    shape: VariedShape, values: Floats, step: float | None, length_unit: float
+) -> Floats:
     """Return dimensions rounded as they are written: to four digits, diameters up, bores and
     fillets down. Rounding does not go beyond a present value that the search ended at; otherwise a
     fillet that must not become smaller would do so by its last digits.
 
     step: step to which diameters are rounded up, m; by further steps if that violates a geometric
     limit.
-    metre: SI value of the study's unit of length, m.
+    length_unit: the study's unit of length, m.
     """
     out, steps = [], np.zeros(len(values))
     for k, (dimension, value) in enumerate(zip(shape.dimensions, values, strict=True)):
-        increment = rounding_step(dimension.key, step, metre)
-        steps[k] = (increment or 0.0) * metre
+        increment = rounding_step(dimension.key, step, length_unit)
+        steps[k] = (increment or 0.0) * length_unit
         up = ROUNDING_DIRECTIONS[kind_of(dimension.key)]
-        new = rounded(float(value) / metre, increment, up) * metre
+        new = rounded(float(value) / length_unit, increment, up) * length_unit
         least = float(value) * (1.0 - up * PRESENT_TOLERANCE)
         beyond = increment is None and up * least <= up * dimension.value < up * new
         out.append(dimension.value if beyond else new)
