@@ -52,7 +52,9 @@ def lug_collapse(text: CheckText, s: Situation) -> list[Margin]:
 @check("lug, ultimate load", "14 CFR 25.305", kind="collapse", takes="loads", level="ultimate",
        dimension="force", scatter=ULTIMATE_SCATTER, omits=ULTIMATE_OMITS)  # fmt: skip
 def lug_rupture(text: CheckText, s: Situation) -> list[Margin]:
-    """Return the margins of the pull on every lug whose ultimate load was requested."""
+    """Return the margins of the pull against the ultimate load, for every lug whose metal has a
+    failure strain and whose limit load was requested.
+    """
     limits = {limit.connection: limit for limit in s.lug_collapses if limit.breaks_by}
     margins = []
     for loaded in loaded_eyes(s):

@@ -45,7 +45,7 @@ class LoadCurve:
 
 @dataclass(frozen=True)
 class FlowField:
-    """The pin, or the modelled sector of it, in the last state before collapse.
+    """The pin, or its modelled sector, in the last state in equilibrium, at the limit load.
 
     points: (N, 3) in pin axes.
     cells: (M, 20) node numbers in VTK's order.

@@ -40,11 +40,11 @@ class Measured:
     """A measured solution.
 
     result: maximum on the mesh; None if the solution failed, for the reason `failed`.
-    seconds: the median of the runs, s, each from the mesh to the maximum over the motion, without
+    seconds: the median time of the runs, s, from the mesh to the maximum over the motion, without
     the start of the interpreter and imports.
-    memory: the largest during the first run above the process with its libraries loaded, MB.
-    bare: memory of that process, MB.
-    over: whether it failed because it passed a limit, as finer meshes would.
+    memory: the largest memory during the first run, in addition to `bare`, MB.
+    bare: memory of the process with its libraries loaded, MB.
+    over: whether the solution failed because it exceeded a limit; finer meshes would, too.
     """
 
     result: MeshMaximum | None
@@ -109,10 +109,10 @@ def memory(pid: int | str, what: str) -> float:
 def climb(job: MeasureJob, tell: Tell) -> Measured:
     """Solve a mesh in this process, which must do nothing else.
 
-    tell: called with the memory of the process before, MB.
+    tell: called with the memory of the process before the solution, MB.
     """
-    os.setsid()  # so that programs that it runs are ended with it
-    with suppress(ImportError):  # none of their time and memory is the model's
+    os.setsid()  # so that programs started by this process are ended with it
+    with suppress(ImportError):  # imported here, because their time and memory must not count
         import gmsh  # noqa: F401
         import pymetis  # noqa: F401
         from cvxopt import cholmod  # noqa: F401
@@ -120,7 +120,7 @@ def climb(job: MeasureJob, tell: Tell) -> Measured:
     bare, spent, peak = memory("self", "VmRSS"), [], 0.0
     tell(f"{bare:.0f}")
     with suppress(OSError):
-        Path("/proc/self/clear_refs").write_text("5")  # forgets what imports took for a moment
+        Path("/proc/self/clear_refs").write_text("5")  # resets the peak, which imports raised
     for run in range(job.runs):
         start = time.perf_counter()
         maximum = _result(job)

@@ -101,8 +101,8 @@ class SizedStudy:
     ) -> PinAnswer:
         """Solve a pin without the error estimates of a full solution.
 
-        An error of the size of the tolerance is added instead, since a full solution will have an
-        error within it.
+        Errors are limited to the tolerance, or assumed as large in contact, since a full solution
+        will have an error within it (`design_stresses`).
 
         accuracy: "rough", with few contact cells, or "quick".
         cases: names of the load cases; all by default.
@@ -182,7 +182,7 @@ def _answer(
 ) -> PinAnswer:
     """Return the result of a pin from its maxima in all cases.
 
-    tolerance: relative error to be added, as in `design_stresses`; None for the error as found.
+    tolerance: as in `design_stresses`.
     multiples: multiples of the factor, by case; the stress is multiplied by them.
 
     Raises: NoSizeError if the pin is not solved.
@@ -223,8 +223,9 @@ def _answer(
 def design_stresses(peak: Maximum, tolerance: float | None = None) -> tuple[float, float]:
     """Return the stresses that decide, Pa: of the row and beneath contact, with their errors.
 
-    tolerance: relative error that is added to the stresses of a trial instead of their own; None
-    for the errors as found.
+    tolerance: None for the errors as found. Otherwise, in contact, this relative error is added to
+    the stresses instead of their own (to a singular one none); without contact it is the largest
+    error that counts.
     """
     if tolerance is None:
         return row_stress(peak), beneath(peak)

@@ -1,1 +1,1 @@
-"""Studies of many designs: a study with other numbers, sampled, solved and written as one table."""
+"""Sweeps: many designs of a study with varied numbers, sampled, solved and written as one table."""

@@ -241,7 +241,7 @@ def connected(
 
 
 class _Closed(Client):
-    """A client that is closed only here, since Python's own attempt fails if it never connected."""
+    """A client that only this module closes; Python does not, even if it has never connected."""
 
     def __del__(self) -> None:
         pass
