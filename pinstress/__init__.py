@@ -19,10 +19,10 @@ Results
     run(study, pins=, cases=, tolerance=, ..) -> RunResults
     prepare(study, ..) -> Plan, solve(plan) -> RunResults   the same in two steps
 Many designs
-    Engine(study).answer({key: value}) -> RunResults     the study asked again, with changes
+    Engine(study).answer({key: value}) -> RunResults     the study solved again, with changes
     curve(study, key, (first, last)) -> FactorCurve      factors of safety against one number
     sweep(study, ..)                                     all designs that [vary] describes
-Errors in a study raise InputError, which says where and what would be right.
+Errors in a study raise InputError, which states where they are and what would be right.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ _MODULE_OF = {
 
 
 def __getattr__(name: str) -> Any:
-    # on demand, so that `pinstress check` does not wait for the numeric libraries
+    # Imported on demand, so that `pinstress check` does not load the numeric libraries.
     if name not in _MODULE_OF:
         raise AttributeError(f"module 'pinstress' has no attribute {name!r}")
     from importlib import import_module

@@ -10,9 +10,9 @@ EXIT_NOT_WRITTEN = 2
 
 
 def main() -> None:
-    """Run the command line; never returns."""
+    """Run the command line; the function does not return."""
     ours = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-    sys.path.insert(0, ours)  # a pinbase.py in the current folder is not ours
+    sys.path.insert(0, ours)  # ahead of a pinbase.py in the current folder
     from pinbase.processes.current_folder import leave_out_current_folder
 
     sys.path.remove(ours)
@@ -20,7 +20,7 @@ def main() -> None:
     from pinbase.processes import interrupts
 
     interrupts.listen()
-    lost: Callable[[], str | None] = str  # nothing is, before there are streams
+    lost: Callable[[], str | None] = str  # no output is lost before the streams exist
     try:
         from pinstress.cli import streams
 
@@ -33,15 +33,16 @@ def main() -> None:
     except BaseException:
         if not interrupts.came():
             raise
-        status = interrupts.EXIT_INTERRUPTED  # in the middle of an import
+        status = interrupts.EXIT_INTERRUPTED  # the interrupt came during an import
         print(f"Interrupted; {interrupts.left()}.", file=sys.stderr)
-    interrupts.ignore()  # it is done; an interrupt is no part of the answer now
+    interrupts.ignore()  # the work is done; a late interrupt must not change the exit status
     if why := lost():
         print(f"Error: {why}", file=sys.stderr)
         status = max(status, EXIT_NOT_WRITTEN)
     if status == interrupts.EXIT_INTERRUPTED:
         # If the interrupt came while exec() ran a string (an import of dataclasses, say), CPython
-        # ends the process by the signal, whoever caught it; everything is cleaned up by now.
+        # ends the process by the signal, even if the interrupt was caught. Everything is cleaned up
+        # by now.
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(status)
@@ -49,8 +50,8 @@ def main() -> None:
 
 
 def _name_files_in_utf8() -> None:
-    """Begin anew where Python names files in ASCII (LC_ALL=C with PYTHONUTF8=0), in which a pin
-    "Bügel" can have none; the terminal keeps its encoding.
+    """Restart Python in UTF-8 mode if it names files in ASCII (LC_ALL=C with PYTHONUTF8=0), in
+    which a pin "Bügel" could have no files. The terminal keeps its encoding.
     """
     if sys.getfilesystemencoding() == "utf-8" or sys.flags.utf8_mode:
         return

@@ -100,7 +100,9 @@ def towards(name: str, r: float, z: float, size: float) -> tuple[Floats, Floats]
     fields, loads = graded(name, r, z, size), task(name).loads[0]
     skin = np.arange(fields.skin)
     distance = np.hypot(*(fields.points[skin] - [r, z]).T)
-    value, _ = Circumference(fields, loads).round(skin, np.zeros(len(skin), dtype=np.int64))
+    value, _ = Circumference(fields, loads).largest_over_angle(
+        skin, np.zeros(len(skin), dtype=np.int64)
+    )
     first = int(distance.argmin())
     near = (distance > 4.0 * size) & (distance < 0.5 * r)
     sides = [np.flatnonzero(near & (skin < first)), np.flatnonzero(near & (skin > first))]

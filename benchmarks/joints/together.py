@@ -69,7 +69,7 @@ def shortfalls(trial: PinTrial) -> tuple[Floats, int, int] | None:
     (compared,) = compare(model, [contact], Requirement(), vary=nowhere)
     joint = PressedJoint(model.waves(contact.contact), list(contact.contact))
     like = (compared.stress, compared.cells, joint)
-    changes = JointChanges(model, [contact], Requirement(), [like], True)
+    changes = JointChanges(model, [contact], Requirement(), [{"own": like}], ("own",))
     tried = list(joint_variations(model.whole, model.lugs))
     alone = [change for change in tried if change.what != TOGETHER]
     every = {_name(x): x for x in (*tried, *_combinations(model, alone))}

@@ -132,7 +132,7 @@ def moved_maximum(
         before = reader(of.solution.fields, of.loads, of.material.poisson_ratio)
         point = before.top(before.fields.outside(of.zones)).point
     read = reader(fields, loads, material.poisson_ratio)
-    value, _ = read.round(np.array([point]), np.array([0]))
+    value, _ = read.largest_over_angle(np.array([point]), np.array([0]))
     return float(value[0])
 
 

@@ -1,24 +1,24 @@
 """A beam's largest von Mises stress with its error.
 
-Where the beam's stress is s at a point, that of elasticity is taken to be within
+Where the stress of the beam at a point is s, the stress of elasticity is assumed to lie within
 
     s (1 +- (PLAIN_SECTION_ERROR + the larger of NOTCH_ERROR at a notch and CLAMP_ERROR within a
     diameter of a clamp
              + CLAMPED_SPAN_ERROR d / length between two clamps)) +- LOCAL_STRESS_FACTOR p
 
-p being the largest over the bands of the sum of nominal pressures, F / (d L) and those of axial
-forces, moments and torques, for a tube times radius over wall. A notch's part covers the error of
+with p the largest sum of nominal pressures on any band: F / (d L) and those of axial forces,
+moments and torques, for a tube times radius over wall. The part of a notch covers the error of
 Peterson's factors (up to 11 % low in bending, 21 % in tension), that von Mises is 8 to 10 % below
-the largest principal stress, and that loads a diameter away affect a shoulder. At a root the clamp
-prevents the hoop strain, which lowers von Mises. Between two clamps the moments depend on how stiff
-these are; from built-in to hinged ends the largest of a uniform load grows by half, w L^2 / 12 to
-w L^2 / 8.
+the largest principal stress, and that loads a diameter away affect a shoulder. At a clamped end the
+clamp prevents the hoop strain, which lowers von Mises. Between two clamps the moments depend on the
+stiffness of the clamps: from built-in to hinged ends the largest moment of a uniform load grows by
+half, from w L^2 / 12 to w L^2 / 8.
 
 The five numbers are measured against fine solid models of stubby and slender pins (bands at least
-0.35 diameters long), with the largest stress further than 0.1 diameters from edges of clamps:
-docs/method.md has the table. A cosine pressure also bends a tube's wall; its
-part is that of a free ring of mean radius R and wall t, which is a bound: with pressure harmonics
-p_n, the stress 6 p_n R^2 / ((n^2 - 1) t^2) and the hoop stress p_0 R / t.
+0.35 diameters long), with the largest stress farther than 0.1 diameters from edges of clamps:
+docs/method.md has the table. A cosine pressure also bends a tube's wall; its part is that of a free
+ring of mean radius R and wall t, which is a bound. With pressure harmonics p_n it has the bending
+stress 6 p_n R^2 / ((n^2 - 1) t^2) and the hoop stress p_0 R / t.
 
 Source of the ring: S. P. Timoshenko, Strength of Materials, part II.
 """
@@ -43,7 +43,7 @@ NOTCH_ERROR = 0.12
 CLAMP_ERROR = 0.15
 CLAMPED_SPAN_ERROR = 0.5
 LOCAL_STRESS_FACTOR = 0.8
-_MIN_STRESS_SHARE = 1e-6  # of the largest stress
+_MIN_STRESS_SHARE = 1e-6  # of the largest stress: a load that causes less does not act at a notch
 
 BEAM_OMISSIONS = (
     "Beam theory omits local stresses within about a diameter of loads, shoulders and clamps, and "
@@ -56,12 +56,12 @@ CLAMP_EDGE_REMARK = " At the edges of clamps no maximum exists."
 class BeamEstimate:
     """A beam's largest von Mises stress with its error, Pa.
 
+    error: None if a notch without a factor is loaded.
     place: (r, z) in m.
     theta: rad.
     instant: its number.
-    without_factor: loaded notches for which the beam has no factor; then `maximum` excludes them,
-    and there is no error.
-    leaves_out: what the model omits, for people.
+    without_factor: loaded notches for which the beam has no factor; `maximum` then excludes them.
+    leaves_out: what the model omits, as text.
     """
 
     maximum: float
@@ -77,9 +77,9 @@ def beam_estimate(beam: BeamStress, loads: PinLoads, clamps: tuple[str, ...] = (
     """The largest stress of a case with its error.
 
     beam: with all unit loads that act.
-    clamps: at which it is clamped.
+    clamps: names of its clamped surfaces.
 
-    Raises: ValueError when the beam has no field for a part of the loads.
+    Raises: ArgumentError when the beam has no field for a part of the loads.
     """
     stress = harmonics(beam, loads)
     maxima = von_mises_maxima(stress)
@@ -130,7 +130,7 @@ def between_clamps(forces: InternalForces, span: Span) -> float:
 
 
 def _local(pin: Pin, loads: PinLoads) -> Floats:
-    """The local stress, Pa, that loads may add where they act, (T,)."""
+    """The local stress (T,), Pa, that loads may add where they act."""
     most = np.zeros(len(loads))
     for c, name in enumerate(loads.surfaces):
         band = pin.band(name)
@@ -151,13 +151,13 @@ def _local(pin: Pin, loads: PinLoads) -> Floats:
 
 
 def _wall(pin: Pin, band: Band) -> float:
-    """Wall thickness over outer radius; 1 for a solid section."""
+    """The wall thickness over the outer radius; 1 for a solid section."""
     segment = pin.segments[pin.labels.index(band.name)]
     return 1.0 - max(segment.bores) / segment.diameter
 
 
 def _ovalisation(pin: Pin, band: Band, loads: PinLoads) -> float:
-    """Stress (Pa per N) of a ring under the harmonics of a cosine pressure that a beam omits."""
+    """The stress (Pa per N) of a ring under the harmonics of cosine pressure that a beam omits."""
     t = _wall(pin, band) * band.radius
     R = band.radius - 0.5 * t
     out = abs(pressure_amplitude(0, band)) * R / t
@@ -170,7 +170,12 @@ def _ovalisation(pin: Pin, band: Band, loads: PinLoads) -> float:
 def _without_factor(
     beam: BeamStress, stress: Floats, von_mises: Floats, largest: float
 ) -> tuple[str, ...]:
-    """Descriptions of notches whose factor is missing for a load that acts there."""
+    """The descriptions of notches whose factor is missing for a load that acts there.
+
+    stress: (3, S, 6, T) Pa, as from fea.beam.maximum.harmonics.
+    von_mises: (S, T) Pa.
+    largest: Pa, the largest von Mises stress.
+    """
     out = []
     least = _MIN_STRESS_SHARE * largest
     first = len(beam.points) - len(beam.notches)

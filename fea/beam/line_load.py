@@ -30,9 +30,9 @@ def acting(loads: Loads) -> tuple[UnitLoad, ...]:
 
 
 def shares(units: tuple[UnitLoad, ...], loads: Loads) -> Floats:
-    """The amount of each of K unit loads, (T, 2, K) by phase; zero for those without a resultant.
+    """The amount (T, 2, K) of each of K unit loads, by phase; zero for those without a resultant.
 
-    Raises: ValueError when a part of the loads is not among the units.
+    Raises: ArgumentError when a part of the loads is not among the units.
     """
     amounts = loads.coefficients()
     require_solved(loads.case, acting(loads), units)
@@ -51,12 +51,12 @@ def line_loads(
     loads: tuple[UnitLoad, ...],
     closed: bool,
 ) -> Floats:
-    """Loads per length (C, 3, K), w0 to w2, of K unit loads between stations (C + 1,), m.
+    """The loads per length (C, 3, K), w0 to w2, of K unit loads between stations (C + 1,), m.
 
     They are N/m, or N m/m about the axis, per m and per m^2. All bands end at stations.
-    closed: with the closing tractions that balance each load.
+    closed: whether closing tractions that balance each load are added.
 
-    Raises: ValueError for the weight of a material without density, or a balance without bands.
+    Raises: SolveError for the weight of a material without density, or a balance without bands.
     """
     out = np.zeros((len(sections), 3, len(loads)))
     for k, load in enumerate(loads):
@@ -71,7 +71,7 @@ def line_loads(
 
 
 def line_couples(pin: Pin, stations: Floats, loads: tuple[UnitLoad, ...]) -> Floats:
-    """Couples per length (C, K), N m/m, of K unit loads between stations (C + 1,), m.
+    """The couples per length (C, K), N m/m, of K unit loads between stations (C + 1,), m.
 
     A traction Z cos(theta) along the axis turns the pin about y by - pi Z R^2 per length.
     """
@@ -88,9 +88,13 @@ def line_couples(pin: Pin, stations: Floats, loads: tuple[UnitLoad, ...]) -> Flo
 
 
 def per_length(radius: float, amplitudes: Floats, n: int, phase: int) -> Floats:
-    """Load per length (...) of traction amplitudes (..., 3), Pa, on a cylinder of `radius` (m)."""
+    """The load per length (...) of tractions on a cylinder.
+
+    radius: m.
+    amplitudes: (..., 3) Pa, of the tractions.
+    """
     r, t, z = np.moveaxis(amplitudes, -1, 0)
-    if n == 1:  # a traction along the axis is a couple per length (line_couples)
+    if n == 1:  # traction along the axis is left out: it is a couple per length (line_couples)
         return np.asarray(math.pi * radius * (r - t))
     return np.asarray(2.0 * math.pi * radius * (-radius * t if phase else z))
 
@@ -98,7 +102,7 @@ def per_length(radius: float, amplitudes: Floats, n: int, phase: int) -> Floats:
 def _spread(
     pin: Pin, stations: Floats, tractions: Iterable[Traction], n: int, phase: int
 ) -> Floats:
-    """Load per length (C, 3) of tractions on bands."""
+    """The load per length (C, 3), w0 to w2, of tractions on bands."""
     out = np.zeros((len(stations) - 1, 3))
     middles = 0.5 * (stations[1:] + stations[:-1])
     for t in tractions:
@@ -112,7 +116,10 @@ def _spread(
 
 
 def resultants(stations: Floats, w: Floats) -> tuple[Floats, Floats]:
-    """Sum (...), N, and moment (...), N m, about z = 0, of loads per length (C, 3, ...)."""
+    """The force (...), N, and the moment (...), N m, about z = 0, of loads per length.
+
+    w: (C, 3, ...), as from `line_loads`.
+    """
     h = np.diff(stations).reshape(-1, *[1] * (w.ndim - 2))
     z = stations[:-1].reshape(h.shape)
     force = w[:, 0] * h + w[:, 1] * h**2 / 2.0 + w[:, 2] * h**3 / 3.0
@@ -125,7 +132,7 @@ def _close(
 ) -> None:
     """Subtract from each load, in place, the closing tractions that balance it.
 
-    couples: by which each load turns the pin besides, (K,) N m.
+    couples: (K,) N m, the additional couple of each load.
     """
     for n, phase in ((1, 0), (0, 0), (0, 1)):
         columns = [k for k, u in enumerate(loads) if u.n == n and (n or u.phases[0] == phase)]

@@ -1,7 +1,8 @@
-"""The largest von Mises stress of a beam over all instants, all points and over the circumference.
+"""The largest von Mises stress of a beam over all instants, all points and the circumference.
 
-At a point the stress of an instant is s(theta) = a + b cos theta + c sin theta, so von Mises
-squared is a trigonometric polynomial of degree 2: sampled, then polished by Newton's method.
+At a point the stress of an instant is s(theta) = a + b cos theta + c sin theta. So von Mises
+squared is a trigonometric polynomial of degree 2, which is sampled; Newton's method then refines
+the largest sample.
 """
 
 from __future__ import annotations
@@ -19,15 +20,15 @@ from pinbase.arrays import Floats, Ints
 
 ANGLE_COUNT = 48  # samples of the circumference; Newton's method starts from the best one
 _THETA = 2.0 * np.pi * np.arange(ANGLE_COUNT) / ANGLE_COUNT
-_SINE_COMPONENTS = np.array([3, 5])  # tz, rt go with sin psi
-_CURVATURE_TOLERANCE = 1e-9  # of the largest value: a flatter crest is not refined
+_SINE_COMPONENTS = np.array([3, 5])  # tz and rt vary as sin psi
+_CURVATURE_TOLERANCE = 1e-9  # of the largest value: a crest with less curvature is not refined
 
 
 @dataclass(frozen=True)
 class VonMisesMaxima:
-    """The largest von Mises stress over the circumference, (S, T) Pa, by point and instant.
+    """The largest von Mises stress over the circumference, (S, T) Pa, at each point and instant.
 
-    theta: (S, T) rad, where it is.
+    theta: (S, T) rad, where it occurs.
     """
 
     von_mises: Floats
@@ -35,7 +36,7 @@ class VonMisesMaxima:
 
     @property
     def place(self) -> tuple[int, int]:
-        """Numbers of the point and the instant of the largest stress of all."""
+        """The numbers of the point and the instant of the largest stress."""
         point, instant = np.unravel_index(self.von_mises.argmax(), self.von_mises.shape)
         return int(point), int(instant)
 
@@ -43,7 +44,7 @@ class VonMisesMaxima:
 def stress_points(points: Floats, stress: Floats) -> StressPoints:
     """The points (S, 2), r and z in m, at which a beam knows its stress.
 
-    stress: (3, S, 6, T) Pa, constant, times cos theta, times sin theta.
+    stress: (3, S, 6, T) Pa: the constant part, and the factors of cos theta and sin theta.
     """
 
     def at(rows: Ints, angles: Floats, instants: Ints) -> Floats:
@@ -57,40 +58,40 @@ def stress_points(points: Floats, stress: Floats) -> StressPoints:
 class StressAlongBeam:
     """The stress along a beam under any loads (fea.core.solution.StressField).
 
-    at: points (S, 2), r and z in m, at which it is known.
+    at: points (S, 2), r and z in m, at which the stress is known.
     """
 
     at: Floats
 
     def harmonics(self, loads: Loads) -> Floats:
-        """Stress (3, S, 6, T), Pa: constant, times cos theta, times sin theta."""
+        """The stress (3, S, 6, T), Pa: the constant part, and factors of cos theta, sin theta."""
         raise NotImplementedError
 
     def maxima(self, loads: Loads, _: float = 0.0) -> Floats:
-        """Largest von Mises stress (T,) Pa at every instant."""
+        """The largest von Mises stress (T,), Pa, at every instant."""
         return np.asarray(von_mises_maxima(self.harmonics(loads)).von_mises.max(axis=0))
 
     def largest(self, loads: Loads) -> tuple[float, int]:
-        """The largest von Mises stress over all instants, Pa, and the index of its instant."""
+        """The largest von Mises stress over all instants, Pa, and the number of its instant."""
         top = von_mises_maxima(self.harmonics(loads))
         return float(top.von_mises[top.place]), top.place[1]
 
     def points(self, loads: PinLoads) -> StressPoints:
-        """Stress at the beam's points, for fatigue."""
+        """The stress at the beam's points, for fatigue."""
         return stress_points(self.at, self.harmonics(loads))
 
     def surface(self) -> None:
         """Return None, since a beam has no field over its surface."""
 
     def picture(self, loads: PinLoads, instant: int) -> None:
-        """Return None, for the same reason."""
+        """Return None, since a beam has no field over its surface."""
 
     def volume(self, loads: PinLoads, instant: int) -> None:
-        """Return None, for the same reason."""
+        """Return None, since a beam has no field in its volume."""
 
 
 def harmonics(beam: BeamStress, loads: Loads) -> Floats:
-    """Stress (3, S, 6, T), Pa: its constant part, and the factors of cos theta and sin theta."""
+    """The stress (3, S, 6, T), Pa: the constant part, and factors of cos theta, sin theta."""
     units = beam.forces.loads
     c = shares(units, loads)
     across = np.array([load.n == 1 for load in units], dtype=bool)

@@ -1,4 +1,4 @@
-"""The beam model's answer for one case, in the form that the other models have."""
+"""The result of the beam model for one case, in the form that the other models have."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class BeamField(StressAlongBeam):
         return beam_estimate(self._beam, self.case, self.clamps)
 
     def harmonics(self, loads: Loads) -> Floats:
-        """The stress of the unit loads, superposed."""
+        """The stress (3, S, 6, T), Pa, of the superposed unit loads."""
         return harmonics(self._beam, loads)
 
     def result(self, singularities: Sequence[Zone]) -> MeshMaximum:
@@ -52,8 +52,8 @@ class BeamField(StressAlongBeam):
 
     @property
     def strain_energy(self) -> float:
-        """The strain energy of the loads that have a resultant, at the instant of the largest
-        stress, J.
+        """The strain energy, J, of the loads that have a resultant, at the instant of the largest
+        stress.
         """
         coefficients = self.case.coefficients()
         felt = {unit: coefficients[unit] for unit in self._beam.forces.loads}
@@ -61,9 +61,10 @@ class BeamField(StressAlongBeam):
         return self._beam.energy.of(amounts, self.estimate.instant)
 
     def evidence(self, seconds: float, remarks: Reason, rise: float = 0.0) -> Evidence:
-        """The maximum with the beam's own error, which is the whole value where none is known.
+        """The maximum with the beam's own error, which is as large as the value where it is not
+        known.
 
-        rise: how much the maximum may be higher between instants, Pa.
+        rise: how much higher the maximum may be between instants, Pa.
         """
         estimate, doubt = self.estimate, None
         whole = estimate.maximum if estimate.error is None else estimate.error

@@ -1,14 +1,16 @@
 """Bending with an axial force of a fully plastic round section, solid or hollow.
 
-A plane at a distance c from the axis parts tension from compression, which are s_y everywhere. With
-outer and inner radius a and b (powers of what is negative are zero, and asin is of 1 at most),
+A plane at a distance c from the axis separates tension from compression, which are s_y everywhere.
+With outer and inner radius a and b (powers of negative numbers are zero, and the argument of asin
+is at most 1),
 
     M = 4/3 s_y ((a^2 - c^2)^(3/2) - (b^2 - c^2)^(3/2))
     N = s_y (W(a) - W(b)),    W(r) = 2 (c sqrt(r^2 - c^2) + r^2 asin(c / r))
 
 A solid section, with c = a sin t, has M/Mp = cos^3 t and N/Np = (2 t + sin 2 t) / pi. All that a
-section can carry is within this curve, which is convex: its chords are inside, and the lines along
-M + c N, by which it flows, outside. So both are given, closer than 1e-4 of each other.
+section can carry lies within this curve, which is convex. Its chords lie inside, and its tangents,
+the lines of constant M + c N (flow is normal to them), outside. So both give bounds, closer than
+1e-4 to each other.
 
 A section with a hardened surface is two concentric rings, each of its own strength, whose M and N
 are added.
@@ -40,10 +42,12 @@ def cased_rings(section: Circle, case: Hardened) -> tuple[Ring, ...]:
 
 
 def bending_and_axial_use(section: Circle, moment: Floats, axial: Floats) -> tuple[Floats, Floats]:
-    """The use of the interaction curve by bending and axial force, an upper and a lower estimate.
+    """The utilisation of the interaction curve by bending and axial force, an upper and a lower
+    bound.
 
-    moment: M/Mp (...), axial: N/Np (...), not negative. The upper one is by a chord, the lower one
-    by tangents.
+    The upper bound is by a chord, the lower one by tangents.
+    moment: M/Mp (...), not negative.
+    axial: N/Np (...), not negative.
     """
     return _use(((section, 1.0),), moment, axial)
 
@@ -64,11 +68,11 @@ def _use(rings: Sequence[Ring], moment: Floats, axial: Floats) -> tuple[Floats, 
 def plastic_use(
     rings: Sequence[Ring], shear: float, moment: float, axial: float, torque: float
 ) -> float:
-    """The part of what a fully plastic section carries that these forces use, at most.
+    """An upper bound of the part of a fully plastic section's capacity that section forces use.
 
-    It is sqrt(g^2 + (V/Vs + T/Tp)^2), as in assess.plastic.hinge.
-    Shear forces are carried as in elasticity, with the least strength of the rings.
-    rings: of the section from outside, with their yield strengths, Pa.
+    It is sqrt(g^2 + (V/Vs + T/Tp)^2), as in assess.plastic.hinge. Shear forces are carried as in
+    elasticity, with the least strength of the rings.
+    rings: of the section, from the outside, with their yield strengths, Pa.
     shear, moment, axial, torque: N and N m, not negative.
     """
     M = np.array([moment / sum(strength * ring.plastic_modulus for ring, strength in rings)])
@@ -82,12 +86,14 @@ def plastic_use(
 
 
 def plastic_torque(section: Circle) -> float:
-    """Torque of a fully plastic section over the yield stress in shear, m^3."""
+    """The torque of a fully plastic section over the yield stress in shear, m^3."""
     return 2.0 / 3.0 * math.pi * (section.outer**3 - section.inner**3)
 
 
 def _curve(rings: Sequence[Ring]) -> tuple[Floats, Floats, Floats]:
-    """c Np / Mp, M/Mp and N/Np, (CURVE_POINTS,) each, from pure bending to pure tension."""
+    """The coefficient c Np / Mp, and M/Mp and N/Np, (CURVE_POINTS,) each, from pure bending to pure
+    tension.
+    """
     c = rings[0][0].outer * np.sin(np.linspace(0.0, np.pi / 2.0, CURVE_POINTS))
     shares = [(ring.outer, ring.inner, strength) for ring, strength in rings]
     bending = sum(s * (_power(a, c) - _power(b, c)) for a, b, s in shares)
@@ -99,7 +105,7 @@ def _curve(rings: Sequence[Ring]) -> tuple[Floats, Floats, Floats]:
 
 
 def _power(radius: float, c: Floats) -> Floats:
-    """(r^2 - c^2)^(3/2), zero where c exceeds the radius."""
+    """Return (r^2 - c^2)^(3/2), zero where c exceeds the radius."""
     return np.maximum(radius**2 - c**2, 0.0) ** 1.5
 
 

@@ -33,27 +33,27 @@ class Circle:
 
     @property
     def area(self) -> float:
-        """Area, m^2."""
+        """The area, m^2."""
         return math.pi * (self.outer**2 - self.inner**2)
 
     @property
     def inertia(self) -> float:
-        """Second moment of area about a diameter, m^4."""
+        """The second moment of area about a diameter, m^4."""
         return math.pi / 4.0 * (self.outer**4 - self.inner**4)
 
     @property
     def polar(self) -> float:
-        """Second moment of area about the axis, m^4."""
+        """The second moment of area about the axis, m^4."""
         return 2.0 * self.inertia
 
     @property
     def modulus(self) -> float:
-        """Elastic section modulus, m^3."""
+        """The elastic section modulus, m^3."""
         return self.inertia / self.outer
 
     @property
     def plastic_modulus(self) -> float:
-        """Plastic section modulus, m^3: twice the first moment of half of the section.
+        """The plastic section modulus, m^3: twice the first moment of half of the section.
 
         It exceeds the elastic one by the factor 16 / (3 pi) (1 - q^3) / (1 - q^4), with q = inner /
         outer.
@@ -74,7 +74,8 @@ class Circle:
         return 6.0 * (1.0 + nu) * whole / ((7.0 + 6.0 * nu) * whole + (20.0 + 12.0 * nu) * m2)
 
     def flexure(self, r: Radius, nu: float) -> tuple[Radius, Radius]:
-        """Amplitudes of s_rz (cos theta) and s_tz (sin theta) at r (m), Pa per N of shear along x.
+        """The amplitudes of s_rz (cos theta) and s_tz (sin theta) at r (m), Pa per N of shear along
+        x.
 
         Source: Love, as the module.
         """
@@ -87,7 +88,8 @@ class Circle:
 
     @property
     def vq_it(self) -> float:
-        """V Q / (I t) over V / A at the neutral axis, no unit: 4 / 3 if solid, 2 for a thin tube.
+        """The factor V Q / (I t) over V / A at the neutral axis, no unit: 4 / 3 if solid, 2 for a
+        thin tube.
 
         Source: Budynas & Nisbett, Shigley's Mechanical Engineering Design, 3-11.
         """
@@ -96,7 +98,7 @@ class Circle:
 
     @property
     def axis_area(self) -> float:
-        """V over the shear stress at the neutral axis, I t / Q, m^2."""
+        """The shear force V over the shear stress at the neutral axis, I t / Q, m^2."""
         return self.area / self.vq_it
 
 

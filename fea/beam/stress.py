@@ -1,9 +1,9 @@
-"""Stresses of a stepped beam at points of its surface, its axis or bore, and its notches.
+"""The stresses of a stepped beam at points of its surface, of its axis or bore, and of its notches.
 
 As in all models they are given at points in the meridian plane, as amplitudes of the stress of unit
 loads. With psi = n theta - p pi / 2, p the phase, the components rr, tt, zz, rz vary as cos psi and
-tz, rt as sin psi. So a shear V along x, which on the axis is s_xz = tau, is rz = tau and tz = -tau,
-and a torque, n = 0 with p = 1, where sin psi = -1, is tz = -T r / J.
+tz, rt as sin psi. So a shear V along x that causes s_xz = tau on the axis is rz = tau and tz = -tau
+there. A torque (n = 0, p = 1, where sin psi = -1) is tz = -T r / J.
 """
 
 from __future__ import annotations
@@ -23,16 +23,17 @@ from geometry import Pin
 from pinbase.arrays import Floats
 
 ZZ, TZ, RZ = 2, 3, 4
-POINTS_PER_CELL = 33  # points in a cell, in addition to where a moment is largest
+POINTS_PER_CELL = 33  # equally spaced points of a cell; those of largest moment are added
 
 
 @dataclass(frozen=True)
 class BeamStress:
-    """Stress amplitudes of K unit loads at points of a beam.
+    """The stress amplitudes of K unit loads at points of a beam.
 
-    The last points are those of the `notches` at which the thinner shaft is free of a clamp, in
-    order, with their factors where there are any, otherwise nominal.
+    The last points are those of the `notches`, in order; they have the stress times the factors of
+    the notch, or the nominal stress if there is no factor.
 
+    notches: those whose thinner shaft lies outside the clamps.
     points: (S, 2) r, z in m.
     stress: (S, 6, K) Pa per unit of load, order rr, tt, zz, tz, rz, rt.
     """
@@ -46,14 +47,16 @@ class BeamStress:
 
     @property
     def energy(self) -> StrainEnergy:
-        """The strain energy of the beam under these loads, without what notches add."""
+        """The strain energy of the beam under these loads, without the effect of notches."""
         return StrainEnergy.of_both_phases(self.forces.loads, self.forces.work(self.material))
 
 
 def beam_stress(
     pin: Pin, material: Material, loads: tuple[UnitLoad, ...], clamps: tuple[str, ...] = ()
 ) -> BeamStress:
-    """Stresses of unit loads on a pin clamped at `clamps`, or balanced (fea.beam.timoshenko).
+    """The stresses of unit loads on a pin that is clamped, or balanced (fea.beam.timoshenko).
+
+    clamps: names of its clamped surfaces.
 
     Raises: as `stepped_beam`.
     """
@@ -87,10 +90,10 @@ def beam_stress(
 
 
 def sample(forces: InternalForces) -> tuple[NDArray[np.intp], Floats]:
-    """Cells (S,) and z (S,), m, at which stress is read.
+    """The cells (S,) and z (S,), m, at which stress is read.
 
-    Densely in all cells outside the clamps, on both sides of every station, and where the moment of
-    any unit load is largest.
+    They lie densely in all cells outside the clamps, on both sides of every station, and where the
+    moment of any unit load is largest.
     """
     cells, z = [], []
     for c in forces.free:
@@ -105,7 +108,7 @@ def sample(forces: InternalForces) -> tuple[NDArray[np.intp], Floats]:
 
 
 def section_stress(section: Circle, r: Radius, nu: float) -> Floats:
-    """Stress amplitudes (..., 6, 4), Pa, at r (...), m, per V, M, N, T."""
+    """The stress amplitudes (..., 6, 4), Pa, at r (...), m, per unit of V, M, N, T."""
     out = np.zeros((*np.shape(r), 6, 4))
     out[..., RZ, SHEAR], out[..., TZ, SHEAR] = section.flexure(r, nu)
     out[..., ZZ, MOMENT] = -r / section.inertia
@@ -115,7 +118,9 @@ def section_stress(section: Circle, r: Radius, nu: float) -> Floats:
 
 
 def notch_stress(notch: Notch, section: Circle, nu: float) -> Floats:
-    """Stress amplitudes (6, 4) at the surface of the thinner shaft, times the notch's factors."""
+    """The stress amplitudes (6, 4), Pa, at the surface of the thinner shaft, times the notch's
+    factors.
+    """
     out = section_stress(section, section.outer, nu)
     out[ZZ, MOMENT] *= notch.bending or 1.0
     out[ZZ, AXIAL] *= notch.tension or 1.0

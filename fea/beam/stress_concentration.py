@@ -4,12 +4,12 @@ Kt = C1 + C2 (2h/D) + C3 (2h/D)^2 + C4 (2h/D)^3 with h = (D - d) / 2, each C a p
 sqrt(h/r): fits to Peterson's charts. Kt is the largest principal stress over the nominal stress of
 the thinner shaft (in torsion: shear over shear).
 
-What is known of them: they are below fine elastic solutions, up to 11 % in bending and up to 21 %
-in tension (D/d = 1.25, r/d = 0.0125: 3.12, where our harmonic model and CalculiX's axisymmetric
-elements find 3.963: `python -m benchmarks tension`). The coefficients are as published, so that is
-the charts'. But the von Mises stress is 8 to 10 % below the largest principal stress there, because
-the shoulder hinders the hoop strain. So Kt times the nominal stress is not the von Mises peak; how
-near it is, fea.beam.error_model states.
+The factors are known to be below fine elastic solutions, up to 11 % in bending and up to 21 % in
+tension (D/d = 1.25, r/d = 0.0125: 3.12, where our harmonic model and CalculiX's axisymmetric
+elements find 3.963: `python -m benchmarks tension`). The coefficients are as published, so the
+difference is that of the charts. On the other hand, the von Mises stress is 8 to 10 % below the
+largest principal stress there, because the shoulder hinders the hoop strain. So Kt times the
+nominal stress is not the von Mises peak; fea.beam.error_model states how near it is.
 
 Source: W. D. Pilkey & D. F. Pilkey, Peterson's Stress Concentration Factors, ch. 3; W. D. Pilkey,
 Formulas for Stress, Strain, and Structural Matrices, has the same fits.
@@ -67,15 +67,20 @@ TORSION_FIT: tuple[Fit, ...] = (
     ),
 )
 
-# Of the radius: distance of the peak from the end of the shaft, measured in bending.
+# Distance of the stress peak from where the fillet meets the shaft, of the fillet's radius;
+# measured in bending.
 PEAK_OFFSET = 0.3
-MAX_BORE_RATIO = 0.25  # of d: it takes 0.4 % of the shaft's I, and the fits are for solid shafts
+# Largest bore, of d, for which the fits for solid shafts are used: it reduces I by 0.4 %.
+MAX_BORE_RATIO = 0.25
 
 
 def shoulder_factor(
     fits: tuple[Fit, ...], thick: float, thin: float, radius: float
 ) -> float | None:
-    """Kt (no unit) of a fillet of `radius` between two diameters (m); None outside the fits' range.
+    """The factor Kt (no unit) of a fillet between two diameters; None outside the range of the
+    fits.
+
+    thick, thin, radius: the diameters and the radius of the fillet, m.
 
     Source: as the module.
     """
@@ -92,9 +97,13 @@ def shoulder_factor(
 
 @dataclass(frozen=True)
 class Notch:
-    """A shoulder and its factors of the nominal stress of the thinner shaft, segment `on`.
+    """A shoulder, a step of the bore or a cone, and its factors of the nominal stress of the
+    thinner shaft.
 
-    z: m, of its peak. A factor is None where the beam has none; `why` says what the notch is.
+    z: m, of its stress peak.
+    on: number of the segment that is the thinner shaft.
+    bending, tension, torsion: the factors; None where the beam has none.
+    why: what the notch is, as text.
     """
 
     z: float

@@ -6,9 +6,10 @@ With w the load per length along x, q along z and t about z, the part beyond z e
 
 the shear V along x and the bending moment M about y, the axial force N and the torque T. So between
 stations they are polynomials, found by marching along the pin from the left end of each free span.
-The initial values are zero at a free end; after a clamp, those that make the free right end free,
-or, between two clamps, those that leave the sections at both in place (Castigliano: the
-complementary energy's derivatives by the four redundant forces vanish). All is linear and exact.
+The initial values are zero at a free end. After a clamp they are those that make the free right end
+free. Between two clamps they are those that leave the sections at both clamps in place
+(Castigliano: the derivatives of the complementary energy by the four redundant forces vanish). All
+equations are linear and are solved exactly.
 
 Source: S. P. Timoshenko, Phil. Mag. 41 (1921) 744, for the beam; the shear coefficients in
 fea.beam.round_section.
@@ -33,9 +34,10 @@ from geometry import Pin
 from pinbase.arrays import Floats
 
 SHEAR, MOMENT, AXIAL, TORQUE = range(4)
-# Largest change of a cone's diameter or bore over a cell, of the wall; chosen by judgement.
+# Largest change of a cone's diameter or bore over a cell, of the smallest wall or diameter; chosen
+# by judgement.
 MAX_CONE_CHANGE = 0.01
-# Exact for products of the cubics of internal forces.
+# The quadrature is exact for products of the cubic polynomials of internal forces.
 _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
@@ -43,7 +45,7 @@ _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
 class Span:
     """The cells first to last - 1 between clamps or free ends.
 
-    left, right: whether the span is clamped there.
+    left, right: whether the span is clamped at that end.
     """
 
     first: int
@@ -54,7 +56,8 @@ class Span:
 
 @dataclass(frozen=True)
 class InternalForces:
-    """V (N), M (N m), N (N), T (N m) of K unit loads between stations (C + 1,), m.
+    """The internal forces V (N), M (N m), N (N), T (N m) of K unit loads between stations (C + 1,),
+    m.
 
     coefficients: (C, 4, 4, K) of the powers 0 to 3 of the distance (m) from the cell's left end,
     for V, M, N, T.
@@ -74,18 +77,20 @@ class InternalForces:
         return tuple(c for s in self.spans for c in range(s.first, s.last))
 
     def inside(self, cells: NDArray[np.intp], z: Floats) -> Floats:
-        """V, M, N, T (S, 4, K) at z (S,), m, each as seen from its cell (S,)."""
+        """The forces V, M, N, T (S, 4, K) at z (S,), m, each as seen from its cell (S,)."""
         s = z - self.stations[cells]
         powers = s[:, None] ** np.arange(4)
         return np.asarray(np.einsum("sp,spqk->sqk", powers, self.coefficients[cells]))
 
     def at(self, z: Floats) -> Floats:
-        """V, M, N, T (S, 4, K) at z (S,), m; at a station as seen from the right."""
+        """The forces V, M, N, T (S, 4, K) at z (S,), m; at a station as seen from the right."""
         cells = np.searchsorted(self.stations[1:-1], z, side="right")
         return self.inside(cells, z)
 
     def work(self, material: Material) -> Floats:
-        """The work (K, K), J, of each load on the deflection by each load; clamps do none."""
+        """The work (K, K), J, of each load on the deflection by each load; reactions of clamps do
+        none.
+        """
         cells = np.array(self.free)
         lengths = np.diff(self.stations)[cells]
         soft = np.array([compliances(self.sections[c], material) for c in cells])
@@ -98,17 +103,17 @@ def stepped_beam(
 ) -> InternalForces:
     """The internal forces of a pin under unit loads.
 
-    clamps: at which it is held (names as in `pin.surface`): a face's section stays where it is, a
-    band is rigid. Without clamps each load is balanced by the closing tractions on all connections
-    (fea.core.tractions).
+    clamps: names of the clamped surfaces (as in `pin.surface`): the section of a clamped face stays
+    in place, a clamped band is rigid. Without clamps each load is balanced by the closing tractions
+    on all connections (fea.core.tractions).
 
-    Raises: GeometryError for a clamp that does not exist; ValueError as fea.beam.line_load.
+    Raises: GeometryError for a clamp that does not exist; SolveError as fea.beam.line_load.
     """
     constrained = [_constrained(pin, pin.surface(name)) for name in clamps]
     stations = _stations(pin, constrained)
     sections = tuple(_section(pin, a, b) for a, b in pairwise(stations.tolist()))
     w = line_loads(pin, material, stations, sections, loads, closed=not clamps)
-    q = np.zeros((len(sections), 3, 4, len(loads)))  # by the force whose slope it makes
+    q = np.zeros((len(sections), 3, 4, len(loads)))  # minus the slope of each internal force
     for k, load in enumerate(loads):
         q[:, :, SHEAR if load.n else (AXIAL, TORQUE)[load.phases[0]], k] = w[:, :, k]
     q[:, 0, MOMENT] = line_couples(pin, stations, loads)
@@ -122,14 +127,14 @@ def stepped_beam(
 
 
 def compliances(section: Circle, material: Material) -> Floats:
-    """1 / (kappa G A), 1 / (E I), 1 / (E A) and 1 / (G J) of a section."""
+    """The compliances 1 / (kappa G A), 1 / (E I), 1 / (E A) and 1 / (G J) of a section."""
     E, G = material.youngs_modulus, material.lame[1]
     shear = section.shear_coefficient(material.poisson_ratio) * G * section.area
     return 1.0 / np.array([shear, E * section.inertia, E * section.area, G * section.polar])
 
 
 def _constrained(pin: Pin, surface: str) -> tuple[float, float]:
-    """Start and end (m) of a clamp."""
+    """The start and the end (z in m) of a clamp."""
     if surface == "start":
         return 0.0, 0.0
     if surface == "end":
@@ -145,7 +150,7 @@ def _stations(pin: Pin, constrained: list[tuple[float, float]]) -> Floats:
 
 
 def _on_cones(pin: Pin) -> Iterator[float]:
-    """The z (m) at which cones are cut into cells, as finely as MAX_CONE_CHANGE demands."""
+    """The z (m) at which cones are divided into cells, as finely as MAX_CONE_CHANGE requires."""
     for s, z in zip(pin.segments, pin.stations, strict=False):
         (d0, d1), (b0, b1) = s.diameters, s.bores
         change = max(abs(d1 - d0), abs(b1 - b0)) / min(*s.walls, d0, d1)
@@ -155,7 +160,7 @@ def _on_cones(pin: Pin) -> Iterator[float]:
 
 
 def _section(pin: Pin, a: float, b: float) -> Circle:
-    """The section from a to b (m): the thinnest of a cone's slice, which is on the safe side."""
+    """The section from a to b (m); of a part of a cone the thinnest, which is on the safe side."""
     i = min(bisect_right(pin.stations, 0.5 * (a + b)), len(pin.segments)) - 1
     return thinnest_section(pin.segments[i], a - pin.stations[i], b - pin.stations[i])
 
@@ -173,14 +178,17 @@ def _spans(stations: Floats, constrained: list[tuple[float, float]]) -> tuple[Sp
 
 
 def _span(span: Span, lengths: Floats, soft: Floats, q: Floats) -> Floats:
-    """Coefficients (C, 4, 4, K) of the internal forces in one span under loads q (C, 3, 4, K)."""
+    """The coefficients (C, 4, 4, K) of the internal forces in one span.
+
+    q: (C, 3, 4, K) loads per length.
+    """
     loaded = _march(lengths, q, np.zeros(q.shape[2:]))
-    if not span.left:  # a free end, or all is in balance
+    if not span.left:  # the left end is free, so the forces there are zero
         return loaded
     # The response to unit forces at the span's start: four redundants.
     unit = _march(lengths, np.zeros((*q.shape[:3], 4)), np.eye(4))
-    # Clamped at both ends: the redundants that leave the deflections there zero. Clamped at the
-    # left alone: those that make the forces at the free end zero.
+    # If both ends are clamped, the redundants make the deflection at the clamps zero. If the left
+    # end alone is clamped, they make the forces at the free end zero.
     if span.right:
         m, f = (_at_gauss(lengths, x) for x in (unit, loaded))
         flexibility, moved = (_products(lengths, soft, m, x) for x in (m, f))
@@ -194,19 +202,21 @@ def _span(span: Span, lengths: Floats, soft: Floats, q: Floats) -> Floats:
 
 
 def _at_gauss(lengths: Floats, coefficients: Floats) -> Floats:
-    """Internal forces (C, G, 4, K) at the Gauss points of cells, from coefficients (C, 4, 4, K)."""
+    """The internal forces (C, G, 4, K) at the Gauss points of cells, from coefficients (C, 4, 4,
+    K).
+    """
     s = lengths[:, None] * 0.5 * (1.0 + _GAUSS_POINTS)
     return np.asarray(np.einsum("cgp,cpqk->cgqk", s[..., None] ** np.arange(4), coefficients))
 
 
 def _products(lengths: Floats, soft: Floats, one: Floats, other: Floats) -> Floats:
-    """Work integrals (I, K) of forces (C, G, 4, I) on the strains by others (C, G, 4, K)."""
+    """The work (I, K) of forces (C, G, 4, I) on the strains by other forces (C, G, 4, K)."""
     scaled = np.einsum("c,g,cq,cgqi->cgqi", lengths / 2.0, _GAUSS_WEIGHTS, soft, one)
     return np.asarray(np.einsum("cgqi,cgqk->ik", scaled, other))
 
 
 def _march(lengths: Floats, q: Floats, start: Floats) -> Floats:
-    """Coefficients (C, 4, 4, K) of internal forces, cell after cell.
+    """The coefficients (C, 4, 4, K) of internal forces, cell after cell.
 
     q: loads per length (C, 3, 4, K); those across the pin are linear along it.
     start: V, M, N, T at the first cell's left end, (4, K).

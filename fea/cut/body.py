@@ -1,5 +1,7 @@
-"""The whole of a pin with cuts at one instant: its local solids in place, and the uncut pin turned
-about its axis between them.
+"""The whole body of a pin with cuts at one instant: its local solids and the uncut pin between
+them.
+
+The uncut pin is a section that is turned about its axis.
 """
 
 from __future__ import annotations
@@ -25,12 +27,13 @@ from fea.solid.boundary import QUARTER_TRIANGLES
 from geometry.mesh.clip import EIGHT_TETRAHEDRA, clipped, gaps, halved, upright
 from pinbase.arrays import Floats, Ints
 
-NEAR_TRIANGLES = 16, 400  # triangles nearest to a point, among which is the one that has it
-# Of an edge's length: the cylinder is shown by 50 or more flat sides, which lose 0.3 % of its area.
+NEAR_TRIANGLES = 16, 400  # numbers of nearest triangles searched for the one that has a point
+# Largest distance of an edge's middle from its chord, of the chord's length: a cylinder is shown by
+# 50 or more flat sides, which lose 0.3 % of its area.
 MAX_BENT_EDGE = 0.03
-MAX_EDGE = 0.15  # of the diameter: longer edges lose 2 % of a shear force
-# Times the section's triangles there: longer edges miss what the uncut pin has at a fillet, of
-# which the shear force was 30 % off.
+MAX_EDGE = 0.15  # largest edge, of the diameter: longer edges lose 2 % of a shear force
+# Largest edge, times the size of the section's triangles there: longer edges miss the stress of the
+# uncut pin at a fillet, where the shear force was 30 % off.
 MAX_COARSENESS = 8.0
 MAX_HALVINGS = 2
 # Barycentric coordinates of the nodes of a quadratic triangle.
@@ -54,14 +57,16 @@ class BodyPart:
 def body(
     fields: MeridianFields,
     pieces: Sequence[LocalFields],
-    held: ClampReaction | None,
+    first_clamp: ClampReaction | None,
     loads: PinLoads,
     instant: int,
 ) -> Picture:
     """The whole pin at an instant, without an envelope.
 
-    fields: of the uncut pin. loads: with the motions of its clamps.
-    held: as for fea.cut.shown.shown.
+    fields: of the uncut pin.
+    pieces: the local solids about the cuts.
+    first_clamp: stays in place, as for fea.cut.shown.shown.
+    loads: together with the motions of clamps that they cause.
     """
     amounts = pieces[0].coefficients(loads)[instant]
     now = [piece.at(amounts) for piece in pieces]
@@ -80,7 +85,7 @@ def body(
             uncut.displacement[:] += moved_by(piece, uncut.points)[..., 0]
         parts.append(uncut)
     points = np.concatenate([part.points for part in parts])
-    motion = support_motion(now, held, length)
+    motion = support_motion(now, first_clamp, length)
     moved = np.concatenate([part.displacement for part in parts]) - rigid(motion, points)[..., 0]
     (cell_type, cells), *more = _joined(parts).items()
     return Picture(
@@ -90,7 +95,9 @@ def body(
 
 
 def _joined(parts: Sequence[BodyPart]) -> dict[str, Ints]:
-    """The cells of all parts by their type."""
+    """The cells of all parts by their type, with the points of the parts numbered one after
+    another.
+    """
     out: dict[str, list[Ints]] = {}
     first = 0
     for part in parts:
@@ -108,7 +115,7 @@ def _between(
     nu: float,
     between: Sequence[tuple[float, float]],
 ) -> BodyPart:
-    """The uncut pin between its pieces, in intervals of z, turned about the axis."""
+    """The uncut pin between its pieces, in intervals of z, m, turned about the axis."""
     count = len(fields.displacement)
     triangles, to_nodes = np.zeros((0, 3), dtype=np.int64), [sp.eye(count, format="csr")]
     first = count
@@ -142,7 +149,10 @@ def _between(
 def _piece(
     fields: MeridianFields, piece: LocalFields, amounts: Floats, ends: tuple[float, float]
 ) -> BodyPart:
-    """A piece between two z, m, displaced by the loads and its own cuts."""
+    """A piece between two z, m, displaced by the loads and its own cuts.
+
+    amounts: (L,) of the unit loads.
+    """
     turn, inner = turn_of(piece.piece.angle), piece.inner.whole(amounts)
     points = inner.points @ turn.T + [0.0, 0.0, piece.piece.origin]
     changed = inner.changed @ rotation(turn).T
@@ -164,7 +174,7 @@ def _piece(
 
 
 def _cropped(part: BodyPart, ends: tuple[float, float]) -> BodyPart:
-    """The part between two z, m, of quadratic tetrahedra; those that are cut become linear ones."""
+    """The part between two z, m. Quadratic tetrahedra that the ends cut become linear ones."""
     cells, z = part.cells["tetra10"], part.points[:, 2]
     near = 1e-9 * float(np.ptp(z))
     low, high = ends[0] - near, ends[1] + near
@@ -191,7 +201,8 @@ def _uncut(
 ) -> tuple[Floats, Floats]:
     """The stress (P, 6), Pa, and displacement (P, 3), m, of the uncut pin under all unit loads.
 
-    points: (P, 3) m. amounts: (L,) of the units.
+    points: (P, 3) m.
+    amounts: (L,) of the unit loads.
     """
     x, y, z = points.T
     at, angle = np.stack([np.hypot(x, y), z], axis=1), np.arctan2(y, x)
@@ -210,10 +221,11 @@ def _uncut(
 
 
 def _interpolation(fields: MeridianFields, at: Floats) -> sp.csr_matrix:
-    """Matrix (P, D) that takes values at the points of the section to others (P, 2), quadratic on
-    its elements, of which four triangles in a row are the quarters.
+    """A matrix (P, D) that interpolates values at the points of the section quadratically to points
+    (P, 2).
 
-    Points outside of all by round-off have the value at the nearest triangle.
+    The four quarters of each element follow each other among the triangles. Points outside of all
+    triangles by round-off have the value of the nearest one.
     """
     corners = fields.points[fields.triangles]
     edges = np.linalg.inv((corners[:, 1:] - corners[:, :1]).swapaxes(1, 2))

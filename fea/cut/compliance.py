@@ -1,14 +1,15 @@
-"""By how much cuts make a pin more compliant under unit loads: the work of these on what cuts add.
+"""The compliance that cuts add to a pin: the work of unit loads on the displacements that cuts add.
 
-A load i moves the cut pin by u_i + d_i, u_i being the displacement of the pin without cuts and d_i
-the response of the local solid to the tractions h_i that relieve its cuts (fea.cut.local_model).
-Load j does on d_i the work that h_j does on u_i + d_i (Betti). So the added compliance is
+A load i moves the cut pin by u_i + d_i. Here u_i is the displacement of the pin without cuts, and
+d_i the response of the local solid to the tractions h_i that relieve its cuts
+(fea.cut.local_model). The work of load j on d_i is that of h_j on u_i + d_i (Betti). So the added
+compliance is
 
     h_j . u_i + h_j . d_i,
 
-the first part being twice the energy of what is cut away, the second that of the local solid. Both
-are symmetric and none is negative, and no mesh is compared with another one. The tractions of many
-loads are combinations of few, for which alone the solid is solved.
+of which the first term is twice the strain energy of the removed material, the second twice that of
+the local solid. Both are symmetric and not negative, and no mesh is compared with another one. The
+tractions of many loads are combinations of a few, and the solid is solved for these alone.
 """
 
 from __future__ import annotations
@@ -37,24 +38,24 @@ from geometry.mesh.cut_piece import Piece
 from geometry.mesh.section_mesh import meridian_mesh
 from pinbase.arrays import Floats
 
-# Of the largest nodal forces that relieve a cut of a unit load: those that are negligible. With a
-# tenth of it pressures about the flat and hole of the tests change by 0.03 % of the largest.
+# Negligible nodal forces that relieve a cut, of the largest under any unit load. With a tenth of
+# this, pressures about the flat and hole of the tests change by 0.03 % of the largest.
 RELIEF_TOLERANCE = 2e-3
-# Of the largest stress on the cuts of any combination of unit loads: that of combinations that are
-# negligible. With all of them the flexibility that is added to cells changes by less than 1e-3 of
-# the largest (test_seen_cuts.py).
+# Negligible stress on the cuts under a combination of unit loads, of the largest under any. If none
+# is neglected, the flexibility that is added to cells changes by less than 1e-3 of the largest
+# (test_seen_cuts.py).
 STRESS_TOLERANCE = 1e-4
-WORK_TOLERANCE = 1e-4  # of the response to relieving forces, of the largest (fea.cut.two_level)
+WORK_TOLERANCE = 1e-4  # of the iterative response to relieving forces (fea.cut.two_level)
 
 
 @dataclass
 class _Reliefs:
-    """The forces that relieve the cuts of loads, of one class, as sums of a few.
+    """The forces of one parity class that relieve the cuts under many loads, as sums of a few.
 
-    basis: (3 S, B) orthonormal, at the unknowns on which forces act (PieceFaces.loaded).
-    amounts: (B, K) of each for every load so far.
-    sizes: (B,) N, of the forces for which each was needed.
-    largest: of all forces so far, N.
+    basis: (3 S, B) orthonormal forces at the unknowns on which forces act (PieceFaces.loaded).
+    amounts: (B, K) of each basis vector, for every load so far.
+    sizes: (B,) N, of the forces for which each basis vector was needed.
+    largest: size of the largest forces so far, N.
     """
 
     basis: Floats
@@ -63,8 +64,10 @@ class _Reliefs:
     largest: float = 0.0
 
     def add(self, forces: Floats, shares: Floats) -> None:
-        """Add further loads, by the forces (3 S, C) of combinations of them, and the shares (C, L)
-        of these in each load.
+        """Add loads, as combinations of forces.
+
+        forces: (3 S, C) N, of C combinations.
+        shares: (C, L) of each combination in each load.
         """
         squares = np.einsum("cl,cd,dl->l", shares, forces.T @ forces, shares, optimize=True)
         self.largest = max(self.largest, math.sqrt(max(0.0, squares.max(initial=0.0))))
@@ -80,22 +83,28 @@ class _Reliefs:
 
 @dataclass(frozen=True)
 class AddedCompliance:
-    """The work that unit loads do on what cuts add to the displacement under each, by the few
-    forces that relieve the cuts.
+    """The work of unit loads on the displacements that cuts add, in terms of the few forces that
+    relieve the cuts.
 
-    units: the unit loads in all their phases, (K,).
-    amounts: of the relieving forces under each, (B, K).
-    on: their work on the displacement under each, (B, K) N m.
+    units: K unit loads, in all their phases.
+    amounts: (B, K) of the relieving forces under each unit load.
+    relief_work: (B, K) N m, the work of the relieving forces on the displacement under each unit
+    load.
     """
 
     units: tuple[Unit, ...]
     amounts: Floats
-    on: Floats
+    relief_work: Floats
 
     def work(self, loads: Floats) -> Floats:
-        """The work (U, U), N m, of sums of the unit loads (K, U)."""
-        work = (self.amounts @ loads).T @ (self.on @ loads)
-        return np.asarray(0.5 * (work + work.T))  # iteration and interpolation leave a little
+        """The work (U, U), N m, of U sums of the unit loads on the displacements that cuts add
+        under each.
+
+        loads: (K, U) amounts of the unit loads in the sums.
+        """
+        work = (self.amounts @ loads).T @ (self.relief_work @ loads)
+        # Iteration and interpolation leave a small asymmetry.
+        return np.asarray(0.5 * (work + work.T))
 
 
 def added_compliance(
@@ -108,16 +117,17 @@ def added_compliance(
     """The compliance that cuts add to a pin under unit loads.
 
     pin: without its cuts.
-    pieces: about its cuts. bands: loaded ones with cuts in them (fea.cut.region.loaded_bands).
-    loads: pressures on rings, those of one harmonic together.
+    pieces: the pieces about its cuts.
+    bands: ends of the loaded bands that have cuts (fea.cut.region.loaded_bands).
+    loads: pressures on rings, grouped by harmonic.
 
     Raises: MeshError, SolveError.
     """
     rings = tuple(dict.fromkeys(name for x in loads for load in x for name in load.surfaces))
     grades = [*(fine_about(piece, 0) for piece in pieces), *finer_at_rings(pin, rings)]
     section = HarmonicModel(pin, meridian_mesh(pin, FIRST_MESH_SIZE, (), grades), material, ())
-    first_mesh, most = LocalFineness.of(0), most_unknowns(None, 1)
-    meshes = [LocalMesh(x, material, (), first_mesh, (), bands, most) for x in pieces]
+    first_mesh, max_unknowns = LocalFineness.of(0), most_unknowns(None, 1)
+    meshes = [LocalMesh(x, material, (), first_mesh, (), bands, max_unknowns) for x in pieces]
     points = np.concatenate([mesh.section_points for mesh in meshes])
     fields = [section.solve(x, points) for x in loads]
     units = [tuple((load, p) for load in x for p in load.phases) for x in loads]
@@ -127,18 +137,18 @@ def added_compliance(
         here = slice(first, first + len(mesh.section_points))
         first = here.stop
         parts += _of_piece(mesh.model, here, list(zip(fields, units, strict=True)))
-    amounts, on = (np.concatenate(x) for x in zip(*parts, strict=True))
-    return AddedCompliance(every, amounts, on)
+    amounts, relief_work = (np.concatenate(x) for x in zip(*parts, strict=True))
+    return AddedCompliance(every, amounts, relief_work)
 
 
 def _of_piece(
     model: LocalModel, here: slice, parts: Sequence[tuple[MeridianFields, tuple[Unit, ...]]]
 ) -> list[tuple[Floats, Floats]]:
-    """The amounts (B, K) of the forces that relieve one piece's cuts, and their work (B, K) on the
-    displacement under each load, class by class.
+    """The amounts (B, K) of the forces that relieve the cuts of one piece, and their work (B, K), N
+    m, on the displacement under each load, for each parity class.
 
-    here: of its section_points among those at which the fields have stress.
-    parts: fields and unit loads, harmonic by harmonic.
+    here: the positions of the piece's section_points among the additional points of the fields.
+    parts: fields and unit loads of each harmonic.
     """
     classes = model.parities.classes
     none = np.zeros((len(model.faces.loaded), 0))
@@ -157,7 +167,7 @@ def _of_piece(
     for c, relief in enumerate(reliefs):
         within = np.zeros_like(relief.amounts)
         if relief.basis.shape[1]:
-            # By their sizes, so that what adds little is solved less accurately.
+            # Scaled by their sizes, so that forces that add little are solved less accurately.
             moved = model.displaced(relief.basis * relief.sizes, classes[c], WORK_TOLERANCE)
             within = relief.basis.T @ (moved / relief.sizes) @ relief.amounts
         out.append((relief.amounts, len(classes) * (on_uncut[c] + within)))
@@ -167,10 +177,11 @@ def _of_piece(
 def _on_cuts(
     model: LocalModel, here: slice, parts: Sequence[tuple[MeridianFields, tuple[Unit, ...]]]
 ) -> Iterator[tuple[Floats, Floats]]:
-    """The stress (G, P, 6, C) of the uncut pin at the images of a piece's points, on cuts alone,
-    under combinations of the unit loads of each harmonic, and the shares (C, L) of these in each.
+    """Yield, for each harmonic, the stress (G, P, 6, C), Pa, of the uncut pin under C combinations
+    of the unit loads, and the shares (C, L) of the combinations in each load.
 
-    Few combinations of pressures on rings reach a cut, the fewer the higher their harmonic.
+    The stress is at the images of a piece's points, and zero except on cuts. Few combinations of
+    pressures on rings reach a cut, the fewer the higher their harmonic.
     """
     x = model.faces.images
     angle = np.arctan2(x[..., 1], x[..., 0])
@@ -197,8 +208,8 @@ def _on_cuts(
 def _displaced(
     model: LocalModel, parts: Sequence[tuple[MeridianFields, tuple[Unit, ...]]]
 ) -> Iterator[Floats]:
-    """The displacement (G, N, 3, L) of the uncut pin at the images of the model's nodes on its
-    faces, along the axes of the piece.
+    """Yield, for each harmonic, the displacement (G, S, 3, L), m, of the uncut pin at the images of
+    the nodes on the piece's faces, along the axes of the piece.
     """
     nodes = model.space.nodes[model.faces.nodes_once]
     x = model.parities.images[:, None] * nodes

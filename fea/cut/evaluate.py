@@ -1,4 +1,4 @@
-"""Results of a cut pin: the harmonic model of the uncut one, and local solids about its cuts."""
+"""The maxima of a cut pin: the harmonic model of the uncut pin, and local solids about its cuts."""
 
 from __future__ import annotations
 
@@ -30,18 +30,18 @@ from geometry.mesh.sizing import Grade
 from pinbase.arrays import Floats
 from pinbase.memo import Memo
 
-CUT_SECTION_ELEMENT = 0.25  # element of the first section about a cut, of its radius
-# The scatter is that on holes under superposed tension, bending and torsion (benchmarks
+CUT_SECTION_ELEMENT = 0.25  # element size of the first section about a cut, of the piece's radius
+# The scatter was measured on holes under superposed tension, bending and torsion (benchmarks
 # cut-scatter), where 95 % of maxima are off by less.
 LOCAL_MESHES = MeshSequence(
     ratio=LOCAL_MESH_RATIO, growth=1.4, max_meshes=5, max_unknowns=600_000, scatter=0.05
 )
-# Times as far from each other cuts are in one local solid, if they disturb others.
+# Factor of the distance up to which cuts share a local solid, if local solids disturb each other.
 PIECE_SPACING_FACTOR = 2.0
-TRUNCATION_SHARE = 0.2  # of the tolerance: more of it makes local solids longer
-CUT_SECTION_GROWTH = 0.5  # of that with the distance
-# Of the stress: what a unit load brings is rounded up to a power of this, so that other amounts of
-# the loads are answered by the same solution; the least is this squared.
+TRUNCATION_SHARE = 0.2  # of the tolerance: a larger truncation error makes local solids longer
+CUT_SECTION_GROWTH = 0.5  # growth of the section's elements with the distance from a cut
+# The relative stress of a unit load is rounded up to a power of this, so that the same solution
+# serves other amounts of the loads. The least is this squared.
 UNIT_WEIGHT_STEP = 1.0 / 32.0
 
 
@@ -54,16 +54,16 @@ def cut_solution(
     distance: float = 0.1,
     finer: LocalFineness | None = None,
     reused: Sequence[LocalFields] = (),
-    most: float = math.inf,
+    max_unknowns: float = math.inf,
 ) -> CutSolution:
     """Solve all unit loads on mesh number `level` of the section and of the pieces.
 
     The arguments are those of fea.harmonic.section_solution.harmonic_solution, and:
-    bands: loaded bands with cuts in them (fea.cut.region.loaded_bands).
-    distance: as in fea.cut.inner_corners.
-    finer: fineness of the pieces, instead of that of the level.
+    bands: ends of the loaded bands that have cuts (fea.cut.region.loaded_bands).
+    distance: the excluded distance, as in fea.cut.inner_corners.
+    finer: fineness of the pieces; by default that of the level.
     reused: fields of pieces that need no finer mesh.
-    most: unknowns of a piece that are allowed.
+    max_unknowns: largest number of unknowns of a piece.
 
     Raises: MeshError, SolveError.
     """
@@ -73,7 +73,7 @@ def cut_solution(
     known = [next((k for k in reused if k.piece == piece), None) for piece in pieces]
     memo = problem.memo or Memo()
     meshes = [
-        LocalMesh(piece, material, clamps, finer, high, bands, most, memo)
+        LocalMesh(piece, material, clamps, finer, high, bands, max_unknowns, memo)
         for piece, reused_piece in zip(pieces, known, strict=True)
         if reused_piece is None
     ]
@@ -81,7 +81,7 @@ def cut_solution(
     supports = _supports(problem)
     moved = motions(supports)
     section = harmonic_solution(
-        replace(problem, besides=tuple(dict.fromkeys(load for load, _ in moved))),
+        replace(problem, extra_loads=tuple(dict.fromkeys(load for load, _ in moved))),
         level, LOCAL_MESH_RATIO, before,
         np.concatenate([NO_POINTS, *points]), [fine_about(piece, level) for piece in pieces],
     )  # fmt: skip
@@ -94,8 +94,8 @@ def cut_solution(
     local = tuple(reused_piece or next(new) for reused_piece in known)
     fields = _without(uncut, [zone(piece) for piece in pieces])
     section = replace(section, fields=fields, elsewhere=NO_POINTS)
-    held = next(iter(supports), None)
-    return CutSolution(section, local, uncut, reactions(supports, local), held)
+    first_clamp = next(iter(supports), None)
+    return CutSolution(section, local, uncut, reactions(supports, local), first_clamp)
 
 
 def _supports(problem: SectionProblem) -> list[ClampReaction]:
@@ -106,7 +106,7 @@ def _supports(problem: SectionProblem) -> list[ClampReaction]:
 
 
 def fine_about(piece: Piece, level: int) -> Grade:
-    """The fineness of the section about a piece's cuts."""
+    """The fineness of the section about a piece's cuts on mesh number `level`."""
     radius = piece.profile.largest_diameter / 2.0
     low, high = zone(piece)
     places = np.linspace(low, high, max(2, round((high - low) / radius)))
@@ -120,7 +120,7 @@ def fine_about(piece: Piece, level: int) -> Grade:
 
 
 def _units(cases: tuple[PinLoads, ...]) -> tuple[Unit, ...]:
-    """The unit loads in the phases in which they ever act; in all phases for a motion."""
+    """The unit loads in the phases in which they act in any case; in all phases for a motion."""
     units: dict[Unit, None] = {}
     for case in cases:
         for load, amounts in case.coefficients().items():
@@ -133,7 +133,8 @@ def _units(cases: tuple[PinLoads, ...]) -> tuple[Unit, ...]:
 
 
 def _weight(cases: tuple[PinLoads, ...], units: tuple[Unit, ...], fields: MeridianFields) -> Floats:
-    """The relative stress of each unit load, rounded up, the largest over all cases, (L,).
+    """The stress (L,) of each unit load, relative to the largest and rounded up; the largest over
+    all cases.
 
     It is 1 for the load with the largest stress, and for a load whose amount is not known here.
     """
@@ -158,10 +159,10 @@ def _without(fields: MeridianFields, zones: Sequence[tuple[float, float]]) -> Me
 
 @dataclass(frozen=True)
 class CutMesh:
-    """A mesh solved with local solids (fea.core.model.MeshSolution).
+    """One mesh solved with local solids (fea.core.model.MeshSolution).
 
-    reach: how far the solids extend beyond the cuts.
-    spacing: the distance up to which cuts share a solid (fea.cut.region.pieces).
+    reach: the length of the solids beyond the cuts, of the diameter.
+    spacing: factor of the distance up to which cuts share a solid (fea.cut.region.pieces).
     """
 
     problem: MeshProblem
@@ -176,11 +177,11 @@ class CutMesh:
 
     @property
     def solids(self) -> tuple[tuple[float, float], ...]:
-        """The ends of the solids about the cuts."""
+        """The ends of the solids about the cuts, z in m."""
         return tuple((p.piece.z0, p.piece.z1) for p in self.solution.pieces)
 
     def field(self, case: str) -> CutField:
-        """The stress as one case sees it."""
+        """The stress of one case, which is not read in the zones that its loads make singular."""
         return CutField(self.solution, self.problem.zones_of(case))
 
     def maximum(self, loads: PinLoads) -> MeshMaximum:
@@ -191,11 +192,13 @@ class CutMesh:
 
 
 class LocalSolids:
-    """The model of a body of revolution with cuts, solid about these (fea.core.model.Model).
+    """The model of a body of revolution with cuts, solid about the cuts (fea.core.model.Model).
 
     The pin of a problem is the one without cuts.
-    cut: the pin with them.
-    bands: loaded bands with cuts in them (fea.cut.region.loaded_bands).
+    cut: the pin with its cuts.
+    bands: ends of the loaded bands that have cuts (fea.cut.region.loaded_bands).
+    memo: a store of meshes and unit fields, shared with other problems.
+    first: solves the first mesh where contact pressures act.
     """
 
     name: Literal["harmonic+local"] = "harmonic+local"
@@ -212,10 +215,10 @@ class LocalSolids:
         self._memo, self._first = memo, first
 
     def solve(self, problem: MeshProblem, level: int, before: MeshBefore | None = None) -> CutMesh:
-        """Solve one mesh, as every model does.
+        """Solve all unit loads on mesh number `level` (fea.core.model.Model.solve).
 
-        Local solids grow where their ends or each other disturb the maximum on the mesh before;
-        those whose stress matters in no case are reused from it.
+        Local solids grow where their ends or each other disturb the maximum on the mesh before.
+        Those whose stress matters in no case are reused from it.
         """
         reach, spacing = PIECE_REACH, 1.0
         reused: tuple[LocalFields, ...] = ()
@@ -232,10 +235,11 @@ class LocalSolids:
                 reach *= REACH_FACTOR
         local = pieces(self._cut, problem.clamps, reach, self._bands, spacing)
         posed = section_problem(problem, self._memo, self._first)
-        most = most_unknowns(problem.memory, len({load for load, _ in _units(problem.cases)}) or 1)
+        count = len({load for load, _ in _units(problem.cases)}) or 1
         solution = cut_solution(
-            posed, local, level, results, self._bands, problem.distance, reused=reused, most=most
-        )
+            posed, local, level, results, self._bands, problem.distance, reused=reused,
+            max_unknowns=most_unknowns(problem.memory, count),
+        )  # fmt: skip
         return CutMesh(problem, solution, reach, spacing)
 
 
@@ -245,12 +249,15 @@ def cut_result(
     loads: PinLoads,
     case_zones: Collection[Zone] | None = None,
 ) -> MeshMaximum:
-    """The maximum outside the singularities, of the uncut pin away from its cuts and of the solids
-    about them.
+    """The maximum outside the singularities, of the uncut pin away from its cuts and of the local
+    solids.
+
+    singularities: those of the uncut pin in all cases.
+    case_zones: those that this case makes singular; all by default.
     """
-    held = solution.reactions.held(loads)
-    assert isinstance(held, PinLoads)
-    loads = held
+    all_loads = solution.reactions.with_motions(loads)
+    assert isinstance(all_loads, PinLoads)
+    loads = all_loads
     result = harmonic_result(solution.section, singularities, loads, case_zones)
     high: list[tuple[float, float, float]] = []
     highest, whole = None, result.maximum

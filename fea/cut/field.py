@@ -30,47 +30,52 @@ from pinbase.arrays import Floats, Mask
 class CutSolution:
     """The solution of a cut pin: the uncut pin, and the local solids about the cuts.
 
-    section: the uncut pin, where its stress counts; uncut: its fields also where it is cut.
-    reactions: motions of redundant clamps that go with loads.
-    held: its first support, if any.
+    section: the uncut pin, which is not read where it is cut.
+    uncut: its fields without that restriction.
+    reactions: the motions of redundant clamps that loads cause.
+    first_clamp: the first clamp, if any.
     """
 
     section: HarmonicSolution
     pieces: tuple[LocalFields, ...]
     uncut: MeridianFields
     reactions: ClampMotions
-    held: ClampReaction | None = None
+    first_clamp: ClampReaction | None = None
 
     @property
     def corners(self) -> tuple[Zone, ...]:
-        """Sharp inner corners of the cuts."""
+        """The sharp inner corners of the cuts, as zones."""
         return tuple(c.singularity for piece in self.pieces for c in piece.corners)
 
     def idle(self, results: Sequence[tuple[PinLoads, MeshMaximum]]) -> tuple[LocalFields, ...]:
-        """The pieces that need no finer mesh: in no case may their stress reach the largest one, or
-        vary as much as in another piece.
+        """The pieces that need no finer mesh.
+
+        These are pieces whose stress can in no case reach the maximum, nor, in a motion, vary as
+        much as in another piece.
         """
         out = set(range(len(self.pieces)))
         for loads, result in results:
-            held = self.reactions.held(loads)
+            all_loads = self.reactions.with_motions(loads)
             swings = [
-                piece.swing(held) * (1.0 + MAX_REFINED_RISE / piece.finer**2)
+                piece.swing(all_loads) * (1.0 + MAX_REFINED_RISE / piece.finer**2)
                 for piece in self.pieces
             ]
             for k, piece in enumerate(self.pieces):
-                most = piece.may_reach(held, result.maximum)
+                most = piece.may_reach(all_loads, result.maximum)
                 if most or (len(loads) > 1 and swings[k] >= max(swings) / (1.0 + MAX_REFINED_RISE)):
                     out.discard(k)
         return tuple(self.pieces[k] for k in sorted(out))
 
     @cached_property
     def shown(self) -> ShownCut:
-        """The pieces in place and the uncut pin between them, held as its first clamp is."""
-        return shown(self.section.fields, self.pieces, self.held)
+        """The surface of the pieces and of the uncut pin between them; the first clamp does not
+        move.
+        """
+        return shown(self.section.fields, self.pieces, self.first_clamp)
 
     @cached_property
     def unit_surface(self) -> UnitSurface:
-        """The whole surface for views."""
+        """The unit fields of the whole surface, for views."""
         cut = self.shown
         return UnitSurface.in_space(cut.points, cut.triangles, cut.stress, cut.displacement)
 
@@ -83,15 +88,18 @@ class CutField:
         self.section = HarmonicField(solution.section, singularities)
 
     def maxima(self, loads: Loads, least: float = 0.0) -> Floats:
-        """Largest von Mises stress (T,) Pa at every instant outside the singularities."""
-        loads = self.solution.reactions.held(loads)
+        """The largest von Mises stress (T,), Pa, at every instant outside the singularities.
+
+        least: Pa; where the stress does not exceed it, any value up to it may be returned.
+        """
+        loads = self.solution.reactions.with_motions(loads)
         local = np.max([piece.largest(loads)[0] for piece in self.solution.pieces], axis=0)
         uncut = self.section.maxima(loads, max(least, float(local.min())))
         return np.asarray(np.maximum(local, uncut))
 
     def largest(self, loads: Loads) -> tuple[float, int]:
-        """The largest of these (Pa), and the number of its instant."""
-        loads = self.solution.reactions.held(loads)
+        """The largest von Mises stress over all instants, Pa, and the number of its instant."""
+        loads = self.solution.reactions.with_motions(loads)
         value, instant = self.section.largest(loads)
         for piece in self.solution.pieces:
             here, _ = piece.largest(loads)
@@ -100,8 +108,10 @@ class CutField:
         return value, instant
 
     def beneath(self, loads: PinLoads) -> Beneath:
-        """The largest stress beneath contact (fea.harmonic.beneath): in the pin without cuts, also
-        where it is cut, and at the surface about the cuts.
+        """The largest von Mises stress beneath contact (fea.harmonic.beneath).
+
+        It is searched in the pin without cuts, also where it is cut, and on the surface about the
+        cuts.
         """
         assert loads.pressed is not None
         deepest = beneath(self.solution.uncut, loads, self.singularities)
@@ -113,7 +123,7 @@ class CutField:
         return deepest
 
     def depths(self, loads: PinLoads, instant: int, least: float) -> Steps:
-        """The distances from pressed cells at which stress is reached at an instant
+        """The distances from pressed cells that stresses reach at an instant
         (fea.harmonic.beneath).
         """
         pressed = loads.pressed
@@ -147,16 +157,18 @@ class CutField:
 
     def coefficients(self, loads: Loads) -> Floats:
         """The amount of each unit load of the surface at each instant, (T, L)."""
-        return self.solution.pieces[0].coefficients(self.solution.reactions.held(loads))
+        return self.solution.pieces[0].coefficients(self.solution.reactions.with_motions(loads))
 
     @property
     def read(self) -> Mask:
-        """The points (P,) of the surface where the maximum is looked for, outside of zones."""
+        """A mask (P,) of the points of the surface that are searched for the maximum, outside of
+        zones.
+        """
         section = self.section.fields.outside(self.singularities)
         return self.solution.shown.read_in(section)
 
     def points(self, loads: PinLoads) -> StressPoints:
-        """Stress at points of the surface, for fatigue."""
+        """The stress at points of the surface, for fatigue."""
         surface, amounts = self.solution.shown, self.coefficients(loads)
         if len(amounts) < amounts.shape[1]:  # the stress at the instants takes less memory
             surface = replace(surface, stress=surface.stress @ amounts.T)
@@ -170,6 +182,6 @@ class CutField:
 
     def volume(self, loads: PinLoads, instant: int) -> Picture:
         """The whole body at one instant."""
-        solution, held = self.solution, self.solution.reactions.held(loads)
-        assert isinstance(held, PinLoads)
-        return body(solution.uncut, solution.pieces, solution.held, held, instant)
+        solution, all_loads = self.solution, self.solution.reactions.with_motions(loads)
+        assert isinstance(all_loads, PinLoads)
+        return body(solution.uncut, solution.pieces, solution.first_clamp, all_loads, instant)

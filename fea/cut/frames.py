@@ -1,4 +1,4 @@
-"""Changes of frame between a pin and a piece of it about its cuts."""
+"""Changes of frame between a pin and a piece about its cuts."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from pinbase.arrays import Floats
 
 
 def in_pin(moved: Floats, piece: Piece) -> Floats:
-    """Rigid motions (2, 6, L) about the pin's origin, from those in the frame of a piece.
+    """The rigid-body motions (2, 6, L) about the pin's origin, from those in the frame of a piece.
 
-    moved: (2, 6, L) shifts (m) and turns (rad) of both ends of the piece.
+    moved: (2, 6, L) translations (m) and rotations (rad) of both ends of the piece.
     """
     turn = turn_of(piece.angle)
     shift, spin = (np.einsum("ab,ebl->eal", turn, x) for x in np.split(moved, 2, axis=1))
@@ -35,9 +35,9 @@ def turn_of(angle: float | Floats) -> Floats:
 
 
 def on_skin(fields: MeridianFields, r: Floats, z: Floats) -> Floats:
-    """Stress amplitudes (.., 6, K) at points (r, z), m, of the outline.
+    """The stress amplitudes (.., 6, K), Pa, at points (r, z), m, of the outline.
 
-    They are interpolated between the two nearest of the fields' points on it.
+    They are interpolated between the two nearest of the fields' points on the outline.
     """
     skin = fields.points[: fields.skin]
     at = np.stack([r, z], axis=-1)
@@ -59,10 +59,10 @@ def on_skin(fields: MeridianFields, r: Floats, z: Floats) -> Floats:
 
 
 def cartesian(amplitude: Floats, angle: Floats, turned: float, units: tuple[Unit, ...]) -> Floats:
-    """Stress (.., 6, L) along the axes of a frame that is turned about z by an angle (rad).
+    """The stress (.., 6, L), Pa, along the axes of a frame that is turned about z.
 
-    amplitude: (.., 6, L) along r, theta and z.
-    angle: (..) rad of the points in that frame.
+    amplitude: (.., 6, L) Pa, along r, theta and z.
+    angle: (..) rad, of the points in that frame.
     turned: rad, of the frame.
     """
     n, phase = (np.array(x) for x in ([load.n for load, _ in units], [p for _, p in units]))

@@ -1,8 +1,8 @@
 """The points at which the surface of a pin with cuts is read where lugs press on it.
 
-The rules are those of a pin without cuts (fea.harmonic.free_surface): free arcs, and the middles of
-rings without the local stress of the pressure. The walls of cuts are free everywhere; where they
-meet a band, the side of the cut is read.
+The rules are those of a pin without cuts (fea.harmonic.free_surface): free arcs are read, and the
+middles of rings without the local stress of the pressure. The walls of cuts are free everywhere.
+Where a wall meets a band, the stress on the side of the cut is read.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ from fea.core.voigt import TENSOR_TO_VOIGT, VOIGT_TO_TENSOR
 from fea.harmonic.beneath import arcs_apart, arcs_within
 from pinbase.arrays import Floats, Ints, Mask
 
-ON_CYLINDER_TOLERANCE = 1e-4  # of a radius: nearer to a ring's cylinder an outline point is on it
-INSTANT_BATCH = 64  # instants at once: limits memory
+ON_CYLINDER_TOLERANCE = 1e-4  # of a radius: outline points this near to a ring's cylinder are on it
+INSTANT_BATCH = 64  # instants evaluated together: limits memory
 RING_SIDE_OFFSET = 1e-6  # of a ring's length: separates the sides where two rings meet
 
 
 @dataclass(frozen=True)
 class FreePoints:
-    """Points (P,) on a pin with rings, and what shuts them.
+    """Points (P,) on a pin with rings, and the pressed arcs on which each is not read ("shut").
 
-    arc: (P,) the arc about the axis on which each is.
-    near: (P, 3 R) which rings shut it (fea.core.pressed).
-    amid: (P,) the ring in whose middle it is, -1 in none.
+    arc: (P,) the arc about the axis on which each point lies.
+    near: (P, 3 R) the rings that shut it (fea.core.pressed.Rings.near).
+    amid: (P,) the ring in whose middle it lies, -1 for none.
     """
 
     arc: Ints
@@ -38,7 +38,10 @@ class FreePoints:
 
     @classmethod
     def of(cls, points: Floats, outline: Mask, rings: Rings) -> FreePoints:
-        """The free points among points (P, 3), m. outline: (P,) those on the uncut outline."""
+        """The data of points (P, 3), m.
+
+        outline: (P,) the points on the outline of the pin without cuts.
+        """
         r, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
         off = np.abs(r[:, None] - rings.radius)
         ring = off.argmin(axis=1)
@@ -52,13 +55,15 @@ class FreePoints:
         return cls(arc_of(points), near, amid)
 
     def some(self, rows: Ints, plain: int) -> FreePoints:
-        """A selection of points (Q,), the first `plain` as they are, the others relieved."""
+        """The data of a selection of points (Q,): the first `plain` are read as they are, the
+        others without the local stress of the pressure.
+        """
         amid, near = self.amid[rows], self.near[rows]
         amid[:plain], near[plain:] = -1, False
         return FreePoints(self.arc[rows], near, amid)
 
     def read(self, pressed: PressedArcs, instant: int) -> Mask:
-        """Mask (P,) of the points that are read at an instant."""
+        """A mask (P,) of the points that are read at an instant."""
         out = np.ones(len(self.arc), dtype=bool)
         near, amid = np.flatnonzero(self.near.any(axis=1)), np.flatnonzero(self.amid >= 0)
         shut, edges = pressed.shut(instant), pressed.widened(pressed.at_edges(instant))
@@ -74,11 +79,13 @@ def arc_of(points: Floats) -> Ints:
 
 
 def relieved(stress: Floats, points: Floats, nu: float) -> Floats:
-    """Stress (P, 6, L) at points of the outline without that of the pressure on it.
+    """The stress (P, 6, L), Pa, at points of the outline without the local stress of the pressure
+    on it.
 
-    stress: (P, 6, L) along x, y and z.
+    The formula is that of fea.harmonic.free_surface.
+    stress: (P, 6, L) Pa, along x, y and z.
     points: (P, 3) m.
-    nu: Poisson's ratio. The formula is that of fea.harmonic.free_surface.
+    nu: Poisson's ratio.
     """
     outward = np.zeros((len(points), 3))
     outward[:, :2] = points[:, :2] / np.hypot(points[:, 0], points[:, 1])[:, None]
@@ -91,10 +98,12 @@ def relieved(stress: Floats, points: Floats, nu: float) -> Floats:
 
 @dataclass(frozen=True)
 class AwayFromPressed:
-    """Points (P,) beneath contact: farther than BENEATH_DISTANCE diameters from what is pressed.
+    """Points (P,) of which those farther than BENEATH_DISTANCE diameters from all pressed cells are
+    read.
 
-    within: (P, R) number of arcs from a pressed arc of a ring up to which a point is nearer than
-    that, -1 where it never is.
+    arc: (P,) the arc about the axis on which each point lies.
+    within: (P, R) the largest number of arcs between a point and a pressed arc of a ring that keeps
+    both within that distance, -1 where the ring is farther at any angle.
     """
 
     arc: Ints
@@ -102,24 +111,25 @@ class AwayFromPressed:
 
     @classmethod
     def of(cls, points: Floats, rings: Rings) -> AwayFromPressed:
-        """The same of points (P, 3), m."""
+        """The data of points (P, 3), m."""
         section = np.stack([np.hypot(points[:, 0], points[:, 1]), points[:, 2]], axis=1)
         return cls(
             arc_of(points), arcs_within(section, rings, 2.0 * BENEATH_DISTANCE * rings.radius)
         )
 
     def read(self, pressed: PressedArcs, instant: int) -> Mask:
-        """Mask (P,) of the points that are away from all pressed arcs at an instant."""
+        """A mask (P,) of the points that are away from all pressed arcs at an instant."""
         apart = arcs_apart(pressed.on[instant])[:, self.arc].T
         return np.asarray((apart > self.within).all(axis=1))
 
 
 @dataclass(frozen=True)
 class CutReading:
-    """Points (Q,) among which the maximum is looked for, by their rows.
+    """The points (Q,) among which the maximum is searched.
 
-    squares: von Mises squared (Q, T), Pa^2, from amounts of unit loads (T, L).
-    free: where lugs leave the points free to be read, everywhere by default.
+    rows: (Q,) their numbers.
+    squares: gives von Mises squared (Q, T), Pa^2, from amounts of unit loads (T, L).
+    free: where lugs leave the points free to be read; everywhere by default.
     """
 
     rows: Ints
@@ -127,9 +137,9 @@ class CutReading:
     free: FreePoints | AwayFromPressed | None = None
 
     def stress(self, c: Floats, pressed: PressedArcs | None, first: int = 0) -> Floats:
-        """Von Mises stress (Q, T), Pa, of amounts c (T, L); 0 where it is not read.
+        """The von Mises stress (Q, T), Pa, under amounts c (T, L); 0 where it is not read.
 
-        first: number of the first of these instants.
+        first: number of the first of the T instants.
         """
         stress = np.sqrt(np.maximum(self.squares(c), 0.0))
         if self.free is not None and pressed is not None:
@@ -138,7 +148,9 @@ class CutReading:
         return stress
 
     def largest(self, c: Floats, pressed: PressedArcs | None = None) -> tuple[Floats, Ints]:
-        """The largest von Mises stress (T,), Pa, at every instant, and its row (T,)."""
+        """The largest von Mises stress (T,), Pa, at every instant, and the number (T,) of its
+        point.
+        """
         value, point = np.zeros(len(c)), np.zeros(len(c), dtype=np.int64)
         for k in range(0, len(c) if len(self.rows) else 0, INSTANT_BATCH):
             here = self.stress(c[k : k + INSTANT_BATCH], pressed, k)
@@ -148,7 +160,7 @@ class CutReading:
 
 
 def distance(points: Floats, pressed: PressedArcs, instant: int) -> Floats:
-    """Distances (P,), m, of points (P, 3) from the nearest pressed cell at an instant."""
+    """The distances (P,), m, of points (P, 3) from the nearest pressed cell at an instant."""
     rings, on = pressed.rings, pressed.on[instant]
     r, z = np.hypot(points[:, 0], points[:, 1])[:, None], points[:, 2:]
     angle = 2.0 * np.pi / ARC_COUNT * np.maximum(arcs_apart(on)[:, arc_of(points)].T - 0.5, 0.0)

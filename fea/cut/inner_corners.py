@@ -1,4 +1,4 @@
-"""Sharp inner corners of cuts, where stress has no bound, found on the mesh of a piece."""
+"""The sharp inner corners of cuts, where stress is unbounded, found on the mesh of a piece."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from fea.solid.boundary import MIN_SMOOTH_COSINE
 from fea.solid.sharp_edges import turned_edges
 from pinbase.arrays import Floats, Ints
 
-# Least turn of an inner corner: less is the mesh of a curved wall; chosen by judgement.
+# Least change of direction at an inner corner: less belongs to the facets of a curved wall. Chosen
+# by judgement.
 MIN_CORNER_TURN = math.radians(15.0)
 RADIUS_ADVICE = {
     "flat": "a radius of the flat would make it finite",
@@ -31,7 +32,7 @@ RADIUS_ADVICE = {
 class InnerCorner:
     """An inner corner as a singularity.
 
-    distance: (P,) of points from it, over its radius.
+    distance: (P,) distance of points from the corner, over the radius of its zone.
     """
 
     singularity: Zone
@@ -41,8 +42,8 @@ class InnerCorner:
 def inner_corners(model: LocalModel, x: Floats, distance: float) -> tuple[InnerCorner, ...]:
     """The inner corners of a piece.
 
-    x: (P, 3) m, points of the meshed part of it.
-    distance: of a cut's size (at most the pin's diameter), within which stress is not read.
+    x: (P, 3) m, points of the meshed part of the piece.
+    distance: within which stress is not read, of a cut's size (at most the pin's diameter).
     """
     out = []
     for between, (nodes, angle) in sorted(_lines(model).items()):
@@ -68,9 +69,9 @@ def inner_corners(model: LocalModel, x: Floats, distance: float) -> tuple[InnerC
 
 
 def _lines(model: LocalModel) -> dict[tuple[str, str], tuple[Ints, float]]:
-    """Nodes along inner corners and the mean angle of the material there, rad.
+    """The nodes along inner corners and the mean angle, rad, of the material there.
 
-    They are sorted by the names of the two faces that meet; the angle of a cone's tip is nan.
+    The keys are the names of the two faces that meet. The angle of a cone's tip is NaN.
     """
     names = np.full(len(model.faces.surface.facets), -1)
     boundaries = list(model.space.mesh.boundaries)
@@ -103,7 +104,9 @@ def _lines(model: LocalModel) -> dict[tuple[str, str], tuple[Ints, float]]:
 
 
 def _tips(model: LocalModel) -> dict[tuple[str, str], tuple[Ints, float]]:
-    """Nodes at the tips of cones: where normals of one smooth face diverge, away from its edges."""
+    """The nodes at the tips of cones: where normals of one smooth face diverge, away from its
+    edges.
+    """
     out = {}
     for reading in model.faces.readings:
         if not reading.face.name.endswith(" bottom"):

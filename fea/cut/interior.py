@@ -1,4 +1,4 @@
-"""The inside of a piece about a pin's cuts at one instant, on the tetrahedra that were solved."""
+"""The interior of a piece about a pin's cuts at one instant, on the tetrahedra that were solved."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from fea.solid.stress_recovery import nodal_stress
 from pinbase.arrays import Floats, Ints
 
 MIRROR_TOLERANCE = 1e-9  # of the size: nodes this near a mirror plane are on it
-MIRRORED_TETRAHEDRON = [1, 0, 2, 3, 4, 6, 5, 8, 7, 9]  # order of its nodes that is right-handed
+# The order of nodes that makes a mirrored tetrahedron right-handed again.
+MIRRORED_TETRAHEDRON = [1, 0, 2, 3, 4, 6, 5, 8, 7, 9]
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,7 @@ class InnerFields:
     """The displacements that the cuts add at all nodes of a piece's mesh, under L unit loads.
 
     mesh: on one side of the mirror planes, in the frame of the piece.
-    displaced: of the classes that act, by their number, with the precision of files.
+    displaced: for each parity class that acts, by its number, in single precision.
     """
 
     mesh: MeshTet1
@@ -36,12 +37,12 @@ class InnerFields:
         """The piece at all images under amounts (L,) of the unit loads."""
         space, p = Discretisation(self.mesh), self.parities
         nodes, count = space.nodes, len(p.images)
-        u = np.zeros((len(nodes), 3, count))  # under the load that each image sees
+        u = np.zeros((len(nodes), 3, count))  # for each image, before mirroring
         for c, displaced in self.displaced.items():
             moved = displaced.few @ (displaced.amounts @ amounts)
             u += moved.reshape(-1, 3, 1) * p.characters[c]
         stress = nodal_stress(space, self.material, u) * p.stress_signs.T
-        # Nodes on mirror planes are one with their images.
+        # Nodes on mirror planes coincide with their images.
         numbers = self._numbers(nodes)
         kept, ids = np.unique(numbers, return_inverse=True)
         ids = ids.reshape(count, len(nodes))
@@ -57,7 +58,7 @@ class InnerFields:
         )
 
     def _numbers(self, nodes: Floats) -> Ints:
-        """Numbers (G N,) of the nodes at all images, the same for those that are in one place."""
+        """The numbers (G N,) of the nodes at all images; nodes that coincide have one number."""
         mirrors, count = self.parities.mirrors, len(nodes)
         image = np.arange(len(self.parities.images))[:, None].repeat(count, axis=1)
         near = MIRROR_TOLERANCE * np.abs(nodes).max()
@@ -72,8 +73,10 @@ class InnerFields:
 class InnerBody:
     """A piece at one instant, in its frame.
 
-    points: (N, 3) m. cells: (M, 10), in VTK's order of "tetra10".
-    displaced: (N, 3) m, what the cuts add. changed: (N, 6) Pa, the same of the stress.
+    points: (N, 3) m.
+    cells: (M, 10), in VTK's order of "tetra10".
+    displaced: (N, 3) m, the displacement that the cuts add.
+    changed: (N, 6) Pa, the stress that the cuts add.
     """
 
     points: Floats
@@ -83,7 +86,7 @@ class InnerBody:
 
 
 def _mean(ids: Ints, values: Floats) -> Floats:
-    """The mean (N, k) of the values (J, k) with the same number."""
+    """The mean (N, k) of the values (J, k) that have the same number."""
     count = np.bincount(ids)
     sums = [np.bincount(ids, column) for column in values.T]
     return np.stack(sums, axis=1) / count[:, None]

@@ -1,15 +1,15 @@
-"""The piece of a pin about its cuts as a solid, loaded by the tractions that its cuts relieve.
+"""The piece of a pin about its cuts as a solid, loaded by the tractions that relieve its cuts.
 
-The displacement of the cut pin is that of the uncut one plus a difference: the response of the cut
-pin to the tractions -s . n on the surfaces of the cuts, s being the uncut pin's stress there, n the
-outward normal. These tractions are in equilibrium where no load acts on what is cut away, so by
-Saint-Venant's principle the difference is a rigid motion a diameter or so away: the piece about the
-cuts is enough, free at its ends. All loads of the pin act on the uncut one alone. The change of
-compliance by the cuts moves the ends of the piece rigidly, which is no stress if supports are
-statically determinate.
+The displacement of the cut pin is that of the uncut one plus a difference. The difference is the
+response of the cut pin to the tractions -s . n on the surfaces of the cuts, s being the stress of
+the uncut pin there and n the outward normal. These tractions are in equilibrium if no load acts on
+the removed material. So, by Saint-Venant's principle, the difference is a rigid-body motion at a
+distance of about a diameter: it is enough to solve the piece about the cuts, free at its ends. All
+loads of the pin act on the uncut pin alone. The compliance that the cuts add moves the ends of the
+piece rigidly, which causes no stress if supports are statically determinate.
 
 If the piece has mirror planes, the difference is split by parity (fea.cut.parity): only one side of
-the planes is meshed, and the system is factored once for each class that acts.
+the planes is meshed, and the system is factored once for each parity class that acts.
 
 `LocalModel.solve` takes the uncut stress and goes through these steps for each class: nodal forces
 of the relieving tractions, and lost loads moved to the rest of their bands (fea.cut.relief);
@@ -40,7 +40,7 @@ from geometry.mesh.cut_piece import Piece
 from geometry.mesh.solid_mesh import SolidMesh
 from pinbase.arrays import Floats, Mask
 
-# Chosen by judgement, as a part of the pin's largest stress: stress below it is not resolved.
+# Stress below this part of the pin's largest stress is not resolved; chosen by judgement.
 MIN_READ_STRESS = 0.02
 # Relative scatter of stress on rounded corners on the first mesh, measured on flats and keyways
 # (`python -m benchmarks cut-scatter`).
@@ -53,11 +53,12 @@ class Read:
 
     stress: (P, 6, L) Pa, of the cut pin.
     difference: (P, 6, L) Pa, from the uncut pin.
-    cut: (P,) which points are on a cut.
-    displaced: (P, 3, L) m, displacements by the cuts, up to a rigid motion of the whole.
-    moved: (2, 6, L) motions of the piece's lower and upper ends by the cuts, up to the same motion,
-    as a shift (m) and a turn (rad) about the origin of its frame.
-    inner: the displacements by the cuts at all nodes of its mesh.
+    cut: (P,) the points on a cut.
+    displaced: (P, 3, L) m, displacements caused by the cuts, up to a rigid-body motion of the
+    whole.
+    moved: (2, 6, L) motions of the lower and upper end of the piece caused by the cuts, up to the
+    same motion: a translation (m) and a rotation (rad) about the origin of the piece's frame.
+    inner: displacements caused by the cuts at all nodes of the mesh.
     """
 
     points: Floats
@@ -73,7 +74,7 @@ class LocalModel:
     """A piece on one mesh, `finer` than the first one.
 
     clamps: names of its clamped surfaces.
-    bearings: loaded bands with cuts in them.
+    bearings: the loaded bands that have cuts.
     """
 
     def __init__(
@@ -94,7 +95,7 @@ class LocalModel:
 
     @cached_property
     def scatter(self) -> Floats:
-        """Relative scatter (P,) of stress with the positions of nodes, of rounded corners."""
+        """The relative scatter (P,) of stress on rounded corners with the positions of nodes."""
         rounded = [r.face.name.endswith(("fillet", "mouth")) for r in self.faces.readings]
         rows = np.repeat(rounded, [len(r.nodes) for r in self.faces.readings])
         return np.asarray(ROUNDED_CORNER_SCATTER * rows / self.finer**2)
@@ -106,19 +107,19 @@ class LocalModel:
         shears: Sequence[bool] = (),
         weight: Floats | float = 1.0,
     ) -> Read:
-        """The solution under what the cuts relieve of the uncut pin's stress.
+        """The solution under the tractions that relieve the cuts of the uncut pin's stress.
 
-        uncut: (G, P, 6, L) Pa, the uncut pin's stress at all images, along x, y and z.
-        most: (L,) Pa, its largest anywhere in the pin.
-        shears: (L,) which loads shear the bands they act on, all by default.
-        weight: (L,) how accurate each load must be.
+        uncut: (G, P, 6, L) Pa, the stress of the uncut pin at all images, along x, y and z.
+        most: (L,) Pa, the largest stress component anywhere in the uncut pin.
+        shears: whether each load shears the band on which it acts; loads without an entry do.
+        weight: (L,) the relative accuracy that each load needs.
 
         Raises: SolveError.
         """
         by_kind = np.ones(uncut.shape[3], dtype=bool)
         by_kind[: len(shears)] = shears
-        # Step 1: split by parity, and scale the loads so that each weighs by its accuracy. (These
-        # arrays are the largest of all, so that there are as few of them as can be.)
+        # Step 1: split by parity, and scale the loads so that each counts by its weight. (These
+        # arrays are the largest of all, so there are as few of them as possible.)
         by_class = self.parities.split(uncut)
         largest = np.maximum(
             np.abs(by_class[:, self.faces.cut]).max(axis=(0, 1, 2)), MIN_READ_STRESS * most
@@ -153,10 +154,11 @@ class LocalModel:
         return Read(self.faces.images.reshape(-1, 3), total, changed, cut, displaced, moved, inner)
 
     def reliefs(self, uncut: Floats) -> list[Floats]:
-        """The balanced nodal forces (3 S, L) that relieve the cuts of a stress of the uncut pin, by
-        class; none are zero.
+        """The balanced nodal forces (3 S, L), N, that relieve the cuts of a stress of the uncut
+        pin, for each parity class.
 
-        uncut: as for `solve`, under loads that do not shear the bands they act on.
+        Those of classes that do not act are zero.
+        uncut: as for `solve`, under loads that do not shear the bands on which they act.
 
         Raises: SolveError.
         """
@@ -174,15 +176,16 @@ class LocalModel:
         return out
 
     def displaced(self, forces: Floats, parity: tuple[int, ...], tolerance: float) -> Floats:
-        """Displacements (3 S, L) of a class under balanced nodal forces (3 S, L).
+        """The displacements (3 S, L), m, of a parity class under balanced nodal forces (3 S, L), N.
 
-        tolerance: of iterations, as of fea.cut.two_level.
+        tolerance: of the iterations (fea.cut.two_level).
         """
         u = self.system.displace(self.faces.loaded, forces, parity, nodal_size(forces), tolerance)
         return u.at(self.faces.loaded)
 
     def _moved(self, u: Floats, parity: tuple[int, ...]) -> Floats:
-        """The rigid motions (2, 6, L) of both ends by displacements (3 N, L) of a class.
+        """The rigid-body motions (2, 6, L) of both ends under displacements (3 N, L) of a parity
+        class.
 
         Mirror planes leave only those motions that belong to the class.
         """
@@ -198,15 +201,20 @@ class LocalModel:
             modes = rigid_modes(self.space.nodes)[rows][:, allowed]
             out[e, allowed] = np.linalg.lstsq(modes, u[rows])[0]
         out[:, 3:] /= np.abs(self.space.nodes).max()
-        if "z" in across:  # u(M x) = parity M u(x): shifts but that along z, and the spin, as u
+        # The lower end is the mirror image of the upper. By u(M x) = parity M u(x), translations
+        # along x and y and the rotation about z have the sign of the parity, the others the
+        # opposite sign.
+        if "z" in across:
             sign = across["z"] * np.array([1.0, 1.0, -1.0, -1.0, -1.0, 1.0])
             out[0] = sign[:, None] * out[1]
         return out
 
     def _stress(self, u: Combined, uncut: Floats, spread: Floats, c: int) -> Floats:
-        """The stress (P, 6, L) that displacements add, along faces' directions.
+        """The stress (P, 6, L), Pa, that displacements add, along the directions of the faces.
 
-        spread: (P, 3, L) Pa, tractions that act besides.
+        u: displacements of the class.
+        uncut: (P, 6, L) Pa, the part of the uncut pin's stress in the class.
+        spread: (P, 3, L) Pa, additional tractions on the bands.
         c: number of the class.
         """
         E, nu, mu = self.material.youngs_modulus, self.material.poisson_ratio, self.material.lame[1]
@@ -216,7 +224,7 @@ class LocalModel:
             here = slice(first, first + len(r.nodes))
             first += len(r.nodes)
             e = r.strain(few, self.parities, character) @ u.amounts
-            # Components along the normal are the known tractions; on cuts minus those of the uncut
+            # Components along the normal are the known tractions: on cuts, minus those of the uncut
             # stress.
             out[here, [4, 3, 2]] = np.einsum("pia,pal->pil", r.directions, spread[here])
             normal = out[here, 2]

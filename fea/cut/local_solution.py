@@ -1,4 +1,4 @@
-"""Unit fields of a piece about a pin's cuts on one mesh, made from those of the uncut pin."""
+"""The unit fields of a piece about a pin's cuts on one mesh, made from those of the uncut pin."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ from pinbase.records import digest
 # Refinement, chosen by judgement; `python -m benchmarks cut-pins` checks the errors it leads to.
 LOCAL_MESH_RATIO = 2.0**0.75  # of element sizes from one mesh to the next, where stress is high
 CUT_LOW_STRESS_POWER = 0.4  # power of that ratio elsewhere
-END_NODE_TOLERANCE = 1e-6  # of a piece's length: nodes on its end
+END_NODE_TOLERANCE = 1e-6  # of a piece's length: nodes this near to its end are on it
 
 
 @dataclass(frozen=True)
 class LocalFineness:
     """The fineness of a mesh relative to the first one: along the edges of cuts, and at spots.
 
-    Spots are places where stress is high.
+    Spots are places where stress was high on the mesh before.
     """
 
     edges: float
@@ -55,9 +55,9 @@ class LocalFineness:
 class UncutPin:
     """The solved pin without cuts, from which the fields of pieces are made.
 
-    units: loads in the phases in which a piece is solved under them.
-    distance: as for inner_corners.
-    weight: of the units, as for LocalModel.solve.
+    units: the unit loads, each in a phase, under which pieces are solved.
+    distance: the excluded distance, as for inner_corners.
+    weight: of the unit loads, as for LocalModel.solve.
     """
 
     fields: MeridianFields
@@ -68,7 +68,7 @@ class UncutPin:
 
     @property
     def content(self) -> object:
-        """All on which the fields of a piece depend."""
+        """All data on which the fields of a piece depend."""
         of = self.fields
         solved = of.points, of.stress, of.displacement, of.loads
         return solved, self.units, self.singularities, self.distance, self.weight
@@ -76,13 +76,14 @@ class UncutPin:
 
 @dataclass(frozen=True)
 class LocalMesh:
-    """A piece to be solved on one mesh, which is made only where the memo lacks what follows.
+    """A piece to be solved on one mesh. The mesh is made only if the memo lacks its results.
 
     Fields of unit loads serve all loads that lead to this mesh, such as those of other designs.
-    finer: its fineness, finest about points where stress was high on the meshes before.
-    high: these, m, in the pin's frame.
-    bands: loaded ones of the pin, with cuts in them.
-    most: unknowns that are allowed.
+    finer: fineness of the mesh.
+    high: points, m, in the pin's frame, where stress was high on the meshes before; the mesh is
+    finest there.
+    bands: ends of the loaded bands of the pin that have cuts.
+    max_unknowns: largest number of unknowns.
     """
 
     piece: Piece
@@ -91,12 +92,12 @@ class LocalMesh:
     finer: LocalFineness
     high: Sequence[Point] = ()
     bands: Sequence[tuple[float, float]] = ()
-    most: float = math.inf
+    max_unknowns: float = math.inf
     memo: Memo = field(default_factory=Memo)
 
     @cached_property
     def model(self) -> LocalModel:
-        """The mesh, with its equations.
+        """The mesh with its equations.
 
         Raises: MeshError.
         """
@@ -104,9 +105,9 @@ class LocalMesh:
         spots: Spots = ()
         if self._here:
             spots = [point_of(x) for x in unmirrored(piece, np.array(self._here))]
-        mesh = piece_mesh(piece, finer.edges, spots, finer.spots, self.most)
-        held, loaded = _clamped(piece, self.clamps), bearings(piece, self.bands)
-        return LocalModel(piece, mesh, self.material, held, loaded, finer.spots)
+        mesh = piece_mesh(piece, finer.edges, spots, finer.spots, self.max_unknowns)
+        clamped, loaded = _clamped(piece, self.clamps), bearings(piece, self.bands)
+        return LocalModel(piece, mesh, self.material, clamped, loaded, finer.spots)
 
     @property
     def section_points(self) -> Floats:
@@ -119,7 +120,7 @@ class LocalMesh:
     def fields(self, uncut: UncutPin, at_points: Floats) -> LocalFields:
         """The unit fields of the piece.
 
-        at_points: the stress (S, 6, K) of the uncut pin at the section_points.
+        at_points: (S, 6, K) Pa, the stress of the uncut pin at the section_points.
 
         Raises: MeshError, SolveError.
         """
@@ -132,13 +133,15 @@ class LocalMesh:
 
     @cached_property
     def _key(self) -> str:
-        """All that its stress depends on."""
+        """A digest of all data on which the mesh and its equations depend."""
         elastic, bands = self.material.elastic_part, tuple(self.bands)
         return digest((self.piece, elastic, self.clamps, self.finer, self._here, bands))
 
 
 def _clamped(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
-    """Clamped surfaces that a piece has: its own ends are the pin's where they are at them."""
+    """The clamped surfaces that a piece has. Its ends are surfaces of the pin where the pin ends
+    there.
+    """
     return tuple(
         name
         for name in clamps
@@ -154,7 +157,7 @@ def _section_points(model: LocalModel) -> Floats:
 
 
 def _fields(model: LocalModel, uncut: UncutPin, at_points: Floats) -> LocalFields:
-    """The unit fields of a piece on one mesh, as of LocalMesh.
+    """The unit fields of a piece on one mesh (LocalMesh.fields).
 
     Raises: SolveError.
     """
@@ -167,10 +170,10 @@ def _fields(model: LocalModel, uncut: UncutPin, at_points: Floats) -> LocalField
     stress = cartesian(
         _uncut_stress(model, fields, at_points, r, z)[..., columns], angle, piece.angle, units
     )
-    # Step 2: the piece is solved under it.
+    # Step 2: solve the piece under this stress.
     largest = np.abs(fields.stress[..., columns]).max(axis=(0, 1))
     read = model.solve(stress, largest, [load.shears for load, _ in units], uncut.weight)
-    # Step 3: back into the pin's frame.
+    # Step 3: transform the results to the pin's frame.
     points = read.points @ turn.T + [0.0, 0.0, piece.origin]
     outer, flat_r, flat_z = np.flatnonzero(~read.cut), r.ravel(), z.ravel()
     moved = in_pin(read.moved, piece)
@@ -204,9 +207,10 @@ def _fields(model: LocalModel, uncut: UncutPin, at_points: Floats) -> LocalField
 def _uncut_stress(
     model: LocalModel, fields: MeridianFields, at_points: Floats, r: Floats, z: Floats
 ) -> Floats:
-    """The stress (.., 6, K) of the uncut pin at the nodes of a model's faces, at r, z (..), m.
+    """The stress (.., 6, K), Pa, of the uncut pin at the nodes of a model's faces, at r, z (..), m.
 
-    at_points: that inside the pin, for faces of cuts; on other faces it is that of the skin.
+    at_points: the stress inside the pin, for faces of cuts. Other faces have the stress of the
+    skin.
     """
     amplitude = np.zeros((*r.shape, *fields.stress.shape[1:]))
     amplitude[:, model.faces.cut] = at_points.reshape(len(r), -1, *at_points.shape[1:])
@@ -216,7 +220,7 @@ def _uncut_stress(
 
 
 def _at_open_ends(piece: Piece, points: Floats) -> Mask:
-    """Mask (P,) of the points (P, 3) at an end of a piece where the pin goes on."""
+    """A mask (P,) of the points (P, 3), m, at an end of a piece beyond which the pin continues."""
     at_end = np.zeros(len(points), dtype=bool)
     for end, cut in zip((piece.z0, piece.z1), piece.open_ends, strict=True):
         if cut:

@@ -1,10 +1,11 @@
-"""Loads on a band where it is cut away are carried by the rest of the band nearby.
+"""Loads on the removed area of a band, which the rest of the band nearby carries instead.
 
-A link's force is that of the study, however its band is cut. The pressure on the rest of the band
-stays as it is, and the tractions on the removed area are replaced by small ones on the band about
-the cut with the same force and couple: for a load that shears its band of constant direction and
-growing along z, otherwise normal to it, as cos theta. By Saint-Venant's principle another choice
-changes stress about the cut alone, by the order of the part of the force that is lost.
+The force of a link is that of the study, however its band is cut. The pressure on the rest of the
+band stays as it is. The tractions on the removed area are replaced by small ones on the band about
+the cut, with the same force and couple. If the load shears its band, these have constant direction
+(for couples, growing along z); otherwise they are normal to the band and vary as cos theta. By
+Saint-Venant's principle another choice would change the stress about the cut alone, by the order of
+the lost part of the force.
 """
 
 from __future__ import annotations
@@ -25,10 +26,10 @@ ON_BAND_TOLERANCE = 1e-9  # of a band's length
 
 @dataclass(frozen=True)
 class Bearing:
-    """A loaded band with cuts in it.
+    """A loaded band that has cuts.
 
-    z0, z1: m, its ends in the frame of the piece; on both sides of the piece's mirror plane, if it
-    has one across the axis.
+    z0, z1: m, its ends in the frame of the piece, on both sides of the piece's mirror plane across
+    the axis, if there is one.
     cuts: their names.
     """
 
@@ -37,7 +38,7 @@ class Bearing:
     cuts: tuple[str, ...]
 
     def on(self, x: Floats, normal: Floats) -> Mask:
-        """Mask (...) of the points (..., 3) with outward normals (..., 3) that are on the band."""
+        """A mask (...) of points (..., 3) with outward normals (..., 3) that are on the band."""
         near = ON_BAND_TOLERANCE * (self.z1 - self.z0)
         between = (x[..., 2] >= self.z0 - near) & (x[..., 2] <= self.z1 + near)
         radial = np.sum(x[..., :2] * normal[..., :2], axis=-1)
@@ -45,9 +46,9 @@ class Bearing:
 
 
 def bearings(piece: Piece, bands: Sequence[tuple[float, float]]) -> tuple[Bearing, ...]:
-    """The loaded bands of the pin, z0 and z1 in m, in which a piece has cuts.
+    """The loaded bands of the pin, from their ends in m, in which a piece has cuts.
 
-    Where there is only one, all that is lost in the piece is lost on it, also where its cuts meet.
+    If there is only one, it carries all that is lost in the piece, also where its cuts meet.
     """
     out = []
     for low, high in bands:
@@ -63,10 +64,11 @@ def bearings(piece: Piece, bands: Sequence[tuple[float, float]]) -> tuple[Bearin
 
 
 def trials(x: Floats, normal: Floats, shears: bool) -> Floats:
-    """Tractions (..., 3, 6) on a band, each with the resultant of a unit force or couple.
+    """Six tractions (..., 3, 6) on a band, which together can have any resultant force and couple.
 
+    They are for forces along x, y and z and couples about x, y and z, with arbitrary amplitudes.
     x, normal: (..., 3) points and outward normals.
-    shears: of constant direction instead of normal to the band.
+    shears: whether transverse tractions have constant direction, instead of that of the normal.
     """
     out = np.zeros((*x.shape, 6))
     z = x[..., 2, None]
@@ -82,7 +84,7 @@ def trials(x: Floats, normal: Floats, shears: bool) -> Floats:
 
 
 def trial_forces(faces: PieceFaces, bearing: Bearing, shears: bool) -> Floats:
-    """Nodal forces (3 N, 6) of the tractions of `trials` on what is left of a band."""
+    """The nodal forces (3 N, 6) of the tractions of `trials` on what is left of a band."""
     (a, b), weight = quadrature()
     shapes, _ = slopes_at(a, b)
     nodes, surface = faces.space.nodes, faces.surface

@@ -1,8 +1,8 @@
-"""Displacements of a pin with cuts: those of the uncut pin and what the cuts add to them.
+"""The displacements of a pin with cuts: those of the uncut pin and those that the cuts add.
 
-A local solid is free at its ends (fea.cut.local_model), which its cuts move rigidly against each
-other. So what lies below a piece stays where it is, what lies above moves with its upper end
-relative to the lower, and the whole is moved back so that its first clamp stays where it was.
+The ends of a local solid are free (fea.cut.local_model), and its cuts move them rigidly relative to
+each other. So the pin below a piece stays in place, the pin above moves with the piece's upper end
+relative to the lower, and finally the whole is moved back so that its first clamp stays in place.
 """
 
 from __future__ import annotations
@@ -17,7 +17,10 @@ from pinbase.arrays import Floats
 
 
 def rigid(motion: Floats, x: Floats) -> Floats:
-    """Displacements (P, 3, L) of points (P, 3) by a shift and a turn about the origin, (6, L)."""
+    """The displacements (P, 3, L), m, of points (P, 3), m, by rigid-body motions.
+
+    motion: (6, L) translation (m) and rotation (rad) about the origin.
+    """
     shift, turn = np.split(motion, 2)
     out = np.empty((len(x), 3, motion.shape[1]))
     for k in range(3):  # the cross product by components, since these arrays may be large
@@ -29,10 +32,11 @@ def rigid(motion: Floats, x: Floats) -> Floats:
 
 
 def axis_kept(moved: Floats, length: float) -> Floats:
-    """The rigid motion (6, L), about the pin's start, that keeps both ends of its axis in place.
+    """The rigid-body motion (6, L), about the pin's start, that keeps both ends of its axis in
+    place.
 
-    moved: (6, L) the motion of the pin's end while its start stays. This is how a pin that nothing
-    clamps is supported (fea.harmonic.model).
+    A pin without clamps is supported like this (fea.harmonic.model).
+    moved: (6, L) the motion of the pin's end while its start stays in place.
     length: m.
     """
     out = np.zeros_like(moved)
@@ -46,7 +50,7 @@ def displacement(
 ) -> Floats:
     """The displacement (P, 3, L), m, of the uncut pin under unit loads.
 
-    r, z, angle: (P,) m and rad of the points.
+    r, z, angle: (P,) of the points, m and rad.
     """
     known = fields.points[: len(fields.displacement)]
     columns = [fields.loads.index(load) for load, _ in units]
@@ -58,9 +62,9 @@ def displacement(
 
 
 def of_units(amplitude: Floats, angle: Floats, units: tuple[Unit, ...]) -> Floats:
-    """Displacements (P, 3, L) along x, y, z from amplitudes (P, 3, L) along r, theta and z.
+    """The displacements (P, 3, L), m, along x, y, z from amplitudes (P, 3, L) along r, theta and z.
 
-    angle: (P,) rad of the points.
+    angle: (P,) rad, of the points.
     """
     n, phase = (np.array(x) for x in ([load.n for load, _ in units], [p for _, p in units]))
     turn = angle[:, None]

@@ -1,8 +1,8 @@
-"""Fields on a body with mirror planes, as sums of fields that are even or odd about each of them.
+"""Fields on a body with mirror planes, as sums of fields that are even or odd about each plane.
 
-For a mirror M and parity +1 or -1 a displacement is u(M x) = parity M u(x), a stress s(M x) =
-parity M s(x) M. So each of these needs only what lies on one side of the planes; on a plane u has
-no component across it if it is even, and none along it if it is odd.
+Under a mirror M, a displacement of parity +1 or -1 is u(M x) = parity M u(x), a stress s(M x) =
+parity M s(x) M. So one side of the planes is enough for each such field. On a plane, u has no
+component across it if it is even, and none along it if it is odd.
 """
 
 from __future__ import annotations
@@ -23,20 +23,22 @@ AXIS_NAMES = "xyz"
 class Parities:
     """The symmetry of a body about mirror planes through the origin.
 
-    mirrors: M planes, by the axis across each. A point has G = 2^M images, and fields fall into as
-    many classes.
+    mirrors: M planes, each named by the axis across it. A point has G = 2^M images, and fields fall
+    into C = G parity classes.
     """
 
     mirrors: tuple[str, ...]
 
     @cached_property
     def classes(self) -> tuple[tuple[int, ...], ...]:
-        """The parity about each mirror, for every class."""
+        """The parity about each mirror, for each class."""
         return tuple(itertools.product((1, -1), repeat=len(self.mirrors)))
 
     @cached_property
     def images(self) -> Floats:
-        """Factors (G, 3) of a point's coordinates at its images, the first being itself."""
+        """The factors (G, 3) of a point's coordinates at its images; the first image is the point
+        itself.
+        """
         out = np.ones((len(self.classes), 3))
         for g, crossed in enumerate(self.classes):
             for mirror, sign in zip(self.mirrors, crossed, strict=True):
@@ -45,9 +47,9 @@ class Parities:
 
     @cached_property
     def characters(self) -> Floats:
-        """The factor (C, G) of a class's field at an image, besides the mirroring."""
+        """The sign (C, G) of a class's field at an image, besides the mirroring of components."""
         crossed = np.array(self.classes).reshape(len(self.classes), -1) < 0
-        odd = crossed  # of a class, where its parity is -1
+        odd = crossed  # the mirrors about which a class is odd; the same table
         return np.where((odd.astype(int) @ crossed.T.astype(int)) % 2, -1.0, 1.0)
 
     @cached_property
@@ -66,14 +68,14 @@ class Parities:
         return np.asarray(np.tensordot(self.characters, back, axes=1) / len(self.images))
 
     def everywhere(self, displacement: Floats) -> Floats:
-        """Displacements (G P, 3, L) at all images from those of each class, (C, P, 3, L)."""
+        """The displacements (G P, 3, L) at all images from those of each class, (C, P, 3, L)."""
         displaced = np.einsum(
             "cg,ga,cpal->gpal", self.characters, self.images, displacement, optimize=True
         )
         return np.asarray(displaced.reshape(-1, *displaced.shape[2:]))
 
     def fixed(self, parity: tuple[int, ...]) -> dict[str, tuple[int, ...]]:
-        """The components that vanish on each mirror for a class."""
+        """The components of displacement that vanish on each mirror for a class."""
         out = {}
         for mirror, sign in zip(self.mirrors, parity, strict=True):
             across = AXIS_NAMES.index(mirror)
@@ -82,7 +84,9 @@ class Parities:
         return out
 
     def rigid(self, parity: tuple[int, ...]) -> Mask:
-        """Mask (6,) of the rigid motions of a class: shifts along the axes and turns about them."""
+        """A mask (6,) of the rigid-body motions of a class: translations along the axes and
+        rotations about them.
+        """
         out = np.ones(6, dtype=bool)
         for mirror, sign in zip(self.mirrors, parity, strict=True):
             across = np.arange(3) == AXIS_NAMES.index(mirror)

@@ -21,10 +21,10 @@ END_SURFACES = ("start", "end")
 
 @dataclass(frozen=True)
 class PieceFaces:
-    """The P points at which stress is read: the nodes of a piece's faces, face by face, without
-    clamped ones, and without its ends where the pin goes on. Where it has mirror planes, the mesh
-    covers one side of them.
+    """The P points of a piece at which stress is read: the nodes of its faces, face by face.
 
+    Clamped faces are left out, as are ends beyond which the pin continues. If the piece has mirror
+    planes, the mesh covers one side of them.
     clamps: names of its clamped surfaces.
     """
 
@@ -57,7 +57,7 @@ class PieceFaces:
 
     @cached_property
     def readings(self) -> tuple[FaceReading, ...]:
-        """The faces, with what is needed to read strains on them."""
+        """The faces, with the data needed to read strains on them."""
         out = []
         for name in self.space.mesh.boundaries:
             if self._is_read(name):
@@ -68,52 +68,52 @@ class PieceFaces:
 
     @cached_property
     def cut(self) -> Mask:
-        """Mask (P,) of the points on cuts."""
+        """A mask (P,) of the points on cuts."""
         return np.repeat([r.face.cut for r in self.readings], [len(r.nodes) for r in self.readings])
 
     @cached_property
     def nodes(self) -> Ints:
-        """Node numbers (P,) of its faces, face by face."""
+        """The node numbers (P,) of the faces, face by face."""
         return np.concatenate([r.nodes for r in self.readings])
 
     @cached_property
     def points(self) -> Floats:
-        """The nodes of its faces (P, 3), m, from the mirror plane or the lower end on."""
+        """The nodes of the faces (P, 3), m, in the meshed part of the piece."""
         return np.asarray(self.space.nodes[self.nodes])
 
     @property
     def images(self) -> Floats:
-        """The points and their mirror images, (G, P, 3)."""
+        """The points and their mirror images, (G, P, 3), m."""
         return np.asarray(self.parities.images[:, None] * self.points)
 
     @cached_property
     def nodes_once(self) -> Ints:
-        """Node numbers (S,) of its faces, each once."""
+        """The node numbers (S,) of the faces, each once."""
         return np.unique(self.nodes)
 
     @cached_property
     def loaded(self) -> Ints:
-        """The numbers (3 S,) of the unknowns at these nodes, the only ones on which forces act."""
+        """The numbers (3 S,) of the unknowns at nodes_once, the only ones on which forces act."""
         return np.asarray((3 * self.nodes_once[:, None] + np.arange(3)).ravel())
 
     @cached_property
     def rigid(self) -> Floats:
-        """Rigid motions (3 S, 6) at these unknowns."""
+        """The rigid-body motions (3 S, 6) at these unknowns."""
         return rigid_modes(self.space.nodes)[self.loaded]
 
     @cached_property
     def directions(self) -> Floats:
-        """Two directions (P, 3, 3) along the face at each point, and its outward normal."""
+        """Three unit vectors (P, 3, 3) at each point: two along the face, and the outer normal."""
         return np.concatenate([r.directions for r in self.readings])
 
     @cached_property
     def normals(self) -> Floats:
-        """Outward normals (P, 3) at the points."""
+        """The outward normals (P, 3) at the points."""
         return self.directions[:, 2]
 
     @cached_property
     def triangles(self) -> Ints:
-        """Triangles (M, 3) of the points at all images: the faces, four to a facet."""
+        """The triangles (M, 3) of the points at all images, four for each facet of the faces."""
         first, out = 0, []
         for r in self.readings:
             corners = np.searchsorted(r.nodes, self.surface.corners[r.face.rows])
@@ -124,7 +124,8 @@ class PieceFaces:
         return np.asarray((one + shift[:, None, None]).reshape(-1, 3))
 
     def everywhere(self, by_class: Floats) -> Floats:
-        """Stress along x, y, z at all images, (G P, 6, L), from that along the faces' directions.
+        """The stress (G P, 6, L) along x, y, z at all images, from that along the directions of the
+        faces.
 
         by_class: (C, P, 6, L).
         """
@@ -136,8 +137,11 @@ class PieceFaces:
         return np.asarray(summed.reshape(-1, *summed.shape[2:]))
 
     def without_traction(self, stress: Floats) -> Floats:
-        """Stress (G C, 6, L) along x, y, z at all images of the C points on cuts, without the
-        components zz, yz and xz along the faces' directions, whose z is normal to the face.
+        """The stress (G C, 6, L) along x, y, z at all images of the C points on cuts, without
+        tractions.
+
+        Along the directions of a face, whose z is normal to the face, the components zz, yz and xz
+        are set to zero.
         """
         to_faces = rotation(self.directions[self.cut])
         to_faces[:, 2:5] = 0.0

@@ -1,4 +1,4 @@
-"""The elastic response of the piece about the cuts of a pin to nodal forces of one class."""
+"""The elastic response of the piece about a pin's cuts to nodal forces of one parity class."""
 
 from __future__ import annotations
 
@@ -17,29 +17,32 @@ from fea.solid.assembly import Discretisation
 from fea.solid.model import rigid_modes
 from pinbase.arrays import Floats, Ints
 
-# Chosen by judgement, as parts of the tractions on the cuts:
-TRACTION_RANK_TOLERANCE = 1e-5  # smaller singular values of a class's forces are not solved
-MAX_UNBALANCED_TRACTION = 0.1  # a larger imbalance is not due to the section's mesh
+# Chosen by judgement. Singular values of a class's forces below this part of the largest are not
+# solved.
+TRACTION_RANK_TOLERANCE = 1e-5
+# An imbalance above this part of the tractions on the cuts is not due to the section's mesh.
+MAX_UNBALANCED_TRACTION = 0.1
 
 
 @dataclass(frozen=True)
 class Combined:
-    """Displacements under L loads as sums of a few.
+    """Displacements under L loads as combinations of a few.
 
-    few: (3 N, R) m. amounts: (R, L).
+    few: (3 N, R) m.
+    amounts: (R, L) of these in each load.
     """
 
     few: Floats
     amounts: Floats
 
     def at(self, unknowns: Ints) -> Floats:
-        """The displacements (M, L) of some unknowns, by their numbers."""
+        """The displacements (M, L), m, of some unknowns, by their numbers."""
         return np.asarray(self.few[unknowns] @ self.amounts)
 
 
 @dataclass(frozen=True)
 class PieceSystem:
-    """The equations of a piece on one mesh; names as of fea.cut.local_model.LocalModel.
+    """The equations of a piece on one mesh; the names are those of fea.cut.local_model.LocalModel.
 
     pin: its name, for messages.
     """
@@ -58,19 +61,21 @@ class PieceSystem:
         whole: Floats,
         tolerance: float = ENERGY_TOLERANCE,
     ) -> Combined:
-        """Displacements of a class, after balancing its forces.
+        """The displacements of a parity class, after its forces are balanced.
 
-        loaded: (M,) numbers of the unknowns on which forces act, those of whole nodes.
+        loaded: (M,) numbers of the unknowns on which forces act, all three of each such node.
         forces: (M, L) N.
         parity: of the class.
-        whole: (M, L) size of all classes' forces.
-        tolerance: of iterations (TwoLevel.solve).
+        whole: (M, L) N, the size of the forces of all classes.
+        tolerance: of the iterations (TwoLevel.solve).
+
+        Raises: SolveError.
         """
         free = np.ones(self.space.unknowns)
         free[self._fixed(parity)] = 0.0
         held = np.zeros(0, dtype=np.int64)
-        # Without clamps rigid motions are left: forces are balanced, and one corner's unknown is
-        # held for each motion, chosen by pivoted QR so that they are independent.
+        # Without clamps rigid-body motions are possible. So forces are balanced, and for each
+        # motion one unknown of a corner node is held, chosen by pivoted QR to be independent.
         if not self.clamps:
             modes = rigid_modes(self.space.nodes)[:, self.parities.rigid(parity)]
             forces = self.balanced(forces, modes[loaded], whole)
@@ -78,8 +83,8 @@ class PieceSystem:
                 at = np.flatnonzero(free * self._at_corners)
                 _, _, pivot = scipy.linalg.qr(modes[at].T, mode="economic", pivoting=True)
                 held = at[pivot[:count]]
-        # Many loads stress the cuts in few ways: solve for the singular vectors of the forces
-        # alone.
+        # Many loads stress the cuts in few ways, so only the singular vectors of the forces are
+        # solved.
         forces = free[loaded, None] * forces
         size, right = combinations(forces)
         rank = int(np.sum(size > TRACTION_RANK_TOLERANCE * size[0]))
@@ -90,7 +95,7 @@ class PieceSystem:
             if self.space.unknowns > MAX_FACTORED_UNKNOWNS
             else None
         )
-        # Small systems are factored, and those on which the iteration fails.
+        # Small systems, and those for which the iteration fails, are factored.
         if u is None:
             free[held] = 0.0
             u = self._system.solve(self.stiffness.copy(), free, some)
@@ -98,7 +103,9 @@ class PieceSystem:
 
     @cached_property
     def _at_corners(self) -> Floats:
-        """1 for unknowns at corners of elements, 0 amid their edges, (3 N,)."""
+        """The factors (3 N,), 1 for unknowns at corners of elements, 0 for those in the middle of
+        edges.
+        """
         out = np.zeros((len(self.space.nodes), 3))
         out[self.space.elements[:, :4]] = 1.0
         return out.ravel()
@@ -117,7 +124,7 @@ class PieceSystem:
         return self.space.stiffness(self.material)
 
     def _fixed(self, parity: tuple[int, ...]) -> Ints:
-        """Numbers of the unknowns that are zero on mirror planes and clamps."""
+        """The numbers of the unknowns that are zero on mirror planes and clamps."""
         unknowns = [np.zeros(0, dtype=np.int64)]
         boundaries = self.space.mesh.boundaries
 
@@ -132,12 +139,14 @@ class PieceSystem:
         return np.unique(np.concatenate(unknowns))
 
     def balanced(self, forces: Floats, modes: Floats, whole: Floats) -> Floats:
-        """Forces without the small resultant that the mesh of the section leaves.
+        """The forces without the small resultant that the mesh of the section leaves.
 
-        It is taken up by the cuts' nodes, in proportion to the forces there.
-        forces: (M, L) N. modes: (M, m) rigid motions. whole: (M, L) as of `displace`.
+        The nodes of the cuts take it up, in proportion to the forces there.
+        forces: (M, L) N.
+        modes: (M, m) rigid-body motions.
+        whole: (M, L) N, as for `displace`.
 
-        Raises: SolveError when the resultant is more than that.
+        Raises: SolveError when the resultant is too large to be due to the mesh.
         """
         if not modes.shape[1]:
             return forces
@@ -155,11 +164,11 @@ class PieceSystem:
 
 
 def combinations(columns: Floats) -> tuple[Floats, Floats]:
-    """The singular values (K,) of columns (N, K), largest first, and the right singular vectors
-    (K, K), a row each.
+    """The singular values (K,) of columns (N, K), largest first, and the right singular vectors (K,
+    K), a row each.
 
-    They are found by the products of the columns, in a fraction of the time of a decomposition, and
-    values below 1e-7 of the largest are noise.
+    They are found from the products of the columns, in a fraction of the time of a singular value
+    decomposition. Values below 1e-7 of the largest are noise.
     """
     square, vectors = np.linalg.eigh(columns.T @ columns)
     return np.sqrt(np.maximum(square[::-1], 0.0)), vectors.T[::-1]

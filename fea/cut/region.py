@@ -1,4 +1,4 @@
-"""The pieces of a pin about its cuts that are solid, and the pins to which this applies."""
+"""The pieces of a pin about its cuts that are solid, and the pins to which local solids apply."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ from geometry import Cut, CutPin, Hole, Pin, PinLike
 from geometry.mesh.cut_piece import Piece, clipped
 from geometry.shape.band_cuts import crosses_end, is_inside
 
-# All are parts of the diameter. The reach was found on shafts, where ends at that distance change
-# stress by 0.1 %; `python -m benchmarks cut-pins` checks it. The others are chosen by judgement.
+# Lengths are parts of the diameter. The reach was found on shafts, where ends at that distance
+# change stress by 0.1 %; `python -m benchmarks cut-pins` checks it. The others are chosen by
+# judgement.
 PIECE_REACH = 1.4  # length of a piece beyond its cuts
-REACH_FACTOR = 1.6  # times that, where the reach is seen not to be enough, as in tubes
+REACH_FACTOR = 1.6  # factor of the reach where it proves too short, as in tubes
 MERGE_DISTANCE = 0.5  # cuts closer to each other are in one piece
-MIN_REMAINDER = 0.25  # a shorter rest of the pin beyond a piece is part of it
+MIN_REMAINDER = 0.25  # a shorter remainder of the pin beyond a piece is made part of the piece
 STEP_CLEARANCE = 0.1  # least distance between the end of a piece and a step
 PIECE_LENGTH_TOLERANCE = 1e-9  # lengths that differ by less are equal
 
@@ -38,22 +39,23 @@ class RingedCutPin(CutPin):
 
     @cached_property
     def volume(self) -> float:
-        """The volume of the pin without cuts, m^3: contact balances the weight of that.
+        """The volume of the pin without cuts, m^3, since contact balances the weight of the uncut
+        pin.
 
-        (Rounded mouths cannot be made where rings meet.)
+        (The volume with cuts would need rounded mouths, which cannot be made where rings meet.)
         """
         return self.profile.volume
 
 
 def unringed(pin: AnyPin) -> AnyPin | CutPin:
-    """The pin without rings."""
+    """The pin whose bands are not divided into rings."""
     return (pin.whole or pin) if isinstance(pin, RingedCutPin) else pin
 
 
 def refusal(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Reason | None:
-    """Why a local solid does not apply to a pin, or None.
+    """The reason why a local solid does not apply to a pin, or None.
 
-    clamps, loaded: surfaces, by name.
+    clamps, loaded: names of the clamped and of the loaded surfaces.
     """
     for name in (*clamps, *loaded):
         if name.removesuffix(" end") in pin.cuts:
@@ -62,7 +64,7 @@ def refusal(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Reas
         low, high = feature.opens
         for name in dict.fromkeys((*loaded, *clamps)):
             z0, z1 = surface_ends(pin, name)
-            # A cut matters to a surface that it opens into or whose face it lies in.
+            # A cut affects a surface if it opens into it or lies in its face.
             if not (low < z1 and z0 < high) and name not in feature.faces:
                 continue
             if name in clamps:
@@ -80,7 +82,7 @@ def refusal(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Reas
 def _joined(pin: CutPin, loaded: Sequence[str]) -> Reason | None:
     """A refusal where a passage joins cuts in several loaded bands, or None.
 
-    Then the load that each band loses is not known.
+    In that case the load that each band loses is not known.
     """
     bands = loaded_bands(pin, loaded)
     for name, cut in pin.cuts.items():
@@ -92,7 +94,10 @@ def _joined(pin: CutPin, loaded: Sequence[str]) -> Reason | None:
 
 
 def loaded_bands(pin: CutPin, loaded: Sequence[str]) -> tuple[tuple[float, float], ...]:
-    """z of both ends, m, of the loaded bands (by name) with cuts in them."""
+    """The ends (z, m) of the loaded bands that have cuts.
+
+    loaded: names of the loaded surfaces.
+    """
     ends = (surface_ends(pin, name) for name in dict.fromkeys(loaded) if name in pin.connections)
     cuts = pin.cuts.values()
     return tuple(
@@ -110,7 +115,7 @@ def corner_refusal(pin: CutPin, singularities: Sequence[Zone]) -> Reason | None:
 
 
 def surface_ends(pin: CutPin, name: str) -> tuple[float, float]:
-    """z of both ends of a surface, m; the whole pin for a surface that is not a band."""
+    """The z of both ends of a surface, m; those of the pin for a surface that is not a band."""
     if name in ("start", "end"):
         z = 0.0 if name == "start" else pin.length
         return z, z
@@ -121,7 +126,7 @@ def surface_ends(pin: CutPin, name: str) -> tuple[float, float]:
 
 
 def zone(piece: Piece) -> tuple[float, float]:
-    """The z (m) between which the stress of the uncut pin does not count."""
+    """The interval of z, m, in which the stress of the uncut pin does not count."""
     low, high = _ends(piece.cuts.values())
     if "z" in piece.mirrors:
         low = -high
@@ -138,13 +143,13 @@ def pieces(
     clamps: tuple[str, ...],
     beyond: float = PIECE_REACH,
     bands: Sequence[tuple[float, float]] = (),
-    apart: float = 1.0,
+    spacing: float = 1.0,
 ) -> tuple[Piece, ...]:
-    """A piece about each cut, or about cuts that are close to each other, along the pin.
+    """The pieces along the pin, each about one cut or several cuts that are close to each other.
 
-    beyond: length of a piece past its cuts, of the diameter.
-    bands: loaded ones with cuts in them (loaded_bands).
-    apart: factor of the usual distance up to which cuts share a piece.
+    beyond: length of a piece beyond its cuts, of the diameter.
+    bands: ends of the loaded bands that have cuts (loaded_bands).
+    spacing: factor of the usual distance up to which cuts share a piece.
     """
     cuts = sorted(pin.cuts.items(), key=lambda named: named[1].extent)
     groups = [dict(cuts[:1])]
@@ -152,7 +157,7 @@ def pieces(
         (low, high), end = cut.extent, _ends(groups[-1].values())[1]
         # Cuts are merged if the gap to the group before is short, in proportion to the piece's
         # reach.
-        near = MERGE_DISTANCE * apart * beyond / PIECE_REACH
+        near = MERGE_DISTANCE * spacing * beyond / PIECE_REACH
         if low - end < near * _diameter(pin.profile, min(end, low), high):
             groups[-1][name] = cut
         else:
@@ -184,8 +189,8 @@ def _piece(
     angle, mirrors = _about(pin, list(cuts.values()))
     middle = 0.5 * (low + high)
     half = max(middle - z0, z1 - middle)
-    held = [surface_ends(CutPin(pin), name) for name in clamps]
-    clamped = any(max(a - middle, middle - b) <= half + pin.tolerance for a, b in held)
+    clamp_ends = [surface_ends(CutPin(pin), name) for name in clamps]
+    clamped = any(max(a - middle, middle - b) <= half + pin.tolerance for a, b in clamp_ends)
     parted = any(a < high and low < b and not (a < low and high < b) for a, b in bands)
     amid = [cut.moved(middle, angle) for cut in cuts.values()]
     if not clamped and not parted and _even(pin, middle, half) and _symmetric(pin, amid, "z"):
@@ -198,13 +203,14 @@ def _piece(
 
 
 def _about(pin: Pin, cuts: list[Cut]) -> tuple[float, tuple[str, ...]]:
-    """The angle by which the piece's frame is turned, and the mirror planes along the axis there.
+    """The angle by which the piece's frame is turned, and its mirror planes that contain the axis.
 
-    It is the angle with most mirror planes among those of single cuts and those midway between two.
+    Of the angles of single cuts and those midway between two, it is the one with most mirror
+    planes.
     """
     angles = [cut.angle for cut in cuts]
     angles += [0.5 * (a.angle + b.angle) for a, b in combinations(cuts, 2)]
-    # A hole beside the axis is its own image across its direction.
+    # A hole that misses the axis is its own mirror image in the plane across its direction.
     angles += [cut.angle + 0.5 * math.pi for cut in cuts if isinstance(cut, Hole) and cut.offset]
     best: tuple[float, tuple[str, ...]] = (angles[0], ())
     for angle in angles:
@@ -241,7 +247,9 @@ def _end(pin: Pin, z: float, way: float) -> float:
 
 
 def _even(pin: Pin, middle: float, half: float) -> bool:
-    """Whether the profile is a plain cylinder up to `half` on both sides of z = middle, m."""
+    """Whether the profile is a plain cylinder up to the distance `half` on both sides of z =
+    middle, m.
+    """
     inside = middle - half >= -pin.tolerance and middle + half <= pin.length + pin.tolerance
     ends = zip(pin.segments, pin.stations, pin.stations[1:], strict=False)
     here = [s for s, a, b in ends if b > middle - half and a < middle + half]

@@ -1,5 +1,7 @@
-"""Nodal forces that relieve the cuts of a piece: of the tractions -s . n on their surfaces, s being
-the stress of the uncut pin there.
+"""The nodal forces that relieve the cuts of a piece.
+
+They are those of the tractions -s . n on the surfaces of the cuts, s being the stress of the uncut
+pin there.
 """
 
 from __future__ import annotations
@@ -16,23 +18,28 @@ from fea.cut.piece_faces import PieceFaces
 from fea.solid.boundary import area_vectors, quadrature, slopes_at
 from pinbase.arrays import Floats, Ints, Mask
 
-# Chosen by judgement, as a part of the tractions on the cuts:
-MIN_CLASS_TRACTION = 2e-4  # a smaller class is the noise of the section's mesh
+# A class whose forces are a smaller part of the largest is noise of the section's mesh; chosen by
+# judgement.
+MIN_CLASS_TRACTION = 2e-4
 
 
 @dataclass(frozen=True)
 class Relief:
-    """The forces that relieve the cuts of a piece, by its faces.
+    """The forces that relieve the cuts of a piece, from its faces.
 
-    bearings: loaded bands with cuts in them.
+    bearings: the loaded bands that have cuts.
     """
 
     faces: PieceFaces
     bearings: tuple[Bearing, ...]
 
     def by_class(self, stress: Floats) -> tuple[list[Floats], list[bool], Floats]:
-        """The nodal forces (3 S, L) of the tractions that relieve the cuts, by class; which classes
-        act, as the smaller ones are noise of the section's mesh; and the size (L,) of all of them.
+        """The nodal forces that relieve the cuts, for each parity class.
+
+        Returns the forces (3 S, L), N, of each class; whether each class acts; and the size (3 S,
+        L), N, of the forces of all classes. A class acts unless its forces are small compared with
+        those of the largest class or of a unit tension: small ones are noise of the section's mesh.
+        stress: (C, P, 6, L) Pa, of the uncut pin, for each class.
         """
         forces = [self._forces(part) for part in stress]
         pressed = self._forces(_pressure(len(self.faces.points)))
@@ -44,11 +51,11 @@ class Relief:
     def of_lost_loads(
         self, stress: Floats, parity: tuple[int, ...], shears: Mask
     ) -> tuple[Floats, Floats]:
-        """The loads on removed areas, moved to the rest of their bands (lost_loads).
+        """The loads on removed areas, moved to the rest of their bands (fea.cut.lost_loads).
 
-        Returns nodal forces (3 S, L), and tractions (P, 3, L) at the points.
-        stress: (P, 6, L) Pa, the uncut pin's.
-        shears: (L,).
+        Returns nodal forces (3 S, L), N, and tractions (P, 3, L), Pa, at the points.
+        stress: (P, 6, L) Pa, of the uncut pin.
+        shears: (L,) whether each load shears its band.
         """
         faces = self.faces
         forces = np.zeros((len(faces.loaded), stress.shape[2]))
@@ -56,8 +63,8 @@ class Relief:
         allowed = faces.parities.rigid(parity)
         modes = faces.rigid[:, allowed]
         for bearing in self.bearings if allowed.any() else ():
-            # The resultants that the cuts' tractions take from the band, in the motions of the
-            # class.
+            # The resultants that the relieving tractions take from the band, in the rigid-body
+            # motions of the class.
             lost = modes.T @ self._forces(stress, bearing.cuts)
             on = bearing.on(faces.points, faces.normals) & ~faces.cut
             for shear in np.unique(shears).tolist():
@@ -72,9 +79,10 @@ class Relief:
         return forces, at_points
 
     def _forces(self, stress: Floats, only: tuple[str, ...] = ()) -> Floats:
-        """Nodal forces (3 S, L) of the tractions -s . n that relieve cuts of a stress (P, 6, L).
+        """The nodal forces (3 S, L), N, of the tractions -s . n that relieve cuts of a stress (P,
+        6, L), Pa.
 
-        only: names of cuts, all by default.
+        only: names of the cuts, all by default.
         """
         out = np.zeros((len(self.faces.loaded), stress.shape[2]))
         for cut, points, matrix in self._of_cuts:
@@ -84,8 +92,8 @@ class Relief:
 
     @cached_property
     def _of_cuts(self) -> list[tuple[str | None, slice, sp.csr_matrix]]:
-        """The faces of cuts: the cut, the points on its face, and the matrix that makes nodal
-        forces (3 S,) of the stress (6 P,) at these.
+        """The faces of cuts: for each, the cut, the points on the face, and the matrix that gives
+        nodal forces (3 S,) from the stress (6 P,) at these points.
         """
         (x, y), weight = quadrature()
         shapes, _ = slopes_at(x, y)
@@ -119,6 +127,8 @@ def _pressure(count: int) -> Floats:
 
 
 def nodal_size(forces: Floats) -> Floats:
-    """The size of nodal forces (3 S, L), repeated for their three components."""
+    """The size (3 S, L), N, of nodal forces (3 S, L), N: the magnitude at each node, repeated for
+    its three components.
+    """
     size = np.linalg.norm(forces.reshape(-1, 3, forces.shape[1]), axis=1)
     return np.asarray(size.repeat(3, axis=0))

@@ -1,4 +1,6 @@
-"""The surface of a cut pin for views: local solids in place, the uncut pin between them."""
+"""The surface of a cut pin for views: the surfaces of the local solids, and the uncut pin between
+them.
+"""
 
 from __future__ import annotations
 
@@ -20,23 +22,24 @@ from pinbase.arrays import Floats, Ints, Mask
 
 # Chosen by judgement:
 CUT_VIEW_SECTORS = 72  # sectors about the axis, away from the pieces
-DISPLACEMENT_FIT_POINTS = 40  # nearest points of a piece to which its displacements are fitted
-TRANSVERSE_DISTANCE_WEIGHT = 0.1  # of distances across the pin when these are chosen
+DISPLACEMENT_FIT_POINTS = 40  # nearest points of a piece in a fit of its displacements
+TRANSVERSE_DISTANCE_WEIGHT = 0.1  # weight of distances across the pin in the choice of these points
 PIECE_END_TOLERANCE = 1e-9  # of a piece's length
 
 
 @dataclass(frozen=True)
 class ShownCut:
-    """The surface as it is shown, under L unit loads, each in one phase.
+    """The surface that views show, under L unit loads, each in one phase.
 
     points: (P, 3) m.
     triangles: (M, 3).
     stress: (P, 6, L) Pa.
     displacement: (P, 3, L) m.
-    read: (P,) where the maximum is looked for, of the pin between its pieces without zones.
-    outline: (P,) what is on the outline of the pin without cuts.
-    between: (U, 2) for the first points, which are of the pin between its pieces, the points of its
-    section between which each of them lies.
+    read: (P,) the points that are searched for the maximum; between the pieces all points, also
+    those in zones.
+    outline: (P,) the points on the outline of the pin without cuts.
+    between: (U, 2) for the first U points, which lie on the pin between its pieces, the two points
+    of its section between which each lies.
     """
 
     points: Floats
@@ -48,8 +51,9 @@ class ShownCut:
     between: Ints = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
 
     def read_in(self, section: Mask) -> Mask:
-        """Mask (P,) of where the maximum is looked for; section: (S,) points that are read there,
-        outside of zones.
+        """A mask (P,) of the points that are searched for the maximum.
+
+        section: (S,) mask of the points of the uncut pin's section that are read, outside of zones.
         """
         read = self.read.copy()
         read[: len(self.between)] = section[self.between].all(axis=1)
@@ -57,12 +61,12 @@ class ShownCut:
 
 
 def shown(
-    fields: MeridianFields, pieces: Sequence[LocalFields], held: ClampReaction | None
+    fields: MeridianFields, pieces: Sequence[LocalFields], first_clamp: ClampReaction | None
 ) -> ShownCut:
     """The whole surface of a cut pin.
 
     fields: of the pin without cuts.
-    held: the first clamp, which stays in place; without one both ends of the axis stay on it.
+    first_clamp: stays in place; without a clamp, both ends of the axis stay on it.
     """
     between = [_instead_of_uncut(piece) for piece in pieces]
     uncut = _revolved(fields, pieces[0].units, between)
@@ -70,14 +74,14 @@ def shown(
     starts = np.cumsum([0, *(len(part.points) for part in parts)])
     points = np.concatenate([p.points for p in parts])
     displacement = np.concatenate([p.displacement for p in parts])  # the largest array: in place
-    # Displacements add up: what lies above a piece moves with its upper end.
+    # Displacements add up: the pin above a piece moves with the piece's upper end.
     for piece, start in zip(pieces, starts[1:], strict=False):
         end = start + len(piece.points)
         displacement[:start] += moved_by(piece, points[:start])
         displacement[end:] += moved_by(piece, points[end:])
         displacement[start:end] += piece.displaced
     length = float(fields.points[:, 1].max())
-    displacement -= rigid(support_motion(pieces, held, length), points)
+    displacement -= rigid(support_motion(pieces, first_clamp, length), points)
     return ShownCut(
         points,
         np.concatenate([p.triangles + i for p, i in zip(parts, starts, strict=False)]),
@@ -90,16 +94,18 @@ def shown(
 
 
 def _instead_of_uncut(piece: LocalFields) -> tuple[float, float]:
-    """The z, m, between which a piece is shown instead of the uncut pin, with the end faces of the
-    pin that it has: its cuts may open into them.
+    """The z, m, between which a piece is shown instead of the uncut pin.
+
+    They include the end faces of the pin that the piece has, since its cuts may open into them.
     """
     low, high = piece.free_ends
     return -math.inf if low else piece.piece.z0, math.inf if high else piece.piece.z1
 
 
 def own_ends(pieces: Sequence[LocalFields]) -> list[tuple[float, float]]:
-    """z of both ends, m, of what is shown of each piece: where two overlap, each has its cuts and
-    what is nearer to these.
+    """The z of both ends, m, between which each piece is shown.
+
+    Where two pieces overlap, each is shown up to midway between their cuts.
     """
     low = [p.piece.z0 for p in pieces]
     high = [p.piece.z1 for p in pieces]
@@ -110,7 +116,7 @@ def own_ends(pieces: Sequence[LocalFields]) -> list[tuple[float, float]]:
 
 
 def _piece(piece: LocalFields, ends: tuple[float, float]) -> ShownCut:
-    """The surface of a piece as it is shown between two z, m."""
+    """The surface of a piece between two z, m."""
     z = piece.points[piece.triangles, 2]
     here = (z.max(axis=1) >= ends[0]) & (z.min(axis=1) <= ends[1])
     outline = np.isin(np.arange(len(piece.points)), piece.outer)
@@ -119,17 +125,20 @@ def _piece(piece: LocalFields, ends: tuple[float, float]) -> ShownCut:
 
 
 def support_motion(
-    pieces: Sequence[LocalFields], held: ClampReaction | None, length: float
+    pieces: Sequence[LocalFields], first_clamp: ClampReaction | None, length: float
 ) -> Floats:
-    """The rigid motion (6, L) of the support by all cuts, which is taken off; length: m."""
+    """The rigid-body motion (6, L) of the support that all cuts cause, which is subtracted.
+
+    length: m, of the pin.
+    """
     whole = np.sum([p.moved[1] - p.moved[0] for p in pieces], axis=0)
-    return reached(held, pieces) if held else axis_kept(whole, length)
+    return reached(first_clamp, pieces) if first_clamp else axis_kept(whole, length)
 
 
 def moved_by(piece: LocalFields, points: Floats) -> Floats:
-    """The displacement (P, 3, L), m, of points (P, 3) of the pin by the cuts of a piece.
+    """The displacement (P, 3, L), m, of points (P, 3), m, of the pin by the cuts of a piece.
 
-    It is relative to what lies below the piece. Points beside the piece move with its outline.
+    It is relative to the pin below the piece. Points beside the piece move with its outline.
     """
     z0, z1 = piece.piece.z0, piece.piece.z1
     near = PIECE_END_TOLERANCE * (z1 - z0)
@@ -143,9 +152,11 @@ def moved_by(piece: LocalFields, points: Floats) -> Floats:
 
 
 def _beside(piece: LocalFields, points: Floats) -> Floats:
-    """The displacement (P, 3, L), m, by a piece's cuts at points (P, 3) of another one beside it.
+    """The displacement (P, 3, L), m, by the cuts of a piece at points (P, 3), m, of another piece
+    beside it.
 
-    Linear functions are fitted to the displacements of the outline all about the axis near there.
+    Linear functions are fitted to the displacements of the piece's outline nearby, all around the
+    axis.
     """
     outline = piece.points[piece.outer]
     squeezed = np.array([TRANSVERSE_DISTANCE_WEIGHT, TRANSVERSE_DISTANCE_WEIGHT, 1.0])
@@ -162,7 +173,7 @@ def _beside(piece: LocalFields, points: Floats) -> Floats:
 def _revolved(
     fields: MeridianFields, units: tuple[Unit, ...], pieces: Sequence[tuple[float, float]]
 ) -> ShownCut:
-    """The outline turned about the axis, without what lies in the pieces."""
+    """The outline of the uncut pin turned about the axis, outside of the pieces."""
     ends = np.arange(fields.skin).reshape(-1, 5)[:, [0, 4]]
     rows, part = ends, np.tile([0.0, 1.0], (len(ends), 1))
     # Edges of the outline, cut where pieces begin and end: each from a to b, from and to a part of
@@ -204,9 +215,9 @@ def _outside_of(
 ) -> tuple[Ints, Floats]:
     """The parts of edges that lie outside an interval of z.
 
-    rows: (E, 2) points of the edges.
-    part: (E, 2) where each begins and ends, of its length. low,
-    high: m.
+    rows: (E, 2) numbers of the points of each edge.
+    part: (E, 2) where each edge begins and ends, of its length.
+    low, high: ends of the interval, m.
     """
     out_rows, out_part = [], []
     for (a, b), (s, t) in zip(rows, part, strict=True):

@@ -1,4 +1,4 @@
-"""The stress of a cut pin's surface for views and for fatigue where lugs press on it.
+"""The surface stress of a cut pin, for views and for fatigue, where lugs press on it.
 
 The rules are those of pins without cuts (fea.harmonic.shown_surface, fea.harmonic.fatigue_points),
 applied to points in space.
@@ -18,18 +18,21 @@ from fea.harmonic.fatigue_points import replaced
 from fea.solid.superposition import squares
 from pinbase.arrays import Floats, Ints, Mask
 
-INSTANT_BATCH = 64  # instants at once: limits memory
-# Weight of distances along the pin, so that neighbours have nearly the same angle; by judgement.
+INSTANT_BATCH = 64  # instants evaluated together: limits memory
+# Weight of distances along the pin, so that the nearest point has nearly the same angle; chosen by
+# judgement.
 AXIAL_DISTANCE_WEIGHT = 0.1
 
 
 def free_picture(
     surface: ShownCut, c: Floats, pressed: PressedArcs, instant: int
 ) -> tuple[Floats, Floats, Mask]:
-    """Stress (P, 6), Pa, at an instant, the envelope (P,), Pa, and where (P,) lugs press.
+    """The stress (P, 6), Pa, at an instant, the envelope (P,), Pa, and a mask (P,) of where lugs
+    press.
 
-    c: (T, L) amounts of the unit loads. Where lugs press at this instant the envelope is that of
-    the others, NaN if there are none.
+    Where lugs press at this instant, the envelope is that of the instants at which they do not, NaN
+    if there are none.
+    c: (T, L) amounts of the unit loads.
     """
     free = FreePoints.of(surface.points, surface.outline, pressed.rings)
     most = np.full(len(surface.points), -1.0)
@@ -51,7 +54,9 @@ def free_picture(
 
 
 def _on(surface: ShownCut, arc: Ints, pressed: PressedArcs, instant: int) -> Mask:
-    """Mask (P,) of the points that a lug presses on; at the end of a ring, on both sides of it."""
+    """A mask (P,) of the points on which a lug presses; at the end of a ring, on both sides of the
+    point.
+    """
     rings, (x, y, z) = pressed.rings, surface.points.T
     off = np.abs(np.hypot(x, y)[:, None] - rings.radius) <= ON_CYLINDER_TOLERANCE * rings.radius
     on = surface.outline.copy()
@@ -66,10 +71,12 @@ def _on(surface: ShownCut, arc: Ints, pressed: PressedArcs, instant: int) -> Mas
 def stress_points(
     surface: ShownCut, read: Mask, amounts: Floats, pressed: PressedArcs | None, nu: float
 ) -> StressPoints:
-    """The points of the surface at which fatigue is assessed, also where lugs press on some.
+    """The points of the surface at which fatigue is assessed, with their stress.
 
-    read: (P,) points at which fatigue is looked for. amounts: (T, L) of the unit loads. nu:
-    Poisson's ratio.
+    Where lugs press on a point, other points replace it (CutSubstitutes).
+    read: (P,) the points at which fatigue is assessed.
+    amounts: (T, L) of the unit loads.
+    nu: Poisson's ratio.
     """
     if pressed is None:
         return StressPoints.in_space(surface.points, surface.stress, read, amounts)
@@ -84,7 +91,7 @@ def stress_points(
 
 
 class CutSubstitutes:
-    """Points of the surface of a pin with cuts that replace others where these are not read."""
+    """The points of the surface of a pin with cuts that replace others while these are not read."""
 
     def __init__(self, surface: ShownCut, read: Mask, pressed: PressedArcs, nu: float) -> None:
         points, free = surface.points, FreePoints.of(surface.points, surface.outline, pressed.rings)

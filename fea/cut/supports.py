@@ -1,10 +1,10 @@
 """The reactions of redundant supports of a pin with cuts.
 
-The local solid about a cut is free at its ends, which its cut moves rigidly against each other
-(fea.cut.local_model). Between two clamps nothing may move, so the clamp beyond is moved back by as
-much. The uncut pin therefore has additional unit loads, rigid motions of all its clamps but the
-first; the cuts respond to these as to any others, and the motions that close all gaps are linear in
-the other loads.
+The ends of the local solid about a cut are free, and its cut moves them rigidly relative to each
+other (fea.cut.local_model). Between two clamps no such motion is possible, so the clamp beyond the
+cut is moved back by as much. The uncut pin therefore has additional unit loads, which are
+rigid-body motions of all its clamps but the first. The cuts respond to these as to any other load.
+The motions that close all gaps are linear in the other loads.
 """
 
 from __future__ import annotations
@@ -24,7 +24,11 @@ MAX_GAP_CONDITION = 1e8  # largest condition number of the equations that close 
 
 @dataclass(frozen=True)
 class ClampReaction:
-    """A clamped surface: its name, and z (m) of its middle."""
+    """A clamped surface.
+
+    name: of the surface.
+    z: of its middle, m.
+    """
 
     name: str
     z: float
@@ -34,7 +38,7 @@ class ClampReaction:
 class LoadsWithReactions(PinLoads):
     """Loads together with the motions of clamps that they cause.
 
-    acting: (T, 2) by unit load, these motions included.
+    acting: (T, 2) the amounts of each unit load, these motions included.
     """
 
     acting: Mapping[UnitLoad, Floats] = field(default_factory=dict)
@@ -45,7 +49,10 @@ class LoadsWithReactions(PinLoads):
 
 
 def motions(supports: Sequence[ClampReaction]) -> tuple[Unit, ...]:
-    """The rigid motions of all clamps but the first: along x, y, z, about x (backwards), y, z."""
+    """The rigid-body motions of all clamps but the first.
+
+    They are translations along x, y, z, and rotations about x (with the opposite sign), y, z.
+    """
     out: list[Unit] = []
     for s in supports[1:]:
         shift, turn = UnitLoad(s.name, "shift", 1), UnitLoad(s.name, "turn", 1)
@@ -54,22 +61,23 @@ def motions(supports: Sequence[ClampReaction]) -> tuple[Unit, ...]:
     return tuple(out)
 
 
-MOTION_SIGNS = np.array([1.0, 1.0, 1.0, -1.0, 1.0, 1.0])  # of the motions of one clamp
+MOTION_SIGNS = np.array([1.0, 1.0, 1.0, -1.0, 1.0, 1.0])  # signs of the motions of a clamp
 
 
 @dataclass(frozen=True)
 class ClampMotions:
-    """The motions of clamps that go with loads.
+    """The motions of clamps that loads cause.
 
-    motions: of clamps, as unit loads.
-    amounts: (M, L) of each motion per unit of each of L units.
+    units: L unit loads.
+    motions: M motions of clamps, as unit loads.
+    amounts: (M, L) of each motion per unit of each unit load.
     """
 
     units: tuple[Unit, ...]
     motions: tuple[Unit, ...]
     amounts: Floats
 
-    def held(self, loads: Loads) -> Loads:
+    def with_motions(self, loads: Loads) -> Loads:
         """The loads together with the motions of clamps that they cause."""
         if not self.motions:
             return loads
@@ -85,9 +93,9 @@ class ClampMotions:
 
 
 def reactions(supports: Sequence[ClampReaction], pieces: Sequence[LocalFields]) -> ClampMotions:
-    """The motions of clamps that close the gaps which cuts open between them.
+    """The motions of clamps that close the gaps which cuts open between clamps.
 
-    pieces: under all units, the motions of clamps last.
+    pieces: solved under all unit loads, the motions of clamps last.
 
     Raises: SolveError where the gaps cannot be closed.
     """
@@ -97,8 +105,8 @@ def reactions(supports: Sequence[ClampReaction], pieces: Sequence[LocalFields]) 
         return ClampMotions(units, (), np.zeros((0, first)))
     positions = [reached(s, pieces) for s in supports]
     gap = np.concatenate([MOTION_SIGNS[:, None] * (x - positions[0]) for x in positions[1:]])
-    # Gap of each clamp: its own motion plus what the cuts make of all motions and loads; none is
-    # left.
+    # The gap at each clamp is its own motion plus the motions that the cuts cause under all clamp
+    # motions and loads. It must be zero.
     system = np.eye(len(moved)) + gap[:, first:]
     scale = np.tile(
         np.repeat([1.0, pieces[0].piece.profile.largest_diameter], 3), len(supports) - 1
@@ -113,14 +121,14 @@ def reactions(supports: Sequence[ClampReaction], pieces: Sequence[LocalFields]) 
 
 
 def reached(support: ClampReaction, pieces: Sequence[LocalFields]) -> Floats:
-    """The rigid motion (6, L) of a clamp relative to the pin's start by all cuts before it.
+    """The rigid-body motion (6, L) of a clamp relative to the pin's start by all cuts before it.
 
-    It is a shift and a turn about the pin's origin.
+    It is a translation (m) and a rotation (rad) about the pin's origin.
     """
     out = np.zeros((6, len(pieces[0].units)))
     for p in pieces:
         if support.z > p.piece.z1:
             out += p.moved[1] - p.moved[0]
-        elif support.z > p.piece.z0:  # in the piece, where it is clamped
+        elif support.z > p.piece.z0:  # within the piece, whose motions are relative to the clamp
             out -= p.moved[0]
     return out

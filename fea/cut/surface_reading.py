@@ -1,10 +1,10 @@
-"""Strain in the surface of a solid from the displacements at the nodes of its smooth faces.
+"""The strain in the surface of a solid from the displacements at the nodes of its smooth faces.
 
 Displacements of quadratic tetrahedra are more accurate than their derivatives by more than one
-order. So at each node of a face a cubic polynomial in the two coordinates of the tangent plane is
+order. So at each node of a face, a cubic polynomial in the two coordinates of the tangent plane is
 fitted to the displacements of the nearest nodes of the face, or of their images in mirror planes
-(nearer ones count more), and its slopes are the gradient in the surface. With the traction on the
-face, which is known, that gives all of the stress.
+(nearer ones count more). Its slopes are the gradient in the surface. Together with the known
+traction on the face, that gives all stress components.
 
 Source: Zhang & Naga, SIAM J. Sci. Comput. 26 (2005) 1192 (polynomial preserving recovery), here on
 the surface alone.
@@ -23,9 +23,10 @@ from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh
 from pinbase.arrays import Floats, Ints
 
-FIT_NODES = 36  # nodes to which a polynomial, of ten terms, is fitted; chosen by judgement
-MIN_NORMAL_COSINE = 0.3  # between the normals of a node and a neighbour in its fit, by judgement
-_REGULARISATION = 1e-10  # of the number of neighbours, where these leave a term open
+FIT_NODES = 36  # nodes to which a polynomial of ten terms is fitted; chosen by judgement
+# Least cosine between the normals of a node and of a neighbour in its fit; chosen by judgement.
+MIN_NORMAL_COSINE = 0.3
+_REGULARISATION = 1e-10  # of the sum of weights, for terms that the neighbours do not determine
 _POWERS = [(i, j) for n in range(4) for i, j in ((n - k, k) for k in range(n + 1))]
 
 
@@ -33,7 +34,7 @@ _POWERS = [(i, j) for n in range(4) for i, j in ((n - k, k) for k in range(n + 1
 class Face:
     """A smooth face of a piece.
 
-    rows: (F,) its facets among the boundary's.
+    rows: (F,) numbers of its facets among those of the boundary.
     cut: whether it belongs to a cut.
     """
 
@@ -44,11 +45,11 @@ class Face:
 
 @dataclass(frozen=True)
 class FaceReading:
-    """The nodes (P,) of a face, with what is needed to read strains there.
+    """The nodes (P,) of a face, with the data needed to read strains there.
 
-    directions: (P, 3, 3) two along the face and its outward normal.
-    slopes: matrices (P, G P) that give derivatives along the first two from values at the nodes and
-    their images.
+    directions: (P, 3, 3) two unit vectors along the face, and its outward normal.
+    slopes: two matrices (P, G P) that give derivatives along the first two directions from values
+    at the nodes and their images.
     """
 
     face: Face
@@ -57,9 +58,9 @@ class FaceReading:
     slopes: tuple[sp.csr_matrix, sp.csr_matrix]
 
     def strain(self, u: Floats, parities: Parities, character: Floats) -> Floats:
-        """Strains 11, 22 and 12 in the surface, (P, 3, L).
+        """The strains 11, 22 and 12 in the surface, (P, 3, L).
 
-        u: (N, 3, L) m, displacements of one class.
+        u: (N, 3, L) m, displacements of one parity class.
         character: (G,) of the class.
         """
         here = u[self.nodes]
@@ -93,7 +94,10 @@ def read_face(
 
 
 def _directions(normal: Floats) -> Floats:
-    """Directions (P, 3, 3): two along the face, the first nearest to an axis, and the normal."""
+    """Three unit vectors (P, 3, 3): two along the face, and the normal.
+
+    The first is the projection of the axis that is most nearly along the face.
+    """
     n = normal / np.linalg.norm(normal, axis=1, keepdims=True)
     along = np.eye(3)[np.argmin(np.abs(n), axis=1)]
     first = along - np.sum(along * n, axis=1, keepdims=True) * n
@@ -104,16 +108,16 @@ def _directions(normal: Floats) -> Floats:
 def _slopes(
     x: Floats, directions: Floats, images: Floats, facing: Floats
 ) -> tuple[sp.csr_matrix, sp.csr_matrix]:
-    """Matrices (P, G P) of the derivatives along the first two directions at nodes.
+    """Two matrices (P, G P) of the derivatives along the first two directions at nodes.
 
-    x: (P, 3) nodes.
+    x: (P, 3) m, nodes.
     directions: (P, 3, 3).
-    images, facing: (G P, 3) nodes, images included, and their normals.
+    images, facing: (G P, 3) the nodes and their images, m, and their normals.
     """
     count = min(FIT_NODES, len(images))
     distance, near = (np.asarray(result) for result in cKDTree(images).query(x, count))
-    # Weights fall with distance to nothing for the last neighbour; nodes that face elsewhere are
-    # left out.
+    # Weights fall with distance to almost zero for the last neighbour. Nodes that face elsewhere
+    # are left out.
     same = np.einsum("psa,pa->ps", facing[near], directions[:, 2]) > MIN_NORMAL_COSINE
     confidence = (1.0 - (distance / (1.001 * distance[:, -1:])) ** 2) * same
     offsets = np.einsum("psa,pca->psc", images[near] - x[:, None], directions[:, :2])

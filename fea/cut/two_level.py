@@ -1,9 +1,10 @@
 """Conjugate gradients for quadratic tetrahedra with a two-level preconditioner.
 
-The smoother is a Chebyshev polynomial of Jacobi steps on blocks of nodes. The coarse level is that
-of linear tetrahedra on the same corners, an eighth of the nodes, which is factored.
+The smoother is a Chebyshev polynomial of Jacobi steps on blocks of nodes. The coarse level consists
+of linear tetrahedra on the same corners, an eighth of the nodes; its matrix is factored.
 
-Time and memory grow with the number of unknowns, those of a factorisation with its power 2 and 4/3.
+Time and memory grow in proportion to the number of unknowns. For a factorisation they grow with its
+powers 2 and 4/3.
 
 Source: Saad, Iterative Methods for Sparse Linear Systems, 2nd ed. (2003), 9.2, 12.3.2; Helenbrook &
 Atkins, AIAA J. 44 (2006) 566 (lower orders as coarse levels).
@@ -20,18 +21,20 @@ from fea.core.linear_solver import ConstrainedSystem
 from fea.solid.assembly import Discretisation
 from pinbase.arrays import Floats, Ints
 
-MAX_FACTORED_UNKNOWNS = 8_000  # up to which factoring takes less time
-ENERGY_TOLERANCE = 1e-5  # of TwoLevel.solve, unless another is given
+MAX_FACTORED_UNKNOWNS = 8_000  # largest system for which a factorisation takes less time
+ENERGY_TOLERANCE = 1e-5  # default tolerance of TwoLevel.solve
 MAX_CONJUGATE_GRADIENT_STEPS = 60  # 10 to 15 are usual
 # Chosen by judgement:
 SMOOTHER_DEGREE = 2  # of the Chebyshev polynomial
 SMOOTHER_EIGENVALUE_RATIO = 8.0  # largest eigenvalue over the least that is damped
 POWER_ITERATIONS = 12  # to estimate the largest eigenvalue
-EIGENVALUE_MARGIN = 1.1  # bound of the largest eigenvalue over its estimate, which is from below
+EIGENVALUE_MARGIN = 1.1  # bound of the largest eigenvalue over its estimate, which is too low
 
 
 class TwoLevel:
-    """Systems with the stiffness matrix (csr, N/m) of a mesh, of whose unknowns any may be zero."""
+    """Systems with the stiffness matrix (csr, N/m) of a mesh, any of whose unknowns may be
+    constrained.
+    """
 
     def __init__(self, space: Discretisation, stiffness: sp.csr_matrix) -> None:
         self._stiffness, self._count = stiffness, len(space.nodes)
@@ -47,18 +50,20 @@ class TwoLevel:
 
     @property
     def corners(self) -> Ints:
-        """Numbers of the linear tetrahedra's unknowns among all."""
+        """The numbers of the linear tetrahedra's unknowns among all unknowns."""
         return np.asarray((3 * self._corners[:, None] + np.arange(3)).ravel())
 
     def solve(
         self, free: Floats, held: Ints, forces: Floats, tolerance: float = ENERGY_TOLERANCE
     ) -> Floats | None:
-        """Unknowns (3 N, K) under forces (3 N, K); None where the iteration does not converge.
+        """The unknowns (3 N, K), m, under forces (3 N, K), N; None if the iteration does not
+        converge.
 
-        free: (3 N,) 0 where unknowns are zero, else 1.
-        held: unknowns, of corners, that remove the rigid motions that remain without forces; they
-        are zero on the coarse level alone.
-        tolerance: root of the residual's energy over that of the largest forces.
+        free: (3 N,) 0 for unknowns that are zero, else 1.
+        held: unknowns of corner nodes that remove the remaining rigid-body motions, which need no
+        force; they are zero on the coarse level alone.
+        tolerance: of the square root of the residual's energy, relative to that of the largest
+        forces.
         """
         free = free[:, None]
         on_coarse = free.copy()
@@ -74,7 +79,7 @@ class TwoLevel:
             x = x + free * (self._up @ coarse(left * on_coarse))
             return smooth(r, x)
 
-        # Preconditioned conjugate gradients; all right-hand sides iterate side by side, each with
+        # Preconditioned conjugate gradients: all right-hand sides iterate in parallel, each with
         # its own step lengths.
         solution, r = np.zeros_like(forces), free * forces
         z = precondition(r)
@@ -85,7 +90,7 @@ class TwoLevel:
         p = z
         for _ in range(MAX_CONJUGATE_GRADIENT_STEPS):
             done = energy <= least
-            # Right-hand sides that have converged leave, so that later steps cost less.
+            # Converged right-hand sides are removed, so that later steps cost less.
             if done.any():
                 solution[:, active[done]] = x[:, done]
                 active, energy = active[~done], energy[~done]
@@ -101,7 +106,9 @@ class TwoLevel:
         return None
 
     def _smoother(self, free: Floats) -> Callable[[Floats, Floats | None], Floats]:
-        """The smoother, from zero or from what the coarse level has corrected."""
+        """The smoother. It starts from zero, or from an approximation that the coarse level has
+        corrected.
+        """
         K = self._stiffness
         mask = free.reshape(-1, 3)
         blocks = self._diagonal_blocks * mask[:, :, None] * mask[:, None]
@@ -137,7 +144,7 @@ class TwoLevel:
 
 
 def _linear(space: Discretisation) -> tuple[Ints, sp.bsr_matrix]:
-    """The corner nodes, and the matrix that takes displacements there to all nodes linearly."""
+    """The corner nodes, and a matrix that interpolates displacements linearly to all nodes."""
     e, count = space.elements, len(space.nodes)
     corners = np.unique(e[:, :4])
     number = np.full(count, -1)

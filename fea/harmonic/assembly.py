@@ -1,15 +1,16 @@
-"""Harmonic elasticity on the meridian section of a body of revolution: its stiffness matrices.
+"""The stiffness matrices of harmonic elasticity on the meridian section of a body of revolution.
 
-Displacements of harmonic n are u_r = U cos psi, u_theta = V sin psi, u_z = W cos psi, strains
+The displacements of harmonic n are u_r = U cos psi, u_theta = V sin psi, u_z = W cos psi. The
+strains
 
     e_rr = U,r    e_tt = (U + n V) / r    e_zz = W,z    2 e_rz = U,z + W,r
     2 e_rt = V,r - (n U + V) / r          2 e_tz = V,z - n W / r
 
-the first four times cos psi, the last two times sin psi. The unknowns are p = (U + V) / 2,
-m = (U - V) / 2 and w = W, in which all conditions on the axis are that some of them vanish. With
-a, b, c = N,r N,z N / r of the shape functions N, strains are linear in these with coefficients that
-depend on n alone. So the integrals of all their products, (3, 3) for each pair of nodes, are taken
-once and give the stiffness of any n.
+vary as cos psi (the first four) and as sin psi (the last two). The unknowns are p = (U + V) / 2, m
+= (U - V) / 2 and w = W; with them, every condition on the axis is that some unknown vanishes. The
+strains are linear in a, b, c = N,r N,z N / r of the shape functions N, with coefficients that
+depend on n alone. So the integrals of all products of a, b and c, (3, 3) for each pair of nodes,
+are computed once and give the stiffness of any n.
 
 Source: Zienkiewicz & Taylor, The Finite Element Method, ch. on semi-analytical processes.
 """
@@ -34,30 +35,31 @@ from pinbase.arrays import Floats, Ints
 class Section:
     """The harmonic equations of quadratic triangles on a section (m).
 
-    Unknown 3 k + c belongs to node k: p, m or w for c = 0, 1, 2.
-    nodes: (N, 2) r, z in m; elements: (M, 6) their nodes.
-    parts: (M,) the number of each element's material, from 0 on; without them there is one.
+    Unknown 3 k + c belongs to node k; it is p, m or w for c = 0, 1, 2.
+    nodes: (N, 2) r, z in m.
+    elements: (M, 6) the nodes of each element.
+    parts: (M,) the number, from 0, of each element's material; by default there is one material.
     """
 
     def __init__(self, section: MeridianMesh, parts: Ints | None = None) -> None:
         self.section, self.parts = section, parts
         self.nodes, self.elements = section.nodes, section.elements
         at, self._area_weights, exact = _rules()
-        self.sampled_at = at[:, exact:]  # three, where strains are most exact
+        self.sampled_at = at[:, exact:]  # three points at which strains are most exact
         self._quadrature, self._sampled_points = slice(0, exact), slice(exact, None)
         self._values, self._slopes = triangle_shapes(at)
 
     @property
     def unknowns(self) -> int:
-        """Number of unknowns, constrained ones included."""
+        """The number of unknowns, constrained ones included."""
         return 3 * len(self.nodes)
 
     @cached_property
     def _mapped(self) -> tuple[Floats, Floats, Floats]:
-        """The isoparametric mapping at all Q points of the elements.
+        """The isoparametric mapping at all Q points of the elements, quadrature points and samples.
 
-        Returns N,r N,z and N / r, (M, Q, 3, 6), 1/m; r and z, (M, 2, Q), m; areas times r (M, Q),
-        m^3, zero at the samples.
+        Returns N,r N,z and N / r, (M, Q, 3, 6), 1/m; r and z, (M, 2, Q), m; and areas times r (M,
+        Q), m^3, which are zero at the samples.
         """
         x = self.nodes[self.elements].swapaxes(1, 2)
         at = x @ self._values
@@ -84,15 +86,14 @@ class Section:
     def quadrature(self) -> tuple[Floats, Floats]:
         """The data of integrals at the Q quadrature points of each element.
 
-        Returns N,r N,z and N / r, (M, Q, 3, 6), 1/m, and the areas times r, (M, Q), m^3, as
-        weights.
+        Returns N,r N,z and N / r, (M, Q, 3, 6), 1/m, and as weights the areas times r, (M, Q), m^3.
         """
         here = self._quadrature
         return self._gradients[:, here], self._weights[:, here]
 
     @property
     def radii(self) -> Floats:
-        """r of the quadrature points, (M, Q), m."""
+        """The radii r of the quadrature points, (M, Q), m."""
         return self._mapped[1][:, 0, self._quadrature]
 
     @cached_property
@@ -101,10 +102,11 @@ class Section:
         return Pattern(self.elements, len(self.nodes))
 
     def stiffness(self, materials: Material | Sequence[Material], n: int) -> sp.csr_matrix:
-        """The stiffness matrix of harmonic n, for displacements as above and around the whole axis.
+        """The stiffness matrix of harmonic n for the unknowns p, m, w, integrated around the whole
+        axis.
 
-        All harmonics have the same pattern.
-        materials: one, or that of each part.
+        The matrices of all harmonics have the same sparsity pattern.
+        materials: one material, or that of each part.
         """
         by_part = (materials,) if isinstance(materials, Material) else materials
         E = strain_map(n)
@@ -116,7 +118,9 @@ class Section:
 
     @cached_property
     def _products(self) -> list[Floats]:
-        """Integrals (P, 9), per radian, of products of a, b, c of pairs of nodes, by part."""
+        """The integrals (P, 9), per radian, of the products of a, b and c for P pairs of nodes, for
+        each part.
+        """
         root = np.sqrt(self._weights[:, self._quadrature])
         parts = self._gradients[:, self._quadrature] * root[..., None, None]
         x = parts.reshape(len(parts), -1, 3, 6).transpose(0, 3, 2, 1).reshape(len(parts), 18, -1)
@@ -131,7 +135,7 @@ class Section:
 
     @cached_property
     def integrals(self) -> Floats:
-        """Integrals of the shape functions times r over the section, (N,), m^3."""
+        """The integrals (N,), m^3, of the shape functions times r over the section."""
         element_integrals = self._weights @ self._values.T
         count = len(self.nodes)
         return np.bincount(self.elements.ravel(), element_integrals.ravel(), count).astype(
@@ -139,7 +143,8 @@ class Section:
         )
 
     def sampled_stress(self, material: Material, n: Ints | int, u: Floats) -> Floats:
-        """The stress (M, 3, 6, K), Pa, at three points of each element, where it is most exact.
+        """The stress (M, 3, 6, K), Pa, at the three points of each element at which it is most
+        exact.
 
         n: harmonics, one or (K,).
         u: displacements (N, 3, K), m.
@@ -164,12 +169,12 @@ class Section:
 
 
 def around(n: int) -> float:
-    """The integral of cos^2 psi about the axis, and for n > 0 of sin^2 psi."""
+    """The integral of cos^2 psi around the axis, which for n > 0 is also that of sin^2 psi."""
     return math.pi if n else 2.0 * math.pi
 
 
 def elasticity(material: Material) -> Floats:
-    """The elasticity matrix (6, 6), Pa: rr, tt, zz, tz, rz, rt, the shears of strain doubled."""
+    """The elasticity matrix (6, 6), Pa: rr, tt, zz, tz, rz, rt; engineering shear strains."""
     lam, mu = material.lame
     D = np.diag([2.0 * mu] * 3 + [mu] * 3)
     D[:3, :3] += lam
@@ -178,9 +183,10 @@ def elasticity(material: Material) -> Floats:
 
 @lru_cache
 def _rules() -> tuple[Floats, Floats, int]:
-    """Points (2, Q) of a reference triangle, weights (Q,), and the number of quadrature points.
+    """The points (2, Q) of a reference triangle, weights (Q,), and the number of quadrature points.
 
-    First come those of a rule of fourth degree, then three samples of strain, with no weight.
+    Quadrature points of a rule of fourth degree come first, then three samples of strain, whose
+    weight is zero.
     """
     points, weights = get_quadrature(RefTri, 4)
     samples = get_quadrature(RefTri, 2)[0]
@@ -189,9 +195,10 @@ def _rules() -> tuple[Floats, Floats, int]:
 
 
 def strain_map(n: int) -> Floats:
-    """The strains (6, 3, 3) of harmonic n per part a, b or c of an unknown p, m or w.
+    """The strains (6, 3, 3) of harmonic n for each unknown p, m, w and each of its a, b, c.
 
-    Strains are rr, tt, zz, 2 tz, 2 rz, 2 rt.
+    The first axis is the strains rr, tt, zz, 2 tz, 2 rz, 2 rt, the second the unknown, the third a,
+    b, c.
     """
     out = np.zeros((6, 3, 3))
     p, m, w = range(3)

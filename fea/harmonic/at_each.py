@@ -1,8 +1,8 @@
-"""Maxima of the harmonic model on one mesh at every instant by itself, as those of so many cases.
+"""The maxima of the harmonic model on one mesh at every instant, each treated as a load case.
 
-Many loads of a pin that take the same mesh are superposed together: places are found for all at
-once. The numbers there are then computed instant by instant in the same order of operations, so
-that none depends on which other instants are solved with it.
+Many loads of a pin that take the same mesh are superposed together: the points of the maxima are
+found for all at once. The stresses there are then computed instant by instant in the same order of
+operations, so that none depends on which other instants are solved with it.
 """
 
 from __future__ import annotations
@@ -41,7 +41,8 @@ def crest_of_each(around: Circumference, among: Mask) -> EachCrest:
 class EachOnMesh:
     """The maxima at each of T instants on one mesh.
 
-    zones: those of the problem; acting: the zones of the loads.
+    zones: the zones of the problem.
+    acting: those of them that the loads make singular.
     """
 
     def __init__(
@@ -84,7 +85,7 @@ class EachOnMesh:
         return list(zip(x.tolist(), y.tolist(), z.tolist(), strict=True))
 
     def _intervals(self) -> tuple[list[float], list[float]]:
-        """The least and the largest maximum (T,), Pa, by half and twice the excluded distance."""
+        """The least and the largest maximum (T,), Pa, with half and twice the excluded distance."""
         maxima = np.stack(
             [
                 crest_of_each(
@@ -96,12 +97,12 @@ class EachOnMesh:
         return maxima.min(axis=0).tolist(), maxima.max(axis=0).tolist()
 
     def _inside(self, zone: Zone) -> list[ZoneMaximum]:
-        """The largest stress in a zone at each instant; its growth is not measured."""
+        """The largest stress in a zone at each instant; the growth of stress is not measured."""
         _, within, felt = places_of(self.fields, zone)
         far, far_point = self.around.each(felt)
         near, near_point = self.around.each(within & ~felt, far)
         point = np.where(near > far, near_point, far_point)
-        angle = self.around.round(point, np.arange(len(point)))[1]
+        angle = self.around.largest_over_angle(point, np.arange(len(point)))[1]
         x, y = zone.r * np.cos(angle), zone.r * np.sin(angle)
         acts = zone in self._acting
         every = zip(*(a.tolist() for a in (near, far, x, y)), strict=True)
@@ -112,10 +113,13 @@ class EachOnMesh:
         if self._loads.distribution != "cosine" or self.around.highest != self._loads.terms:
             return np.zeros(len(self._loads))
         instants = np.arange(len(self._loads))
-        return SERIES_REMAINDER_RATIO * self.around.last_at(self.top.point, instants)
+        return SERIES_REMAINDER_RATIO * self.around.highest_harmonic_at(self.top.point, instants)
 
     def with_growth(self, result: MeshMaximum, k: int) -> MeshMaximum:
-        """The result of an instant with the growth of stress in the zones that govern."""
+        """The result of one instant, with the growth of stress measured in the zones that govern.
+
+        k: number of the instant.
+        """
         around, nu = self.around.of_instant(k), self.solution.nu
         measured = []
         every = zip(self.zones, self.solution.close, result.singularities, strict=True)
@@ -128,9 +132,10 @@ class EachOnMesh:
         return replace(result, singularities=tuple(measured))
 
     def high_places(self, some: Ints) -> list[tuple[tuple[float, float], ...]]:
-        """Points (r, z), m, where stress is nearly the maximum, at each of some instants.
+        """The points (r, z), m, at which stress is nearly the maximum, at each of some instants.
 
-        As fea.harmonic.evaluate.high_places: the highest first, well apart.
+        They are those of fea.harmonic.evaluate.high_places: the highest first, well apart.
+        some: numbers of the instants.
         """
         points, out = self.fields.points, [list[Floats]() for _ in some]
         rows, least = np.flatnonzero(self._among), REFINE_ABOVE * self.top.value[some]
@@ -139,7 +144,7 @@ class EachOnMesh:
             now = np.flatnonzero(highest == one)
             apart = np.hypot(*(points[rows] - points[one]).T) > MIN_SPACING * points[rows, 0]
             i, t = self._above(rows[apart], some[now], least[now])
-            value, _ = self.around.round(i, some[now][t])
+            value, _ = self.around.largest_over_angle(i, some[now][t])
             order = np.argsort(-value, kind="stable")
             for k in now:
                 out[k].append(points[one])
@@ -152,7 +157,7 @@ class EachOnMesh:
         return [tuple((float(r), float(z)) for r, z in places) for places in out]
 
     def _above(self, rows: Ints, instants: Ints, least: Floats) -> tuple[Ints, Ints]:
-        """Pairs of points and instants (by position) whose stress may reach values, Pa."""
+        """The pairs of points and instants (by position) whose stress may reach `least`, Pa."""
         reach = self.around.reach(rows, instants) >= least
         rows, reach = rows[some := reach.any(axis=1)], reach[some]
         reach &= self.around.bound(rows, instants) >= least

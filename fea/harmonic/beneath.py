@@ -1,8 +1,8 @@
-"""Stress beneath contact: farther than a distance from all pressed cells, and the reach of stress.
+"""Stress beneath contact: the largest beyond a distance from all pressed cells, and its reach.
 
-Inside, stress falls from the edge of a lug like d^-0.2 (pressure and bending together), so that no
-distance is natural there; hence both the largest stress beyond a distance and the distance that a
-stress reaches.
+Inside the pin, stress falls from the edge of a lug like d^-0.2 (pressure and bending together), so
+that no distance is natural there. Hence two results: the largest stress beyond a stated distance,
+and the distance up to which a given stress is exceeded.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ from geometry import Pin
 from pinbase.arrays import Floats, Ints, Mask
 
 # Chosen by judgement:
-ARC_STRIDE = 8  # one arc in so many is evaluated for the reach
+ARC_STRIDE = 8  # every eighth arc is evaluated for the reach
 EDGE_CIRCLE_POINTS = 9  # points of a quarter circle about the edge of a lug
-DEPTH_BATCH = 256  # points whose stress all round is held at once
-OUTSIDE_MARGIN = 1e-6  # of the distance: puts points just outside it despite round-off
+DEPTH_BATCH = 256  # points whose stress over the circumference is held in memory at once
+OUTSIDE_MARGIN = 1e-6  # of the distance: puts points just beyond it despite round-off
 
 
-Steps = tuple[tuple[float, float], ...]  # of a stress, Pa, and the distance, m, that it reaches
+Steps = tuple[tuple[float, float], ...]  # pairs of a stress, Pa, and the distance, m, it reaches
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Beneath:
     """The largest von Mises stress beneath contact, Pa.
 
     location: (x, y, z), m.
-    instant: its number.
+    instant: number of the instant at which it occurs.
     """
 
     value: float
@@ -50,19 +50,20 @@ class Beneath:
 class Away:
     """The part of the circumference farther than BENEATH_DISTANCE diameters from pressed cells.
 
-    points: (S, 2) m. It is a Region of fea.harmonic.superposed_stress.
+    It is a Region of fea.harmonic.superposed_stress.
+    points: (S, 2) m.
     """
 
     def __init__(self, points: Floats, pressed: PressedArcs) -> None:
         self.pressed, self._known = pressed, dict[int, NDArray[np.int16]]()
         near = arcs_within(points, pressed.rings, 2.0 * BENEATH_DISTANCE * pressed.rings.radius)
         some = (near >= 0).any(axis=1)
-        self._near = near[some].astype(np.int16)  # a quarter of the memory to go through
+        self._near = near[some].astype(np.int16)  # a quarter of the memory to read
         self._row = np.full(len(points), -1)
         self._row[some] = np.arange(some.sum())
 
     def masked(self, points: Ints) -> Mask:
-        """Mask of the points that are read on a part of the circumference only."""
+        """A mask (J,) of the points (J,) that are read on part of the circumference only."""
         return np.asarray(self._row[points] >= 0)
 
     def read(self, points: Ints, instants: Ints) -> Mask:
@@ -80,10 +81,11 @@ class Away:
 
 
 def arcs_within(points: Floats, rings: Rings, distance: Floats) -> Ints:
-    """The number of arcs (S, R) from a pressed arc up to which a point is within a distance.
+    """The largest number of arcs (S, R) between a point and a pressed arc that keeps both within a
+    distance.
 
     points: (S, 2) m.
-    distance: (R,) m. -1 where the point is farther from the ring anyway.
+    distance: (R,) m. The result is -1 where the point is farther from the ring at any angle.
     """
     r, z = points[:, :1], points[:, 1:]
     along = np.maximum(0.0, np.maximum(rings.start - z, z - rings.end))
@@ -97,13 +99,13 @@ def arcs_within(points: Floats, rings: Rings, distance: Floats) -> Ints:
 
 
 def arcs_apart(on: Mask) -> Ints:
-    """The number of arcs from each arc (R, ARC_COUNT) to the nearest one of a mask.
+    """The number of arcs from each arc (R, ARC_COUNT) to the nearest marked arc of a mask.
 
-    It is ARC_COUNT for an empty mask.
+    It is ARC_COUNT where the mask has no marked arc.
     """
     turns = np.tile(on, 3)
     number = np.arange(3 * ARC_COUNT)
-    # The last marked arc up to each, and the first one from each on, over three turns.
+    # Over three turns: the last marked arc before each arc, and the first one after it.
     before = np.maximum.accumulate(np.where(turns, number, -ARC_COUNT), axis=1)
     after = np.minimum.accumulate(np.where(turns, number, 4 * ARC_COUNT)[:, ::-1], axis=1)[:, ::-1]
     apart = np.minimum(number - before, after - number)[:, ARC_COUNT : 2 * ARC_COUNT]
@@ -111,10 +113,10 @@ def arcs_apart(on: Mask) -> Ints:
 
 
 def beneath(fields: MeridianFields, loads: Loads, zones: tuple[Zone, ...]) -> Beneath:
-    """The largest stress beneath contact, outside of singular zones."""
+    """The largest von Mises stress beneath contact, outside of singular zones."""
     around, away = _around(fields, loads), _away_from(zones, fields)
-    # The points just beneath the rings mostly have the largest stress. Known first, it rules out
-    # most of the points nearer to the surface, whose bounds are those of what is pressed.
+    # The points just beneath the rings mostly have the largest stress. If it is found first, it
+    # rules out most of the other points, whose bounds include the stress under pressed cells.
     first = away & (np.arange(len(away)) >= len(fields.displacement))
     top = around.top(first)
     more = around.top(away & ~first, top.value)
@@ -123,7 +125,7 @@ def beneath(fields: MeridianFields, loads: Loads, zones: tuple[Zone, ...]) -> Be
 
 
 def maxima_beneath(fields: MeridianFields, loads: Loads, zones: tuple[Zone, ...]) -> Floats:
-    """The largest stress (T,), Pa, beneath contact at every instant."""
+    """The largest von Mises stress (T,), Pa, beneath contact at every instant."""
     return _around(fields, loads).maxima(_away_from(zones, fields))
 
 
@@ -135,16 +137,17 @@ def _around(fields: MeridianFields, loads: Loads) -> Circumference:
 def depths(
     fields: MeridianFields, loads: PinLoads, instant: int, zones: tuple[Zone, ...], least: float
 ) -> Steps:
-    """Pairs of a stress, Pa, and the distance, m, from pressed cells that it reaches at an instant.
+    """The pairs of a stress, Pa, and the distance, m, from pressed cells that it reaches at an
+    instant.
 
-    Stresses fall to `least` and distances grow: each is farther than all before.
+    Stresses fall, down to `least`, Pa, and distances grow: each is larger than all before.
     """
     assert loads.pressed is not None
     rows = np.flatnonzero(_away_from(zones, fields))
     around = Circumference(fields, loads)
     rows = rows[around.reach(rows, np.array([instant]))[:, 0] > least]
     parts = list[tuple[float, float]]()
-    # In parts, for stress of all points in all harmonics of narrow arcs would take gigabytes.
+    # In batches, since the stress of all points on all arcs would take gigabytes.
     for k in range(0, len(rows), DEPTH_BATCH):
         part = rows[k : k + DEPTH_BATCH]
         stress = von_mises(around.stress(part, instant, ARC_ANGLES[::ARC_STRIDE])).ravel()
@@ -155,9 +158,10 @@ def depths(
 
 
 def stairs(stress: Floats, away: Floats, least: float = 0.0) -> Steps:
-    """The points that no other point exceeds in both stress and distance, by falling stress.
+    """The pairs that no other pair exceeds in both stress and distance, by falling stress.
 
     stress, away: (N,) each.
+    least: only stresses above this count.
     """
     order = np.lexsort((-away, -stress))
     order = order[stress[order] > least]
@@ -168,14 +172,14 @@ def stairs(stress: Floats, away: Floats, least: float = 0.0) -> Steps:
 
 
 def _away_from(zones: tuple[Zone, ...], fields: MeridianFields) -> Mask:
-    """Mask (S,) of the points that may be read: outside of zones and not marked as unread."""
+    """A mask (S,) of the points that may be read: outside of zones and not marked as unread."""
     out = outside(zones, *fields.points.T)
     out[fields.unread] = False
     return out
 
 
 def _distance(points: Floats, pressed: PressedArcs, instant: int) -> Floats:
-    """Distances (S, A), m, of points (S, 2) from pressed cells, at every ARC_STRIDE-th arc."""
+    """The distances (S, A), m, of points (S, 2) from pressed cells, at every ARC_STRIDE-th arc."""
     rings, on = pressed.rings, pressed.on[instant]
     r, z = points[:, :1], points[:, 1:]
     apart = arcs_apart(on)[:, ::ARC_STRIDE]
@@ -191,9 +195,10 @@ def _distance(points: Floats, pressed: PressedArcs, instant: int) -> Floats:
 
 
 def just_beneath(pin: Pin, rings: tuple[str, ...]) -> Floats:
-    """Points (P, 2), r and z in m, just farther inside a pin than BENEATH_DISTANCE from its rings.
+    """The points (P, 2), r and z in m, just farther inside a pin than BENEATH_DISTANCE from its
+    rings.
 
-    They lie under each ring and about the ends of what adjacent rings make up.
+    They lie under each ring, and on a quarter circle about each end of a stretch of adjacent rings.
     """
     bands = [pin.band(name) for name in rings]
     away = 2.0 * BENEATH_DISTANCE * (1.0 + OUTSIDE_MARGIN)
@@ -201,7 +206,7 @@ def just_beneath(pin: Pin, rings: tuple[str, ...]) -> Floats:
     turns = np.linspace(0.0, np.pi / 2.0, EDGE_CIRCLE_POINTS)[1:]
     ends = [(z, sign, b.radius) for b in bands for z, sign in ((b.z0, -1.0), (b.z1, 1.0))]
     z_ends, near = np.array([z for z, *_ in ends]), RING_END_TOLERANCE * pin.length
-    # Ends that two rings share are inside what they make up; only the others have a quarter circle.
+    # Ends that two rings share are inside a stretch; only the others have a quarter circle.
     shared = np.abs(z_ends[:, None] - z_ends) <= near
     alone = [
         end for end, count in zip(ends, shared.sum(axis=1).tolist(), strict=True) if count == 1

@@ -1,4 +1,4 @@
-"""The outline of a section's mesh and the loads on it."""
+"""The outline of a section's mesh, and tractions on it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _EDGE_GAUSS_POINTS, _EDGE_GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 def shapes(x: Floats) -> Floats:
-    """Quadratic shape functions (Q, 3) of an edge (ends, middle) at x (Q,) from -1 to 1."""
+    """The quadratic shape functions (Q, 3) of an edge (ends, middle) at x (Q,) from -1 to 1."""
     return np.stack([x * (x - 1.0) / 2.0, x * (x + 1.0) / 2.0, 1.0 - x * x], axis=1)
 
 
@@ -25,11 +25,11 @@ def slopes(x: Floats) -> Floats:
 
 
 class Outline:
-    """All edges of the outline off the axis.
+    """All edges of the outline except those on the axis.
 
-    nodes: (E, 3) ends and middle of each, counter-clockwise.
-    after: (E,) which edge follows each, -1 at the axis.
-    of_rings: the latest unit loads on rings, with their forces on the unknowns over those around
+    nodes: (E, 3) the ends and the middle of each edge, counter-clockwise.
+    after: (E,) the edge that follows each, -1 at the axis.
+    of_rings: for the latest unit loads on rings, their nodal forces divided by the integral around
     the axis, and their tractions.
     """
 
@@ -47,20 +47,20 @@ class Outline:
         }
 
     def moved(self, nodes: Floats) -> Outline:
-        """The same edges on a section whose nodes are elsewhere, (N, 2), m."""
+        """The same edges on a section whose nodes are moved to (N, 2), m."""
         other = copy(self)
         other.every_node, other._surface_weights, other.of_rings = nodes, {}, {}
         return other
 
     def constrained(self, surfaces: tuple[str, ...]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-        """Mask (E,) of the edges on any of the surfaces."""
+        """A mask (E,) of the edges on any of the surfaces."""
         out = np.zeros(len(self.nodes), dtype=bool)
         for name in surfaces:
             out[self.rows[name]] = True
         return out
 
     def traction(self, parts: tuple[Traction, ...]) -> Floats:
-        """Traction amplitudes (E, 3, 3), Pa, at the nodes of all edges."""
+        """The traction amplitudes (E, 3, 3), Pa, at the nodes of all edges."""
         out = np.zeros((*self.nodes.shape, 3))
         for part in parts:
             rows = self.rows[part.surface]
@@ -68,7 +68,7 @@ class Outline:
         return out
 
     def forces(self, parts: tuple[Traction, ...], n: int) -> Floats:
-        """Nodal forces (N, 3), N, along r, theta and z of tractions of harmonic n."""
+        """The nodal forces (N, 3), N, along r, theta and z of tractions of harmonic n."""
         if not parts:
             return np.zeros((len(self.every_node), 3))
         nodes, by_part = self.nodes[np.concatenate([self.rows[x.surface] for x in parts])], []
@@ -80,11 +80,12 @@ class Outline:
         return out
 
     def weights(self, rows: Ints) -> Floats:
-        """Weights (E, 3), m^2, of the nodes' values in integrals over edges, length times r."""
+        """The weights (E, 3), m^2, of nodal values in integrals over edges of length times r."""
         return np.asarray(self._on_edges(rows)[1].sum(axis=1))
 
     def _quadrature(self, surface: str) -> tuple[Floats, Floats]:
-        """z (E, Q), m, of a surface's quadrature points, and nodes' weights (E, Q, 3), m^2.
+        """The z (E, Q), m, of a surface's quadrature points, and the weights (E, Q, 3), m^2, of the
+        nodes.
 
         The weights are for integrals over length times r.
         """
@@ -93,8 +94,8 @@ class Outline:
         return self._surface_weights[surface]
 
     def _on_edges(self, rows: Ints) -> tuple[Floats, Floats]:
-        """The heights (E, 4), m, of Gauss points of edges, and the weights (E, 4, 3), m^2, with
-        which values there act on the nodes.
+        """The z (E, 4), m, of the Gauss points of edges, and the weights (E, 4, 3), m^2, with which
+        tractions at these points act on the nodes.
         """
         x, values = self.every_node[self.nodes[rows]], shapes(_EDGE_GAUSS_POINTS)
         at = np.einsum("qi,eia->eqa", values, x)
@@ -103,7 +104,7 @@ class Outline:
 
 
 def _after(edges: Ints) -> Ints:
-    """The edge (E,) that starts where each ends, -1 for none."""
+    """The edge (E,) that starts where each edge ends, -1 for none."""
     starts = np.full(int(edges.max()) + 1, -1)
     starts[edges[:, 0]] = np.arange(len(edges))
     return np.asarray(starts[edges[:, 1]])

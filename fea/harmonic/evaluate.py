@@ -1,4 +1,4 @@
-"""Results of the harmonic model for a pin's cases on one mesh."""
+"""The maxima of a pin's cases in the harmonic model on one mesh."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ from geometry import ArgumentError, body_of_revolution
 from pinbase.arrays import Floats, Mask
 from pinbase.memo import Memo
 
-# The remainder of a pressure's series over its last harmonic, at most: terms go as +-1/(n^2 - 1).
+# The largest remainder of a pressure's series over its last term: terms vary as +-1/(n^2 - 1).
 SERIES_REMAINDER_RATIO = 0.6
-# Places of high stress: least stress, of the maximum; least distance, of r; their number at most.
+# Places of high stress: least stress, of the maximum; least spacing, of r; largest number.
 REFINE_ABOVE, MIN_SPACING, MAX_PLACES = 0.95, 0.1, 3
 # The scatter was measured on random shoulders (benchmarks coverage). Nodes lie on the edges of
 # zones, so that the maximum outside converges at least linearly.
 SECTION_MESHES = MeshSequence(
     ratio=2.0**0.5, growth=2.0, max_meshes=7, max_unknowns=400_000, scatter=0.026, min_order=1.0
 )
-# The first mesh resolves the rings of a contact pressure, so that two are enough.
+# The first mesh resolves the rings of a contact pressure, so that two meshes are enough.
 PRESSED_SECTION_MESHES = replace(SECTION_MESHES, ratio=2.0, min_meshes=2)
 
 
 @dataclass(frozen=True)
 class HarmonicMesh:
-    """A mesh solved by the harmonic model (fea.core.model.MeshSolution)."""
+    """One mesh solved by the harmonic model (fea.core.model.MeshSolution)."""
 
     problem: MeshProblem
     solution: HarmonicSolution
@@ -50,7 +50,7 @@ class HarmonicMesh:
         return self.problem.zones
 
     def field(self, case: str) -> HarmonicField:
-        """The stress as one case sees it."""
+        """The stress of one case, which is not read in the zones that its loads make singular."""
         return HarmonicField(self.solution, self.problem.zones_of(case))
 
     def maximum(self, loads: PinLoads) -> MeshMaximum:
@@ -63,8 +63,9 @@ class HarmonicMesh:
 class Harmonic:
     """The harmonic model of any body of revolution (fea.core.model.Model).
 
-    memo: of meshes and unit fields, shared with other problems.
-    first: the first mesh, if contact pressures act.
+    memo: a store of meshes and unit fields, shared with other problems.
+    first: solves the first mesh where contact pressures act.
+    pressed: whether contact pressures act, so that fewer meshes are needed.
     """
 
     name = "harmonic"
@@ -78,7 +79,7 @@ class Harmonic:
     def solve(
         self, problem: MeshProblem, level: int, before: MeshBefore | None = None
     ) -> HarmonicMesh:
-        """Solve one mesh, as every model does."""
+        """Solve all unit loads on mesh number `level` (fea.core.model.Model.solve)."""
         posed = section_problem(problem, self._memo, self._first)
         results = () if before is None else before.results
         return HarmonicMesh(problem, harmonic_solution(posed, level, self.meshes.ratio, results))
@@ -87,7 +88,7 @@ class Harmonic:
 def section_problem(
     problem: MeshProblem, memo: Memo | None = None, first: FirstMesh | None = None
 ) -> SectionProblem:
-    """The problem of a pin's section.
+    """The problem of the section of a pin.
 
     Raises: ArgumentError for a pin that is not a body of revolution.
     """
@@ -107,9 +108,10 @@ def harmonic_result(
     loads: PinLoads,
     case_zones: Collection[Zone] | None = None,
 ) -> MeshMaximum:
-    """The maximum outside the singularities, and that inside each of them.
+    """The maximum outside the singularities, and the maximum inside each of them.
 
-    case_zones: the singularities of this case, where others have more; all by default.
+    singularities: those of all cases.
+    case_zones: those that this case makes singular; all by default.
     """
     around = reader(solution.fields, loads, solution.nu)
     fields = around.fields
@@ -138,15 +140,16 @@ def harmonic_result(
 def high_places(
     around: Circumference, points: Floats, among: Mask, top: Crest, least: float = REFINE_ABOVE
 ) -> tuple[tuple[float, float], ...]:
-    """Points (r, z) where stress is nearly the maximum, the highest first, well apart.
+    """The points (r, z), m, at which stress is nearly the maximum, the highest first, well apart.
 
+    among: (S,) mask of the points that are searched.
     least: the least stress there, as a fraction of the maximum.
     """
     rows = np.flatnonzero(among)
     now = slice(top.instant, top.instant + 1)
     for bound in (around.reach, around.bound):
         rows = rows[bound(rows, now)[:, 0] >= least * top.value]
-    value, _ = around.round(rows, np.full(len(rows), top.instant))
+    value, _ = around.largest_over_angle(rows, np.full(len(rows), top.instant))
     places: list[Floats] = []
     for k in np.argsort(-value, kind="stable"):
         if value[k] < least * top.value or len(places) == MAX_PLACES:
@@ -158,12 +161,12 @@ def high_places(
 
 
 def _left_out(around: Circumference, loads: PinLoads, top: Crest) -> float:
-    """The error from truncating the series of a bearing pressure, Pa, by its last harmonic at the
-    maximum.
+    """The error, Pa, from truncating the series of a bearing pressure.
 
-    A thin tube that becomes oval feels more of that harmonic than a solid pin.
+    It is derived from the stress of the last harmonic at the maximum, since a thin tube that
+    becomes oval is affected more by that harmonic than a solid pin.
     """
     if loads.distribution != "cosine" or around.highest != loads.terms:
         return 0.0
-    largest = around.last_at(np.array([top.point]), np.array([top.instant]))
+    largest = around.highest_harmonic_at(np.array([top.point]), np.array([top.instant]))
     return SERIES_REMAINDER_RATIO * float(largest[0])

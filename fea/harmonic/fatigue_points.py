@@ -1,12 +1,12 @@
 """Stress tensors for fatigue at points of a body of revolution, some of which lugs press on.
 
-A point of a band is free under one load and pressed under the opposite one. While it is free its
-stress is read. While a lug presses on it, it has the stress of the same fibre without that of the
-pressure (fea.harmonic.free_surface), and at the edge of a lug, where that is not known either, the
-stress of the nearest point of the outline at the same angle where it is. So an alternating load has
-its whole range beside an edge: keeping the last free value would halve it, and the pressure of
-cells would make ranges that depend on the cells. Effects of contact itself (fretting) are not
-included.
+A point of a band is free under one load and pressed under the opposite one. While it is free, its
+stress is read. While a lug presses on it, it takes the stress of the same fibre without that of the
+pressure (fea.harmonic.free_surface). At the edge of a lug that stress is not known either; there
+the point takes the stress of the nearest point of the outline at the same angle at which it is
+known. So an alternating load has its whole stress range beside an edge: keeping the last free value
+would halve it, and the pressure of cells would make ranges that depend on the cells. Effects of
+contact itself (fretting) are not included.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from fea.harmonic.free_surface import FreeSurface, SurfacePoints, surface_points
 from fea.harmonic.surface_stress import EDGE_STATIONS
 from pinbase.arrays import Floats, Ints
 
-# Substitutes that are tried before all others, and pairs of points and instants at once: they
-# change time and memory, never the result. Chosen by judgement.
+# Numbers of nearest substitutes tried before all others, and pairs of points and instants evaluated
+# together. They change time and memory, never the result, and are chosen by judgement.
 SUBSTITUTES_FIRST, SUBSTITUTE_BATCH = (8, 64), 4096
 EVEN, ODD = np.flatnonzero(COSINE_COMPONENTS), np.flatnonzero(~COSINE_COMPONENTS)
 
@@ -35,9 +35,11 @@ EVEN, ODD = np.flatnonzero(COSINE_COMPONENTS), np.flatnonzero(~COSINE_COMPONENTS
 def stress_points(
     fields: MeridianFields, zones: tuple[Zone, ...], loads: PinLoads, nu: float
 ) -> StressPoints:
-    """The points of the surface, and where lugs press on it those that replace others.
+    """The points of the surface at which fatigue is assessed, with their stress.
 
-    zones: of unbounded stress, in which fatigue is not looked for. nu: Poisson's ratio.
+    Where lugs press on a point, other points replace it (Substitutes).
+    zones: of unbounded stress, in which fatigue is not assessed.
+    nu: Poisson's ratio.
     """
     if loads.pressed is None:
         surface = fields.outside(zones)
@@ -54,7 +56,9 @@ def stress_points(
 
 
 class Substitutes:
-    """Points of a surface of revolution that replace others where these are not read."""
+    """The points of a surface of revolution that replace others at instants at which these are not
+    read.
+    """
 
     def __init__(self, of: SurfacePoints, pressed: PressedArcs) -> None:
         self.free, self._x = FreeSurface(of, pressed), of.fields.points
@@ -81,10 +85,10 @@ class Substitutes:
     def _substitutes(self, rows: Ints, instants: Ints, arcs: Ints) -> Ints:
         """The nearest points that are read at the same instants and arcs, (J,) each.
 
-        Without one a point stays.
+        A point without a substitute is kept.
         """
         out, left = rows.copy(), np.arange(len(rows))
-        for count in (*SUBSTITUTES_FIRST, len(self._may)):  # mostly one of the first is
+        for count in (*SUBSTITUTES_FIRST, len(self._may)):  # one of the first is mostly read
             nearest = self._may[self._nearest(rows[left], count)]
             alike = (np.repeat(x[left], nearest.shape[1]) for x in (instants, arcs))
             can = self.free.read_at(nearest.ravel(), *alike).reshape(nearest.shape)
@@ -104,9 +108,12 @@ class Substitutes:
 
 
 def replaced(stress: StressAt, substitutes_of: Callable[[Ints, Floats, Ints], Ints]) -> StressAt:
-    """A function that gives stress (J, T, 6) with substitutes for points where they are not read.
+    """Return a function that gives stress (J, T, 6), Pa, with substitutes for points that are not
+    read.
 
-    substitutes_of: gives the points (J, T) that replace others at instants.
+    stress: gives the stress of points themselves.
+    substitutes_of: gives the points (J, T) that replace points (J,) at angles (J,) and instants
+    (T,).
     """
 
     def at(rows: Ints, angles: Floats, instants: Ints) -> Floats:
@@ -114,7 +121,7 @@ def replaced(stress: StressAt, substitutes_of: Callable[[Ints, Floats, Ints], In
         substitutes = substitutes_of(rows, angles, instants)
         j, t = np.nonzero(substitutes != rows[:, None])
         if len(j):
-            # Substitutes repeat themselves: each is read once at an angle, at all instants.
+            # The same substitutes occur often: each is read once at each angle, at all instants.
             turn = np.unique(angles, return_inverse=True)[1][j]
             pairs, first, place = np.unique(
                 np.stack([substitutes[j, t], turn]), axis=1, return_index=True, return_inverse=True
@@ -127,9 +134,9 @@ def replaced(stress: StressAt, substitutes_of: Callable[[Ints, Floats, Ints], In
 
 
 def stress_at(fields: MeridianFields, loads: Loads) -> StressAt:
-    """A function that gives the stress (J, T, 6), Pa, of unit fields under loads.
+    """Return a function that gives the stress (J, T, 6), Pa, of unit fields under loads.
 
-    Its arguments are points (J,) by their numbers, the angles (J,), rad, by which they are turned,
+    Its arguments are the numbers (J,) of points, the angles (J,), rad, to which they are turned,
     and the numbers (T,) of instants.
     """
     acting = loads.coefficients()
@@ -155,7 +162,7 @@ def stress_at(fields: MeridianFields, loads: Loads) -> StressAt:
         for k, angle in enumerate(turns.tolist()):
             here = np.flatnonzero(turn == k)
             c, s = np.cos(n * angle), np.sin(n * angle)
-            # Cosine and sine parts by phase, as psi = n theta - p pi / 2 has them.
+            # Factors of phases 0 and 1, from psi = n theta - p pi / 2.
             for part, some, factors in zip(parts, (EVEN, ODD), ((c, s), (s, -c)), strict=True):
                 stress = np.tensordot(np.stack(factors, axis=1), part, axes=2)
                 out[np.ix_(here, some)] = stress[place[here]]

@@ -36,26 +36,27 @@ class HarmonicField:
         self.fields = solution.fields
 
     def maxima(self, loads: Loads, least: float = 0.0) -> Floats:
-        """The largest von Mises stress (T,) Pa at every instant outside the singularities, or
-        `least` where it does not exceed that.
+        """The largest von Mises stress (T,), Pa, at every instant outside the singularities.
+
+        least: Pa, the result where the stress does not exceed it.
         """
         around = self.reader(loads)
         return around.maxima(around.fields.outside(self.singularities), least)
 
     def largest(self, loads: Loads) -> tuple[float, int]:
-        """The largest of these (Pa), and the number of its instant."""
+        """The largest von Mises stress over all instants, Pa, and the number of its instant."""
         around = self.reader(loads)
         top = around.top(around.fields.outside(self.singularities))
         return top.value, top.instant
 
     def reader(self, loads: Loads) -> Circumference:
-        """The points and angles at which the largest stress under these loads is searched
+        """The stress under loads, with the points and angles at which its maximum is searched
         (fea.harmonic.free_surface).
         """
         return reader(self.fields, loads, self.solution.nu)
 
     def points(self, loads: PinLoads) -> StressPoints:
-        """Stress at points of the surface, for fatigue."""
+        """The stress at points of the surface, for fatigue."""
         return stress_points(self.fields, self.singularities, loads, self.solution.nu)
 
     def surface(self) -> MeridianSurface:
@@ -67,7 +68,7 @@ class HarmonicField:
         return beneath(self.fields, loads, self.singularities)
 
     def depths(self, loads: PinLoads, instant: int, least: float) -> Steps:
-        """The distances from pressed cells at which stress is reached at an instant
+        """The distances from pressed cells that stresses reach at an instant
         (fea.harmonic.beneath).
         """
         return depths(self.fields, loads, instant, self.singularities, least)
@@ -89,18 +90,18 @@ class MeridianSurface:
 
     @property
     def unit(self) -> UnitSurface:
-        """Its meridian."""
+        """The unit fields of the meridian."""
         return unit_meridian(self.field.fields)
 
     @property
     def excluded(self) -> Mask:
-        """The points (P,) in a zone."""
+        """A mask (P,) of the points in an excluded zone."""
         fields = self.field.fields
         return ~outside(self.zones, *fields.points[: fields.skin].T)
 
     @property
     def zones(self) -> tuple[Zone, ...]:
-        """The zones where stress is not read."""
+        """The zones in which stress is not read."""
         return self.field.singularities
 
     @property
@@ -116,7 +117,7 @@ class MeridianSurface:
     def largest(self, loads: PinLoads, instant: int) -> Floats:
         """The largest von Mises stress (P,), Pa, about the axis where it is read at an instant."""
         skin = np.arange(self.field.fields.skin)
-        largest, _ = self.field.reader(loads).round(skin, np.full(len(skin), instant))
+        largest, _ = self.field.reader(loads).largest_over_angle(skin, np.full(len(skin), instant))
         return largest
 
     def location(self, loads: PinLoads, instant: int) -> Point:
@@ -126,7 +127,9 @@ class MeridianSurface:
         return at_angle(around.fields.points[top.point], top.angle)
 
     def unread(self, loads: PinLoads, points: Ints, angles: Floats) -> Mask | None:
-        """Mask (T, J, A) of the points (J,) on which lugs press or beside; None without lugs."""
+        """A mask (T, J, A) of the points (J,) and angles (A,), rad, on which lugs press or that are
+        beside these; None without lugs.
+        """
         if loads.pressed is None:
             return None
         region = self.field.reader(loads).region
@@ -140,7 +143,7 @@ class MeridianSurface:
 
 
 def unit_meridian(fields: MeridianFields) -> UnitSurface:
-    """The meridian under the unit loads of a mesh; made once."""
+    """The unit fields of a mesh on the meridian; made once."""
     r, z = fields.points[: fields.skin].T
     return fields.once(
         ("meridian",),

@@ -22,20 +22,19 @@ Made = TypeVar("Made")
 
 @dataclass(frozen=True)
 class MeridianFields:
-    """Amplitudes per unit of K loads on a section.
+    """The amplitudes of stress and displacement on a section for each of K unit loads.
 
     points: (S, 2) r, z in m.
-    stress: (S, 6, K) Pa, components rr, tt, zz, tz, rz, rt; under a load of harmonic n and phase p
+    stress: (S, 6, K) Pa, components rr, tt, zz, tz, rz, rt. Under a load of harmonic n and phase p
     the first three and rz vary as cos psi, the others as sin psi, psi = n theta - p pi / 2.
     displacement: (D, 3, K) m, of the first D points: r and z vary as cos psi, theta as sin psi.
-    skin: count of the first points, which follow the outline counter-clockwise.
-    unknowns: of the system that was solved.
-    triangles: (M, 3) of points, which fill the section, if the model has such.
-    unread: points whose stress is too rough to look for a maximum among
-    (fea.harmonic.pressure_edge).
-    forces: (3 D, K) N, along r, theta and z of those D points, which did the work of the loads,
-    integrated about the axis.
-    mesh: of the section, if the model has one.
+    skin: number of the first points that follow the outline counter-clockwise.
+    unknowns: number of unknowns of the system that was solved.
+    triangles: (M, 3) points of triangles that fill the section; empty for a model without them.
+    unread: points whose stress is too rough to search for a maximum (fea.harmonic.pressure_edge).
+    forces: (3 D, K) N, nodal forces along r, theta and z at the first D points, integrated around
+    the axis; the work of the loads follows from them.
+    mesh: of the section; None for a model without one.
     """
 
     points: Floats
@@ -62,7 +61,9 @@ class MeridianFields:
 
     @cached_property
     def energy(self) -> StrainEnergy | None:
-        """The strain energy of the pin under these loads; None where their forces are not known."""
+        """The strain energy of the pin under these loads; None where their nodal forces are not
+        known.
+        """
         if self.forces is None:
             return None
         n, work = np.array([load.n for load in self.loads]), np.zeros((len(self.loads),) * 2)
@@ -73,7 +74,7 @@ class MeridianFields:
         return StrainEnergy.of_both_phases(self.loads, work)
 
     def once(self, key: tuple[object, ...], make: Callable[[], Made]) -> Made:
-        """A quantity derived from these fields by its key, made when it is first asked for."""
+        """A quantity derived from these fields, by its key; made when it is first requested."""
         if key not in self.derived:
             self.derived[key] = make()
         made: Made = self.derived[key]
@@ -83,13 +84,15 @@ class MeridianFields:
     def derived(self) -> dict[tuple[object, ...], Any]:
         """A store of derived quantities by key.
 
-        They are the five numbers of some of the loads (fea.harmonic.five_numbers), and readings of
-        the surface (fea.harmonic.free_surface).
+        It holds the five numbers of some of the loads (fea.harmonic.five_numbers) and readings of
+        the surface (fea.harmonic.free_surface), among others.
         """
         return {}
 
     def outside(self, singularities: Iterable[Zone]) -> Mask:
-        """Mask (S,) of the points that may have the maximum: read, and in no singular zone."""
+        """A mask (S,) of the points that may have the maximum: they are read, and in no singular
+        zone.
+        """
         out = outside(singularities, *self.points.T)
         out[self.unread] = False
         return out

@@ -1,4 +1,6 @@
-"""Unit fields of a pin's first mesh under pressures of its rings that come one after the other."""
+"""The unit fields of a pin's first mesh under patterns of ring pressures that arise one after
+another.
+"""
 
 from __future__ import annotations
 
@@ -12,17 +14,18 @@ from pinbase.arrays import Floats
 from pinbase.memo import Memo
 
 Key = tuple[object, ...]
-# Unit loads, points (P, 2) to read stress at, and ends of pressures, as of HarmonicModel.solve.
+# Unit loads, additional points (P, 2) and ends of pressures: the arguments of HarmonicModel.solve.
 UnitFields = tuple[tuple[UnitLoad, ...], Floats, tuple[tuple[float, float], ...]]
 
 
 class FirstMesh:
-    """The first mesh of a pin while contact holds it.
+    """The first mesh of a pin on which contact pressures act.
 
-    Patterns of pressures are solved as they come. They are a few hundred, where single rings with
-    all their harmonics, of which any pattern could be superposed, are thousands. Fields are read
-    once, and belong to these loads alone: what was read together is the same to the last bit only
-    where the loads are. Factors of the mesh are kept, since most calls bring few new patterns.
+    Patterns of pressure are solved as they arise. There are a few hundred of them, whereas single
+    rings with all their harmonics, from which any pattern could be superposed, are thousands.
+    Fields are read once and belong to their loads alone: stresses that were read together are the
+    same to the last bit only where the loads are the same. The factorisations of the mesh are kept,
+    since most calls bring few new patterns.
     """
 
     def __init__(self, memo: Memo | None = None) -> None:
@@ -33,9 +36,11 @@ class FirstMesh:
     def fields(
         self, make: Callable[[], HarmonicModel], key: Key, request: UnitFields
     ) -> MeridianFields:
-        """The unit fields of at least the requested loads; `key` names the mesh, `make` makes it.
+        """The unit fields of at least the requested loads.
 
-        Points and ends are the same in all requests.
+        make: makes the model of the mesh.
+        key: identifies the mesh.
+        request: its points and ends of pressures must be the same in all requests for a mesh.
         """
         loads, read, ends = request
         known = self._fields.get(key)
@@ -43,7 +48,7 @@ class FirstMesh:
         if known is None or new:
             model = self._memo.get(("model", *key), make)
             if known is not None:
-                known.derived.clear()  # they are replaced, and what is derived has their size
+                known.derived.clear()  # these fields are replaced, and derived data is as large
             fields = model.solve(new, read, ends, self._solvers.setdefault(key, {}))
             known = self._fields[key] = fields if known is None else known.joined(fields)
         return known

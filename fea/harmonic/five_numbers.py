@@ -1,6 +1,6 @@
 """Stress as five numbers whose squares sum to von Mises stress squared.
 
-Over the circumference three of them vary as cos psi and two as sin psi.
+Over the circumference three of the numbers vary as cos psi and two as sin psi.
 """
 
 from __future__ import annotations
@@ -13,18 +13,19 @@ from fea.core.voigt import VON_MISES_ROOT
 from fea.harmonic.fields import MeridianFields
 from pinbase.arrays import Floats
 
-EVEN_COUNT = 3  # so many of the five numbers go as cos psi, the others as sin psi
-POINT_BATCH = 500  # points at a time
+EVEN_COUNT = 3  # the first three of the five numbers vary as cos psi, the others as sin psi
+POINT_BATCH = 500  # points converted together
 COS, SIN = slice(0, EVEN_COUNT), slice(EVEN_COUNT, None)
-COSINE_COMPONENTS = np.array([True, True, True, False, True, False])  # stresses that go as cos psi
+# Whether the stress component varies as cos psi: rr, tt, zz, tz, rz, rt.
+COSINE_COMPONENTS = np.array([True, True, True, False, True, False])
 
 
 @dataclass(frozen=True)
 class Numbers:
-    """The five numbers of K unit loads at points.
+    """The five numbers of K unit loads at S points.
 
     five: (S, 5, K) Pa.
-    reach: (S, K) Pa, the largest von Mises stress of each load by itself.
+    reach: (S, K) Pa, the largest von Mises stress of each load acting alone.
     """
 
     five: Floats
@@ -32,12 +33,15 @@ class Numbers:
 
 
 def numbers(fields: MeridianFields, at: tuple[int, ...]) -> Numbers:
-    """The five numbers of some of the unit loads, by their positions; found once for a case."""
+    """The five numbers of some of the unit loads, by their positions; computed once for each
+    selection.
+    """
     known: Numbers | None = fields.derived.get(at)
     if known is None:
         five = np.empty((len(fields.stress), len(VON_MISES_ROOT), len(at)))
         reach = np.empty((len(five), len(at)))
-        # In parts, for copies of the stress of many loads would take twice the memory of all this.
+        # In batches, since copies of the stress of many loads would take twice the memory of the
+        # result.
         for k in range(0, len(five), POINT_BATCH):
             part = slice(k, k + POINT_BATCH)
             five[part] = VON_MISES_ROOT @ fields.stress[part][:, :, at]

@@ -1,17 +1,18 @@
-"""The stress of a pin's surface where lugs press on it: the points at which it is read.
+"""The points at which the surface stress of a pin is read where lugs press on it.
 
 There are three kinds of points:
 
 - Points of the outline, on the part of the circumference that is free (fea.core.pressed).
-- Middles of rings, pressed or not, without the local stress of the pressure, -p along the pin, -p
-  across the surface and -2 nu p around, that of a half-plane under a pressure that changes little
-  nearby. What remains is the tension of a fibre that bends under its lug; the rest belongs to
-  contact. These points are not read under the rounding of a lug's edge and on the outermost pressed
-  ring beside it, whose steps of pressure are larger than what is looked for.
+- Middles of rings, pressed or not. Their stress lacks the local stress of the pressure, which is -p
+  along the pin, -p across the surface and -2 nu p around the axis, as in a half-plane under a
+  pressure that changes little nearby. The remainder is the tension of a fibre that bends under its
+  lug; the rest belongs to contact. These points are not read under the rounding of a lug's edge,
+  nor on the outermost pressed ring beside it, since the steps of pressure there exceed the tension
+  that is sought.
 - Edges of lugs, seen from where the surface beside them is free. Stress there has a cusp, s_0 + a
-  d^(1 - s) + b d^(2 - s) at the distance d, with s the exponent of pressure, and is extrapolated to
-  d = 0 by these terms. Beside a fillet that begins too near for that (MIN_CUSP_SHARE) neither the
-  edge nor the two lengths of its outermost ring next to it are read.
+  d^(1 - s) + b d^(2 - s) at the distance d, with s the exponent of pressure. It is extrapolated to
+  d = 0 by these terms. Beside a fillet that begins too near for the fit (MIN_CUSP_SHARE), neither
+  the edge nor the surface next to it (within two lengths of its outermost ring) is read.
 """
 
 from __future__ import annotations
@@ -24,33 +25,33 @@ import numpy as np
 from fea.core.pin_loads import Loads
 from fea.core.pressed import ARC_ANGLES, ARC_COUNT, RING_END_TOLERANCE, PressedArcs, Rings
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.superposed_stress import ALL_INSTANTS
 from fea.harmonic.superposition import Circumference
 from fea.harmonic.surface_stress import EDGE_STATIONS
 from pinbase.arrays import Floats, Ints, Mask
 
 # The fit of a cusp, chosen by judgement; `python -m benchmarks places` checks the stress.
-CUSP_FIT_DISTANCE = 0.06  # of the diameter, up to which points take part in the fit
-MIN_CUSP_POINTS = 6  # points of the fit at least
-MIN_CUSP_DISTANCE_RATIO = 2.0  # distance of the farthest point over that of the nearest, at least
-# Of CUSP_FIT_DISTANCE, to which the cylinder goes on at least: beside a nearer fillet the fit takes
-# the stress of that for a cusp. Tuned on a pin with fillets 0.005 to 0.02 diameters from its lug,
-# where the maximum of some meshes was 8 to 25 % above that of the others.
+CUSP_FIT_DISTANCE = 0.06  # of the diameter; farther points take no part in the fit
+MIN_CUSP_POINTS = 6  # fewest points of a fit
+MIN_CUSP_DISTANCE_RATIO = 2.0  # least distance of the farthest point over that of the nearest
+# The least length of cylinder beside the edge, of CUSP_FIT_DISTANCE: beside a nearer fillet the fit
+# mistakes the fillet's stress for a cusp. Tuned on a pin with fillets 0.005 to 0.02 diameters from
+# its lug, where the maximum of some meshes was 8 to 25 % above that of the others.
 MIN_CUSP_SHARE = 0.25
-MAX_KEPT_INSTANTS = 512  # instants whose arcs are kept: about 30 MB
+MAX_KEPT_INSTANTS = 512  # largest number of instants whose arcs are kept: about 30 MB
+ALL_ARCS = slice(None)
 
 
 @dataclass(frozen=True)
 class SurfacePoints:
     """The points of a surface at which stress is read, and their unit stress (`fields`).
 
-    middle: (S,) m, z of the middle of the element on which each is.
-    relieved: (S,) the ring in whose middle a point is that lacks the local stress of the pressure,
-    -1 for others.
-    on_skin: (S,) the point of the section's skin that each is, -1 for none.
-    cusps: by point at the edge of a lug, how stress is extrapolated to it.
-    shut_by: what shuts each point.
-    tables: arcs that are shut, by what is pressed at an instant.
+    middle: (S,) m, z of the middle of the element on which each point is.
+    relieved: (S,) the ring whose middle the point is, if its stress lacks the local stress of the
+    pressure; -1 for other points.
+    on_skin: (S,) the number of the point among those of the section's skin, -1 for edges of lugs.
+    cusps: for each point at the edge of a lug, how stress is extrapolated to it.
+    shut_by: the arcs on which each point is not read.
+    tables: for each pattern of pressed arcs, the table of shut arcs (ShutBy.table).
     """
 
     fields: MeridianFields
@@ -63,7 +64,11 @@ class SurfacePoints:
 
 
 def surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfacePoints:
-    """The points of the surface of a pin with rings; nu: Poisson's ratio. They are found once."""
+    """The points at which the surface of a pin in contact is read; found once for each set of
+    rings.
+
+    nu: Poisson's ratio.
+    """
     return fields.once(("surface", nu, rings.key), lambda: _surface_points(fields, rings, nu))
 
 
@@ -72,14 +77,14 @@ def _surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfaceP
     middle = x[len(EDGE_STATIONS) // 2 :: len(EDGE_STATIONS), 1].repeat(len(EDGE_STATIONS))
     ring = rings.amid(x[:, 0], x[:, 1], middle)
     rows = np.flatnonzero(ring >= 0)
-    # Three kinds of points follow each other: the skin, middles of rings, edges of lugs.
+    # The points are in three groups: the skin, the middles of rings, the edges of lugs.
     relieved = skin[rows] - relief(nu)[:, None] * skin[rows, :1]
     cusps = _cusps(x, middle, rings)
     continued = [np.einsum("p,pck->ck", c.weights(x[c.near, 1]), skin[c.near]) for c in cusps]
     places = np.array([c.place for c in cusps]).reshape(-1, 2)
     first, none = len(x) + len(rows), np.full(len(places), -1)
     rough = np.isin(np.arange(len(x)), fields.unread)
-    # A point is not read if any point that it is made of is too rough.
+    # A point is not read if any of the points that contribute to its stress is too rough.
     edges = np.array([not c.fits or rough[c.near].any() for c in cusps], dtype=bool)
     unread = np.concatenate([rough, rough[rows], edges])
     relieving = np.concatenate([np.full(len(x), -1), ring[rows], none])
@@ -101,22 +106,23 @@ def _surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfaceP
 
 
 def relief(nu: float) -> Floats:
-    """The local stress (6,) of a pressed half-plane's surface over its component rr."""
+    """The local surface stress (6,) of a half-plane under pressure, for a unit stress rr."""
     return np.array([1.0, 2.0 * nu, 1.0, 0.0, 0.0, 0.0])
 
 
 @dataclass(frozen=True)
 class Cusp:
-    """The end of contact at a lug's edge, and the points from which stress is extrapolated.
+    """The edge of a lug, where contact ends, and the points from which stress is extrapolated to
+    it.
 
     place: (r, z), m.
-    side: -1 towards lower z, else 1.
-    ring: at which contact ends.
-    exponent: of pressure.
-    near: points of the skin beside it for the fit.
-    between: points nearer than these, for which the edge stands: they feel the last step of the
-    pressure.
-    fits: whether the cylinder goes on far enough for a fit; else neither the edge nor the points
+    side: -1 if the free surface lies towards lower z, else 1.
+    ring: the number of the ring at which contact ends.
+    exponent: of the pressure.
+    near: the points of the skin beside the edge from which stress is extrapolated.
+    between: the points nearer to the edge than these, which feel the last step of the pressure; the
+    stress of the edge replaces theirs.
+    fits: whether the cylinder is long enough for a fit. If not, neither the edge nor the points
     `between` are read, only those beyond.
     """
 
@@ -129,9 +135,10 @@ class Cusp:
     fits: bool
 
     def weights(self, z: Floats, edge: float | None = None) -> Floats:
-        """Weights (P,) of the points beside the edge, at z (P,), m, in the stress at the edge.
+        """The weights (P,) with which the stress at points beside the edge gives that at the edge.
 
-        edge: m, its z, if it has moved.
+        z: (P,) m, of the points.
+        edge: z of the edge, m, if it has moved.
         """
         d = self.side * (z - (self.place[1] if edge is None else edge))
         powers = np.array([0.0, 1.0 - self.exponent, 2.0 - self.exponent])
@@ -139,10 +146,11 @@ class Cusp:
 
 
 def _cusps(x: Floats, middle: Floats, rings: Rings) -> list[Cusp]:
-    """The cusps of all lugs, where their rounding begins, since contact hardly reaches into it.
+    """The cusps of all lugs. They lie where the rounding of a lug's edge begins, since contact
+    hardly reaches into it.
 
-    For each the points begin at two distances, for contact that ends in the rounding and for one
-    that does not.
+    Each edge has up to two cusps, whose points begin at different distances: one for contact that
+    ends in the rounding, one for contact that does not.
     """
     out = []
     for b in np.unique(rings.band):
@@ -160,17 +168,17 @@ def _cusps(x: Floats, middle: Floats, rings: Rings) -> list[Cusp]:
 def _beside(
     skin: tuple[Floats, Floats], rings: Rings, edge: tuple[int, float], closest: float
 ) -> Cusp | None:
-    """The cusp at the end of a ring, from points beside it; None where they are too few.
+    """The cusp at the end of a ring, from points beside it; None if they are too few.
 
-    skin: points (P, 2), m, and z of the middle of each one's element.
-    edge: ring and side.
-    closest: m, distance at which the points begin.
+    skin: points (P, 2), m, and z (P,), m, of the middle of the element of each.
+    edge: the number of the ring, and the side.
+    closest: the least distance of the points from the edge, m.
     """
     (x, middle), (ring, side) = skin, edge
     radius, z = float(rings.radius[ring]), float((rings.start if side < 0.0 else rings.end)[ring])
     d = side * (x[:, 1] - z)
     on, beside = np.abs(x[:, 0] - radius) <= RING_END_TOLERANCE * radius, side * (middle - z) > 0.0
-    ends = d[beside & ~on & (d > 0.0)]  # where the cylinder has ended
+    ends = d[beside & ~on & (d > 0.0)]  # distances of points beyond the end of the cylinder
     usual, end = 2.0 * CUSP_FIT_DISTANCE * radius, float(ends.min(initial=np.inf))
     far = min(usual, end)
     near = np.flatnonzero(on & beside & (d >= closest) & (d <= far))
@@ -183,15 +191,17 @@ def _beside(
 
 @dataclass(frozen=True)
 class ShutBy:
-    """The arcs that shut the points of a surface, as rows of a table of arcs that each instant has.
+    """The arcs on which each point of a surface is not read ("shut"), as rows of a table of arcs.
 
-    The table has the arcs that are pressed at, before and after the R rings (3 R rows); those on
-    which the E edges of lugs are read, on which they stand for points beside them, and those on
-    which they are not; and those on which the middles of rings are not read (R rows). The last row
-    is empty.
+    Each instant has its own table (`table`). With R rings and E edges of lugs, its rows are: the
+    arcs pressed at, before and after each ring (3 R rows); those on which each edge is read and
+    replaces the points beside it (E rows); those on which it is not read (E rows); those on which
+    the middle of each ring is not read (R rows); and an empty row.
 
-    rows: (S, K) rows that shut a point; it is read on the arcs that are in none.
-    beside: by edge, the rows of rings that shut any point from which stress is extrapolated to it.
+    rows: (S, K) the rows that shut each point; it is read on the arcs that are in none of them.
+    beside: for each edge, the rows of the rings that shut any point from which stress is
+    extrapolated to it.
+    masked: (S,) the points that any row shuts.
     """
 
     rows: Ints
@@ -200,9 +210,9 @@ class ShutBy:
 
     @classmethod
     def of(cls, rings: Rings, near: Mask, relieved: Ints, cusps: list[Cusp]) -> ShutBy:
-        """The arcs that shut points of a skin, and after these middles of rings and edges of lugs.
+        """The rows that shut the points of a skin, followed by middles of rings and edges of lugs.
 
-        near: (P, 3 R) the points of the skin near the rings, as of Rings.near.
+        near: (P, 3 R) the points of the skin near the rings (Rings.near).
         relieved: (S,) the ring of which each point is the middle, -1 for others.
         """
         count, edges = len(rings), len(cusps)
@@ -231,7 +241,10 @@ class ShutBy:
 
 
 class FreeSurface:
-    """The part of the circumference on which points of a surface in contact are read."""
+    """The part of the circumference on which points of a surface in contact are read.
+
+    It is a Region of fea.harmonic.superposed_stress.
+    """
 
     def __init__(self, of: SurfacePoints, pressed: PressedArcs) -> None:
         self.pressed, self.relieved, self._shut_by = pressed, of.relieved, of.shut_by
@@ -240,10 +253,10 @@ class FreeSurface:
         self._table_of: dict[int, Mask] = {}
 
     def masked(self, points: Ints) -> Mask:
-        """Mask of the points that are read on a part of the circumference only."""
+        """A mask (J,) of the points (J,) that are read on part of the circumference only."""
         return np.asarray(self._masked[points])
 
-    def read(self, points: Ints, instants: Ints, arcs: Ints | slice = ALL_INSTANTS) -> Mask:
+    def read(self, points: Ints, instants: Ints, arcs: Ints | slice = ALL_ARCS) -> Mask:
         """The arcs (J, A) on which pairs of points and instants are read; all arcs by default."""
         out = np.empty((len(points), len(ARC_ANGLES[arcs])), dtype=bool)
         for instant, here in _by_instant(instants):
@@ -256,7 +269,7 @@ class FreeSurface:
         return out
 
     def read_at(self, points: Ints, instants: Ints, arcs: Ints) -> Mask:
-        """Whether points (J,) are read at instants (J,), each on one arc (J,)."""
+        """Whether points (J,) are read at instants (J,), each on a single arc (J,)."""
         out = np.empty(len(points), dtype=bool)
         for instant, here in _by_instant(instants):
             places = self._shut_by.rows[points[here]] * ARC_COUNT + arcs[here][:, None]
@@ -264,7 +277,9 @@ class FreeSurface:
         return out
 
     def _table(self, instant: int) -> Mask:
-        """The arcs that are shut at an instant, by the rows of ShutBy."""
+        """The arcs that are shut at an instant (ShutBy.table); patterns of pressure that recur
+        share a table.
+        """
         if instant not in self._table_of:
             key = self.pressed.on[instant].tobytes(), self.pressed.sector
             if key not in self._tables:
@@ -276,7 +291,7 @@ class FreeSurface:
 
 
 def _by_instant(instants: Ints) -> Iterator[tuple[int, Ints]]:
-    """Each of the instants (J,) that differ, and where it is."""
+    """Iterate over the distinct instants among (J,), each with the positions at which it occurs."""
     order = np.argsort(instants, kind="stable")
     for here in np.split(order, np.flatnonzero(np.diff(instants[order])) + 1):
         if len(here):
@@ -284,10 +299,10 @@ def _by_instant(instants: Ints) -> Iterator[tuple[int, Ints]]:
 
 
 def reader(fields: MeridianFields, loads: Loads, nu: float) -> Circumference:
-    """The points among which the largest stress of a case is looked for.
+    """The stress of a case at the points among which its largest stress is searched.
 
-    All of a section's points, or, where lugs press on the pin, its surface (what lies beneath:
-    fea.harmonic.beneath).
+    These are all points of a section or, where lugs press on the pin, those of its surface (for the
+    stress beneath it: fea.harmonic.beneath).
     nu: Poisson's ratio.
     """
     if loads.pressed is None:

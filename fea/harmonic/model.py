@@ -1,7 +1,7 @@
-"""The harmonic model: all of three-dimensional elasticity for a body of revolution, in its section.
+"""The harmonic model: three-dimensional elasticity of a body of revolution, solved in its section.
 
-One factorisation per mesh and harmonic, one right-hand side per unit load; both phases, hence all
-directions, share it.
+There is one factorisation for each mesh and harmonic, and one right-hand side for each unit load.
+Both phases of a load, hence all its directions, share the solution.
 """
 
 from __future__ import annotations
@@ -35,10 +35,13 @@ LOADS_READ_AT_ONCE = 128  # whose samples take 0.2 GB on a mesh of 20,000 unknow
 
 
 class HarmonicBody:
-    """A body of revolution on one mesh of its section, clamped at surfaces (by name).
+    """A body of revolution on one mesh of its section.
 
-    material: one, or those of the section's parts. Without clamps as many unknowns are constrained
-    as there are rigid motions, about `pivot` (0 to 1, of the length).
+    space: the equations of the section.
+    material: one material, or one for each of the section's parts.
+    clamps: names of the clamped surfaces.
+    pivot: a position along the pin, 0 to 1 of its length. Without clamps, as many unknowns near it
+    are constrained as there are rigid-body motions.
     """
 
     def __init__(
@@ -53,32 +56,40 @@ class HarmonicBody:
         self.clamps = tuple(pin.surface(name) for name in clamps)
         self.outline = Outline(self.space)
         self.materials = material
-        # one for all harmonics: constrained unknowns stay in it
+        # One system serves all harmonics, since constrained unknowns stay in the matrix.
         self._system: ConstrainedSystem | None = None
 
     def forces(self, n: int, parts: Sequence[tuple[Traction, ...]]) -> Floats:
-        """Forces on the unknowns (unknowns, K) of K sums of tractions of harmonic n."""
+        """The nodal forces (unknowns, K), N, of K loads of harmonic n, each a sum of tractions."""
         return np.stack([generalised(self.outline.forces(part, n)) for part in parts], axis=1)
 
     def displace(self, n: int, forces: Floats, moved: Floats | None = None) -> Floats:
-        """Unknowns (unknowns, K) of harmonic n under forces on them and motions of clamps."""
+        """The displacement unknowns (unknowns, K) of harmonic n under nodal forces.
+
+        forces: (unknowns, K) N.
+        moved: (unknowns, K) prescribed motions of the clamps; zero by default.
+        """
         system, K, free = self._equations(n)
         if moved is None:
             return system.solve(K, free, forces)
         return system.solve(K, free, forces - K @ moved) + moved
 
     def solver(self, n: int) -> Solve:
-        """A function that gives the unknowns of harmonic n under forces as often as is wanted."""
+        """Return a function that solves harmonic n for nodal forces, any number of times."""
         system, K, free = self._equations(n)
         return system.kept(K, free)
 
     def work(self, n: int, forces: Floats) -> Floats:
-        """Works (K, K) of forces (unknowns, K) of harmonic n on the displacements under each."""
+        """The work (K, K) of nodal forces (unknowns, K) of harmonic n on the displacements that
+        each column causes.
+        """
         system, K, free = self._equations(n)
         return system.work(K, free, forces)
 
     def _equations(self, n: int) -> tuple[ConstrainedSystem, sp.csr_matrix, Floats]:
-        """The system, its matrix of harmonic n, and 0 for unknowns that are zero, else 1."""
+        """The linear system, its matrix of harmonic n, and a factor for each unknown: 0 if it is
+        constrained, else 1.
+        """
         fixed = np.concatenate([self._on_axis(n), self._constrained(n)])
         K = self.space.stiffness(self.materials, n)
         if n < 2:
@@ -90,10 +101,11 @@ class HarmonicBody:
         return self._system, K, free
 
     def motions(self, n: int, surfaces: Sequence[str], turns: Sequence[bool]) -> Floats:
-        """Unknowns (unknowns, K) of harmonic n where clamps are shifted or turned by one.
+        """The unknowns (unknowns, K) of harmonic n of unit motions of clamps, which are zero
+        elsewhere.
 
         surfaces: K names; for "" the column is zero.
-        turns: (K,) whether each is a turn.
+        turns: (K,) whether each motion is a rotation (1 rad) instead of a translation (1 m).
         """
         modes, out = rigid_motions(self.space.nodes, n), np.zeros((3 * len(self.space.nodes), 0))
         for surface, turn in zip(surfaces, turns, strict=True):
@@ -106,9 +118,9 @@ class HarmonicBody:
         return out
 
     def _require_equilibrium(self, K: sp.csr_matrix, n: int) -> None:
-        """Check that rigid motions of the section take no force.
+        """Check that rigid-body motions of the section cause no nodal forces.
 
-        Then, whatever its displacements are, the forces of its supports balance its loads.
+        The reactions of the supports then balance the loads, whatever the displacements are.
 
         Raises: SolveError.
         """
@@ -122,13 +134,15 @@ class HarmonicBody:
             )
 
     def _on_axis(self, n: int) -> Ints:
-        """Unknowns that vanish on the axis, so that displacements are smooth there."""
+        """The unknowns that vanish on the axis, so that displacements are smooth there."""
         axis = 3 * self.space.section.axis
         p, m, w = axis, axis + 1, axis + 2
         return np.concatenate({0: [p, m], 1: [p, w]}.get(n, [p, m, w]))
 
     def _constrained(self, n: int) -> Ints:
-        """Unknowns that are zero on clamps or, without these, that prevent rigid motions."""
+        """The unknowns that are zero on clamps or, without clamps, those that prevent rigid-body
+        motions.
+        """
         if self.clamps:
             edges = self.outline.nodes[self.outline.constrained(self.clamps)]
             return (3 * np.unique(edges)[:, None] + np.arange(3)).ravel()
@@ -136,7 +150,7 @@ class HarmonicBody:
             return np.zeros(0, dtype=np.int64)
         r, z = self.space.nodes.T
         place = np.abs(z - self.pivot * self.pin.length)
-        if n == 0:  # shift along the axis, spin about it
+        if n == 0:  # prevent translation along the axis and rotation about it
             outer = int(np.lexsort((place, -r))[0])
             return np.array([3 * int(place.argmin()) + 2, 3 * outer])
         innermost = np.flatnonzero(r <= r.min() * (1.0 + 1e-9))
@@ -145,14 +159,15 @@ class HarmonicBody:
         return np.array([3 * near + 1, 3 * far + 1])
 
 
-# By harmonic: the numbers of loads, their nodal forces (unknowns, K), N, and their tractions at the
-# outline's nodes (E, 3, 3, K), Pa.
+# For each harmonic: the numbers (K,) of its loads, their nodal forces (unknowns, K), N, and their
+# tractions (E, 3, 3, K), Pa, at the nodes of the outline's edges.
 Forces = Mapping[int, tuple[Ints, Floats, Floats]]
 
 
-def shares(alone: Sequence[UnitLoad], loads: Sequence[UnitLoad]) -> Floats:
-    """The amount (A, K) of loads on single surfaces that other loads are made of."""
-    number, out = {load: k for k, load in enumerate(alone)}, np.zeros((len(alone), len(loads)))
+def shares(on_single: Sequence[UnitLoad], loads: Sequence[UnitLoad]) -> Floats:
+    """The amount (A, K) of each of A single-surface loads in each of K loads."""
+    number = {load: k for k, load in enumerate(on_single)}
+    out = np.zeros((len(on_single), len(loads)))
     for k, load in enumerate(loads):
         for one, amount in load.single_surface_loads.items():
             out[number[one], k] = amount
@@ -162,10 +177,10 @@ def shares(alone: Sequence[UnitLoad], loads: Sequence[UnitLoad]) -> Floats:
 class HarmonicModel(HarmonicBody):
     """A pin on one mesh of its section, clamped at surfaces (by name), under unit loads.
 
-    Without clamps the loads' imbalance is closed by tractions on the bands (fea.core.tractions);
-    `pivot` changes nothing but the rigid motion.
+    Without clamps, tractions on the bands react the imbalance of the loads (fea.core.tractions);
+    `pivot` then changes the rigid-body motion and nothing else.
 
-    Leaves out: plasticity, contact and clearance (loads are tractions).
+    Plasticity, contact and clearance are not included: loads are tractions.
     """
 
     def __init__(
@@ -184,9 +199,10 @@ class HarmonicModel(HarmonicBody):
     ) -> MeridianFields:
         """The unit fields of loads.
 
-        extra: (P, 2) m, further points inside the section.
-        ends: (r, z), m, ends of pressures on its outline.
-        solvers: of harmonics, kept for the next loads; None: they are not.
+        extra: (P, 2) m, additional points inside the section at which stress is read.
+        ends: (r, z), m, the places on the outline where a pressure ends.
+        solvers: the solver of each harmonic; missing ones are added and kept for later loads. None:
+        none is kept.
 
         Raises: SolveError when the pin is not constrained or a check fails.
         """
@@ -195,7 +211,7 @@ class HarmonicModel(HarmonicBody):
         tractions = np.zeros((*self.outline.nodes.shape, 3, len(loads)))
         for n, (here, on_nodes, on_edges) in forces.items():
             harmonics[here] = n
-            moved = self._shifted(n, loads, here)
+            moved = self._clamp_motions(n, loads, here)
             if solvers is None or moved is not None:
                 u[:, :, here] = polar(self.displace(n, on_nodes, moved))
             else:
@@ -220,8 +236,8 @@ class HarmonicModel(HarmonicBody):
         )
 
     def _reading(self, extra: Floats, ends: tuple[tuple[float, float], ...]) -> Reading:
-        """The reading of stress at the points of this mesh, made once: the first mesh is read
-        again for other loads.
+        """The points at which stress is read on this mesh and how; made once, since the first mesh
+        is read again for other loads.
         """
         key = extra.tobytes(), ends
         if key not in self._readings:
@@ -230,8 +246,12 @@ class HarmonicModel(HarmonicBody):
             )
         return self._readings[key]
 
-    def _shifted(self, n: int, loads: tuple[UnitLoad, ...], here: Ints) -> Floats | None:
-        """Motions of clamps (unknowns, K) of harmonic n; None where there are none."""
+    def _clamp_motions(self, n: int, loads: tuple[UnitLoad, ...], here: Ints) -> Floats | None:
+        """The motions of clamps (unknowns, K) that the loads of harmonic n prescribe; None if there
+        are none.
+
+        here: (K,) the numbers of these loads.
+        """
         units = [loads[k] for k in here]
         moves = [load.kind in ("shift", "turn") for load in units]
         if not any(moves):
@@ -241,18 +261,22 @@ class HarmonicModel(HarmonicBody):
 
     def _forces(self, loads: tuple[UnitLoad, ...]) -> Forces:
         harmonics = np.array([load.n for load in loads])
-        of = {n: np.flatnonzero(harmonics == n) for n in sorted(set(harmonics.tolist()))}
-        return {n: (here, *self._applied(n, [loads[k] for k in here])) for n, here in of.items()}
+        rows = {n: np.flatnonzero(harmonics == n) for n in sorted(set(harmonics.tolist()))}
+        return {n: (here, *self._applied(n, [loads[k] for k in here])) for n, here in rows.items()}
 
     def _applied(self, n: int, loads: list[UnitLoad]) -> tuple[Floats, Floats]:
-        """Nodal forces (unknowns, K) and tractions at the outline's nodes (E, 3, 3, K)."""
+        """The nodal forces (unknowns, K) and the tractions at the outline's nodes (E, 3, 3, K) of
+        loads.
+        """
         return applied(self, self.pin, self.outline, n, loads)
 
 
 def _read_in_blocks(
     read: Reading, harmonics: Ints, u: Floats, tractions: Floats
 ) -> tuple[Floats, Floats]:
-    """Read as Reading.of, some loads at a time: its samples take several times its result."""
+    """Return what Reading.of does, reading a block of loads at a time: the samples of all loads
+    together would take several times the memory of the result.
+    """
     count = len(harmonics)
     whole: list[Floats] = []
     for first in range(0, count, LOADS_READ_AT_ONCE):
@@ -273,30 +297,36 @@ def applied(
     loads: Sequence[UnitLoad],
     integrals: Floats | None = None,
 ) -> tuple[Floats, Floats]:
-    """Nodal forces (unknowns, K) and tractions at the outline's nodes (E, 3, 3, K) of unit loads.
+    """The nodal forces (unknowns, K) and the tractions (E, 3, 3, K) at the outline's nodes of unit
+    loads.
 
-    pin: like the model's, outline: of its section, whose nodes may be elsewhere.
-    n: harmonic of all loads.
-    integrals: of its shape functions (Section.integrals); those of the model by default.
+    pin, outline: those of the model, or the same with nodes moved elsewhere.
+    n: the harmonic of all loads.
+    integrals: of the shape functions of the moved section (Section.integrals); those of the model
+    by default.
+
+    Raises: SolveError for a body load without a density, and for a pin with neither clamps nor
+    connections.
     """
 
     def spread(parts: Sequence[tuple[Traction, ...]]) -> tuple[Floats, Floats]:
         forces = [generalised(outline.forces(part, n)) for part in parts]
         return np.stack(forces, axis=1), np.stack([outline.traction(p) for p in parts], axis=3)
 
-    alone = list(dict.fromkeys(one for load in loads for one in load.single_surface_loads))
-    # Pressures on rings differ between harmonics by what is around the axis alone.
-    alike = tuple(load._replace(n=0) for load in alone if load.parts and not load.fades)
-    if len(alike) < len(alone):
-        forces, tractions = spread([tractions_of(pin, load) for load in alone])
+    on_single = list(dict.fromkeys(one for load in loads for one in load.single_surface_loads))
+    # Loads on rings have the same tractions in all harmonics; only the integral around the axis
+    # differs. So they are assembled once, for n = 0, and scaled.
+    on_rings = tuple(load._replace(n=0) for load in on_single if load.parts and not load.fades)
+    if len(on_rings) < len(on_single):
+        forces, tractions = spread([tractions_of(pin, load) for load in on_single])
     else:
-        if alike not in outline.of_rings:
-            forces, tractions = spread([tractions_of(pin, load) for load in alike])
-            outline.of_rings = {alike: (forces / around(n), tractions)}
-        forces, tractions = (x.copy() for x in outline.of_rings[alike])
+        if on_rings not in outline.of_rings:
+            forces, tractions = spread([tractions_of(pin, load) for load in on_rings])
+            outline.of_rings = {on_rings: (forces / around(n), tractions)}
+        forces, tractions = (x.copy() for x in outline.of_rings[on_rings])
         forces *= around(n)
-    if alone != list(loads):
-        share = shares(alone, loads)
+    if on_single != list(loads):
+        share = shares(on_single, loads)
         forces = np.asarray(forces @ share, np.float64)
         tractions = np.asarray(tractions @ share, np.float64)
     for k, load in enumerate(loads):
@@ -305,43 +335,46 @@ def applied(
             forces[:, k] = body_force(model.material, n, within)
     if model.clamps or n > 1:
         return forces, tractions
-    # Without clamps: closing tractions with amounts that cancel the resultants, pressures for loads
-    # that do not shear their bands.
+    # Without clamps, closing tractions cancel the resultants of each load. They are pressures for
+    # loads that do not shear their bands, since a shear would be singular at the bands' edges.
     modes = rigid_motions(outline.every_node, n)
     for shears in (True, False):
         here = [k for k, load in enumerate(loads) if load.shears == shears]
         phases = (0,) if n else (0, 1)
         closing = [c for p in phases for c in closing_tractions(pin, n, p, not shears)]
-        against, over = spread(closing)
-        closed = -np.linalg.solve(modes.T @ against, modes.T @ forces[:, here])
-        forces[:, here] += against @ closed
-        tractions[..., here] += over @ closed
+        on_unknowns, on_outline = spread(closing)
+        amounts = -np.linalg.solve(modes.T @ on_unknowns, modes.T @ forces[:, here])
+        forces[:, here] += on_unknowns @ amounts
+        tractions[..., here] += on_outline @ amounts
     return forces, tractions
 
 
 def body_force(material: Material, n: int, integrals: Floats) -> Floats:
-    """Forces on the unknowns of a pin's mass in 1 m/s^2 along x, or along z for n = 0."""
+    """The nodal forces of the pin's mass in 1 m/s^2 along x, or along z for n = 0.
+
+    integrals: (N,) m^3, of the shape functions (Section.integrals).
+    """
     amplitude = density_of(material) * (ALONG_X if n else ALONG_Z)
     return generalised(around(n) * integrals[:, None] * amplitude)
 
 
 def generalised(forces: Floats) -> Floats:
-    """Forces on the unknowns p, m, w from nodal forces (N, 3) along r, theta and z."""
+    """The forces (3 N,) on the unknowns p, m, w from nodal forces (N, 3) along r, theta and z."""
     R, T, Z = forces.T
     return np.stack([R + T, R - T, Z], axis=1).ravel()
 
 
 def polar(u: Floats) -> Floats:
-    """Amplitudes U, V, W, (N, 3, K), of unknowns p, m, w."""
+    """The amplitudes U, V, W (N, 3, K) of the unknowns p, m, w."""
     p, m, w = (u[c::3] for c in range(3))
     return np.stack([p + m, p - m, w], axis=1)
 
 
 def rigid_motions(nodes: Floats, n: int) -> Floats:
-    """Unknowns (3 N, 2) of the rigid motions of harmonic 1 or 0.
+    """The unknowns (3 N, 2) of the rigid-body motions of harmonic 1 or 0.
 
-    n = 1: shift along x, turn about y. n = 0: shift along z, spin. A load's work on them is its
-    resultant.
+    n = 1: translation along x, rotation about y. n = 0: translation along z, rotation about z. The
+    work of a load on these motions is its resultant force and moment.
     """
     r, z = nodes.T
     zero = np.zeros_like(r)

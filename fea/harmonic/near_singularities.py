@@ -1,7 +1,7 @@
 """A singularity on one mesh of the harmonic model.
 
-How stress grows towards it, how strongly, and how much the maximum outside depends on the excluded
-distance.
+This module measures the growth of stress towards the singularity, its intensity, and how much the
+maximum outside depends on the excluded distance.
 """
 
 from __future__ import annotations
@@ -19,9 +19,10 @@ from fea.singular.fit_exponent import growth_exponent, singular_intensity
 from fea.singular.williams import notch_factor
 from pinbase.arrays import Floats, Mask
 
-# Element at a corner or a clamp's edge over its scale, mesh by mesh: each a decade finer.
+# Element size at a corner or a clamp's edge, of its scale, on successive meshes.
 CORNER_ELEMENT_SIZES = (1e-2, 1e-3, 1e-4)
-# From so many elements to so much of the scale (`python -m benchmarks corners`).
+# The exponent is fitted from this many elements to this part of the scale from the singularity
+# (`python -m benchmarks corners`).
 EXPONENT_FIT_RANGE = (4.0, 0.01)
 
 
@@ -30,7 +31,7 @@ def inside(
 ) -> ZoneMaximum:
     """The largest stress in a singular zone and, on the finest grading, its exponent and strength.
 
-    close: element size at the singularity, of its scale.
+    close: element size at the singularity, relative to the scale of its zone.
     nu: Poisson's ratio.
     """
     distance, within, felt = places_of(fields, singularity)
@@ -46,7 +47,11 @@ def inside(
 
 
 def places_of(fields: MeridianFields, singularity: Zone) -> tuple[Floats, Mask, Mask]:
-    """Distances (S,), m, from a singularity, and masks of points in it and where it is felt."""
+    """The distances (S,), m, of points from a singularity, and masks (S,) of two sets of points.
+
+    The first set lies in its zone. The second lies there, but farther than FEATURE_READING_DISTANCE
+    of its feature from the singularity.
+    """
     r, z = fields.points.T
     distance = np.hypot(r - singularity.r, z - singularity.z)
     within = distance <= singularity.radius
@@ -65,9 +70,9 @@ def growth(
     instant: int,
     nu: float,
 ) -> tuple[float | None, SingularIntensity | None]:
-    """Exponent and intensity on the side of the singularity where stress is larger.
+    """The exponent and intensity on the side of the singularity where stress is larger.
 
-    distance: (S,) m of the points.
+    distance: (S,) m, of the points from the singularity.
     nu: Poisson's ratio.
     """
     skin = distance[: fields.skin]
@@ -77,8 +82,9 @@ def growth(
     )
     if not len(near):
         return None, None
-    # The largest stress over the circumference where the skin is resolved and near enough.
-    value, _ = around.round(near, np.full(len(near), instant))
+    # The largest stress over the circumference, at points of the skin that are resolved and near
+    # enough to the singularity.
+    value, _ = around.largest_over_angle(near, np.full(len(near), instant))
     first = int(np.argmin(skin))
     sides = [near < first, near > first]
     side = max(sides, key=lambda s: float(np.median(value[s])) if s.any() else 0.0)
@@ -98,9 +104,9 @@ def growth(
 def interval(
     fields: MeridianFields, around: Circumference, singularities: Collection[Zone]
 ) -> tuple[float, float]:
-    """The least and the largest maximum (Pa) outside the singularities by excluded distance.
+    """The least and the largest maximum, Pa, outside the singularities, by excluded distance.
 
-    They are half and twice as large, but no larger than where the next feature begins.
+    The distances are half and twice the usual one, but end where the next feature begins.
     """
     maxima = []
     for times in DISTANCE_VARIATIONS:

@@ -1,8 +1,9 @@
-"""The stress of a part of one yield strength of a pin with a hardened surface (fea.core.hardened).
+"""The stress of a part (case or core) of a pin with a hardened surface.
 
-Of a pin with prescribed loads all points of the part are read. Where lugs press on a pin, its case
-is read at the surface (fea.harmonic.free_surface), and its core beneath free surface and in bores,
-which are not hardened. Beneath lugs bending is that of sections, and the rest belongs to contact
+Each part has one yield strength (fea.core.hardened). If loads are prescribed, all points of the
+part are read. If lugs press on the pin, its case is read at the surface
+(fea.harmonic.free_surface), and its core beneath the free surface and in bores, which are not
+hardened. Beneath lugs, bending stress is that of sections, and the rest belongs to contact
 (fea.harmonic.beneath).
 """
 
@@ -33,7 +34,7 @@ class PartMaximum:
     """The largest von Mises stress of a part, Pa.
 
     location: (x, y, z), m.
-    depth: there, beneath the hardened surface, m; None for what is not hardened.
+    depth: of the location beneath the hardened surface, m; None for what is not hardened.
     instant: its number.
     """
 
@@ -44,12 +45,14 @@ class PartMaximum:
 
 
 class BeneathFree:
-    """The part of the circumference beneath free surface: within a band on no arc that its lug
-    presses anywhere along it, or one sector beside it (fea.harmonic.superposed_stress.Region).
+    """The part of the circumference beneath the free surface
+    (fea.harmonic.superposed_stress.Region).
 
+    Within a band it excludes the arcs on which the lug presses anywhere along the band, and one
+    sector beside them.
     points: (S, 2) m.
-    away: the part farther than BENEATH_DISTANCE diameters from pressed cells, and from the ends of
-    bands on their pressed arcs; None for all.
+    away: the part farther than BENEATH_DISTANCE diameters from pressed cells, which excludes
+    pressed arcs also within that distance of the ends of bands; None for no such limit.
     """
 
     def __init__(self, points: Floats, pressed: PressedArcs, away: Away | None) -> None:
@@ -62,7 +65,7 @@ class BeneathFree:
             self._under.append((rings, near))
 
     def masked(self, points: Ints) -> Mask:
-        """Mask of the points that are read on a part of the circumference only."""
+        """A mask (J,) of the points (J,) that are read on part of the circumference only."""
         masks = [near[points] for _, near in self._under]
         masks += [self._away.masked(points)] if self._away else []
         return np.asarray(np.any(masks, axis=0))
@@ -83,9 +86,10 @@ class PartField:
     """The stress of a part of a pin in one case (fea.core.solution.StressMaxima).
 
     pin: as it is meshed.
-    where: "away" from pressed cells, and on surfaces that belong to a core, as bores; "beside" them
-    beneath free surface; or all that lies "beneath" contact, farther than that distance from them;
-    of pins with prescribed loads all is read.
+    where: the points of a core that are read where lugs press on the pin. "away": beneath the free
+    surface and away from pressed cells, and on surfaces of the core, as in bores. "beside": beneath
+    the free surface at any distance from pressed cells. "beneath": all points, also of a case,
+    farther than BENEATH_DISTANCE from pressed cells. It has no effect under prescribed loads.
     """
 
     def __init__(
@@ -94,17 +98,20 @@ class PartField:
         self.field, self.pin, self.part, self.where = field, pin, part, where
 
     def maxima(self, loads: Loads, least: float = 0.0) -> Floats:
-        """The largest stress (T,), Pa, at every instant, or `least` where it does not exceed it."""
+        """The largest stress (T,), Pa, at every instant.
+
+        least: Pa, the result where the stress does not exceed it.
+        """
         each = [around.maxima(read, least) for around, read in self._places(loads)]
         return np.asarray(np.max(each, axis=0))
 
     def largest(self, loads: Loads) -> tuple[float, int]:
-        """The largest of these, Pa, and the number of its instant."""
+        """The largest stress over all instants, Pa, and the number of its instant."""
         _, top = self._top(loads)
         return top.value, top.instant
 
     def maximum(self, loads: Loads) -> PartMaximum:
-        """The largest of these, and where it is."""
+        """The largest stress over all instants, and where it is."""
         around, top = self._top(loads)
         r, z = (float(x) for x in around.fields.points[top.point])
         depth, case = None, self.part.case
@@ -117,7 +124,9 @@ class PartField:
         return max(tops, key=lambda x: x[1].value)
 
     def _places(self, loads: Loads) -> list[tuple[Circumference, Mask]]:
-        """The stress with where it is read on the circumference, and the points of the part."""
+        """The stress on the part of the circumference that is read, with a mask (S,) of the part's
+        points, for each place.
+        """
         fields = self.field.fields
         if loads.pressed is None or (self.where != "beneath" and self.part.part != "core"):
             return [self._read(self.field.reader(loads))]
@@ -126,7 +135,7 @@ class PartField:
         away = Away(fields.points, loads.pressed) if self.where == "away" else None
         region = BeneathFree(fields.points, loads.pressed, away)
         inside, read = self._read(Circumference(fields, loads, region))
-        read[: fields.skin] = False  # bores are read as free surface is
+        read[: fields.skin] = False  # the skin, as in bores, is read as a free surface
         return [(inside, read), *([self._read(self.field.reader(loads))] if away else [])]
 
     def _read(self, around: Circumference) -> tuple[Circumference, Mask]:
@@ -136,5 +145,5 @@ class PartField:
 
 
 def part_mask(fields: MeridianFields, pin: Pin, part: StrengthPart) -> Mask:
-    """Mask (S,) of the points of a section that belong to a part; made once."""
+    """A mask (S,) of the points of a section that belong to a part; made once."""
     return fields.once(("part", part), lambda: part.holds(pin, fields.points))

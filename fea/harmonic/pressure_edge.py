@@ -1,4 +1,4 @@
-"""Stress where a pressure ends on a smooth surface: bounded, but dependent on direction.
+"""The stress where a pressure ends on a smooth surface: bounded, but dependent on direction.
 
 Close to such an edge a body is a half-plane with a pressure p on one half of its surface, whose
 stress is the same at all distances. With x along the surface away from the pressure, y into the
@@ -6,10 +6,10 @@ body and chi the angle from x to y,
 
     s_xx, s_yy = -p (chi +- sin chi cos chi) / pi        s_xy = -p sin^2 chi / pi
 
-and the largest von Mises stress is often below the edge, at no distance. The elements that touch
-the edge are as wrong on the finest mesh as on the first, so they are not read. p is known: its
-field is taken off the stress in the elements further on, what is left is smooth and is continued to
-the edge, and there the field is put back, direction by direction.
+and the largest von Mises stress is often below the edge, at vanishing distance. The elements that
+touch the edge are as wrong on the finest mesh as on the first, so they are not read. Instead, since
+p is known, its field is subtracted from the stress in elements farther away. The remainder is
+smooth and is extrapolated to the edge. There the field is added again, in each direction.
 
 Source: Johnson, Contact Mechanics, 2.5, a strip under pressure whose other end is far away.
 """
@@ -28,11 +28,11 @@ from fea.harmonic.boundary import Outline
 from fea.harmonic.surface_stress import in_axes
 from pinbase.arrays import Floats, Ints
 
-# Chosen by judgement; tests/fea/harmonic/test_jumps.py holds their effect against exact stresses.
+# Chosen by judgement; tests/fea/harmonic/test_jumps.py compares their effect with exact stresses.
 EDGE_DIRECTIONS = 25  # from the surface on one side of the edge to that on the other
-UNUSABLE_ELEMENTS = 1.5  # elements next to the edge whose stress is not used
-UNREAD_ELEMENTS = 3.0  # elements next to it where stress is not read
-CONTINUATION_SAMPLES = 45  # samples further on from which the smooth part is extrapolated
+UNUSABLE_ELEMENTS = 1.5  # distance from the edge, in elements, within which no stress is used
+UNREAD_ELEMENTS = 3.0  # distance, in elements, within which stress is not read
+CONTINUATION_SAMPLES = 45  # nearest usable samples, from which the smooth part is extrapolated
 
 
 @dataclass(frozen=True)
@@ -40,11 +40,13 @@ class Jump:
     """The end of a pressure on a smooth outline, and how stress is read there.
 
     r, z: m.
-    before, after: edges of the outline that meet there.
+    before, after: the edges of the outline that meet there.
     normal: (2,) outwards.
-    reach: m, within which nothing else inside is read.
-    samples: (S,) numbers of those (3 M) that are extrapolated, with weights (S,).
-    field: (D, 6) what a pressure of 1 on `before` adds, by direction.
+    reach: distance, m, within which no other points inside the body are read.
+    samples: (S,) numbers, among the 3 M of the mesh, of the samples that are extrapolated; weights:
+    (S,) theirs.
+    field: (D, 6) the stress that a unit pressure on `before` adds to the extrapolated stress, by
+    direction.
     """
 
     r: float
@@ -58,10 +60,10 @@ class Jump:
     field: Floats
 
     def stress(self, sampled: Floats, traction: Floats) -> Floats:
-        """Stress (D, 6, K), Pa, in all directions at the jump.
+        """The stress (D, 6, K), Pa, at the jump in all D directions.
 
-        sampled: (3 M, 6, K) Pa at all samples.
-        traction: (E, 3, 3, K) Pa at the nodes of the outline's edges.
+        sampled: (3 M, 6, K) Pa, at all samples of the mesh.
+        traction: (E, 3, 3, K) Pa, at the nodes of the outline's edges.
         """
         smooth = np.einsum("s,sck->ck", self.weights, sampled[self.samples])
         more = traction[self.after, 0] - traction[self.before, 1]
@@ -74,17 +76,17 @@ def jumps(
     material: Material,
     singularities: Iterable[tuple[float, float]],
 ) -> tuple[Jump, ...]:
-    """The jumps at places (r, z), m, where edges of the outline meet smoothly."""
+    """The jumps at places (r, z), m, where pressures end and edges of the outline meet smoothly."""
     ends = space.nodes[outline.nodes[:, 1]]
     befores = (int(np.hypot(*(ends - singularity).T).argmin()) for singularity in singularities)
     return tuple(_jump(space, outline, material, before) for before in befores)
 
 
 def unread(every_jump: tuple[Jump, ...], points: Floats, skin: int) -> Ints:
-    """Numbers (U,) of points inside the section that are too close to a jump to be read.
+    """The numbers (U,) of points inside the section that are too close to a jump to be read.
 
     points: (P, 2) r and z in m. The first `skin` points are on the outline, where a fillet may
-    begin whose peak must not be missed; the last ones are the jumps' own.
+    begin whose peak must not be missed; the last ones are those of the jumps themselves.
     """
     inside = slice(skin, len(points) - EDGE_DIRECTIONS * len(every_jump))
     close = np.zeros(len(points), dtype=bool)
@@ -116,7 +118,8 @@ def at_edge(
     """The normal (2,), weights (S,) and field (D, 6) of a jump at the middle one of three nodes.
 
     nodes: (2,) m each.
-    samples: (S, 2) m.
+    samples: (S, 2) m, whose stress is extrapolated.
+    nu: Poisson's ratio.
     """
     first, middle, last = nodes
     along = (last - first) / np.linalg.norm(last - first)
@@ -129,9 +132,11 @@ def at_edge(
 
 
 def _field(chi: Floats, along: Floats, nu: float) -> Floats:
-    """Stress (J, 6) in directions chi (J,), rad, by a unit pressure on half of a half-plane's edge.
+    """The stress (J, 6) in directions chi (J,), rad, of a unit pressure on half of a half-plane's
+    edge.
 
-    along: (2,) tangent. The formulae are those of the module.
+    The formulae are in the docstring of the module.
+    along: (2,) tangent.
     """
     both, apart = chi / np.pi, np.sin(chi) * np.cos(chi) / np.pi
     ss, nn, ns = -(both + apart), -(both - apart), np.sin(chi) ** 2 / np.pi

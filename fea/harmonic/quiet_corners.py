@@ -1,8 +1,8 @@
-"""Fillets where stress is too low to be the maximum, and whose elements may stay coarse.
+"""The fillets whose stress is too low to be the maximum, and whose elements may stay coarse.
 
-A fillet takes a thousand unknowns, so for a pin with two hundred most would be spent on fillets
-that do not matter. Where fillets are so many, a mesh that is coarse at all of them finds those that
-do.
+A fillet takes a thousand unknowns, so in a pin with two hundred fillets most unknowns would be
+spent on fillets that do not matter. If there are so many, a mesh that is coarse at all fillets
+finds those that do.
 """
 
 from __future__ import annotations
@@ -17,10 +17,11 @@ from geometry import Pin
 from geometry.shape.polygon import Rounding
 
 NUMEROUS_FILLETS_ABOVE = 24  # fillets above which the coarse mesh pays; chosen by judgement
-# Of the maximum: on 199 fillets of a cantilever the coarse mesh finds 0.90 to 0.99 of what the
-# first mesh of a run does.
+# Stress of a fillet, of the maximum, below which it is low: on 199 fillets of a cantilever the
+# coarse mesh finds 0.90 to 0.99 of the stress that the first mesh of a run finds.
 LOW_STRESS_RATIO = 0.8
-FILLET_REACH_RATIO = 1.5  # radii of a fillet from its corner within which its stress is looked at
+# Distance from a fillet's corner, of the fillet's reach, within which its stress is read.
+FILLET_REACH_RATIO = 1.5
 
 
 def numerous_fillets(pin: Pin) -> tuple[int, ...]:
@@ -43,7 +44,12 @@ def low_stress_fillets(
     singularities: tuple[Zone, ...],
     nu: float,
 ) -> tuple[int, ...]:
-    """Fillets where no case has nearly as much stress as elsewhere outside the singularities."""
+    """The fillets at which stress is low in every case, compared with the maximum outside the
+    singularities.
+
+    fields: on a mesh that is coarse at all fillets.
+    nu: Poisson's ratio.
+    """
     quiet, fillets = set(numerous_fillets(pin)), _fillets(pin)
     for case in cases:
         around = reader(fields, case, nu)

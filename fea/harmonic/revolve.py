@@ -1,4 +1,6 @@
-"""A section's fields revolved into space: its outer skin as a surface, or all of it as a solid."""
+"""The fields of a section revolved about the axis: the outer skin as a surface, or the whole body
+as a solid.
+"""
 
 from __future__ import annotations
 
@@ -31,15 +33,15 @@ def revolve(fields: MeridianFields, loads: PinLoads, instant: int, nu: float) ->
 def revolve_solid(fields: MeridianFields, loads: PinLoads, instant: int, nu: float) -> Picture:
     """The whole body as wedges at an instant, without an envelope.
 
-    Wedges are straight between the corners of the section's triangles; the surface is as `revolve`
-    shows it.
+    Wedges are straight between the corners of the section's triangles. The surface is that of
+    `revolve`.
     """
     rows, numbers = np.unique(fields.triangles, return_inverse=True)
     shown = shown_surface(fields, loads, nu)
     stress = Circumference(fields, loads).stress(rows, instant, shown.angles)
     pressed = np.zeros(stress.shape[:2], dtype=bool)
     if loads.pressed is not None:
-        # On the surface the stress that is shown replaces that of the section's points.
+        # On the surface, the stress that `revolve` shows replaces that of the section's points.
         outer = np.flatnonzero(rows < fields.skin)
         place = np.searchsorted(shown.rows, rows[outer], side="right") - 1
         on_skin, on = shown.stress(instant)
@@ -64,7 +66,8 @@ def _turned(
     instant: int,
     stress: Floats,
 ) -> tuple[Floats, Floats, Floats]:
-    """Position (P, 3), displacement (P, 3) and stress (P, 6) of rows on all meridians, in x, y, z.
+    """The position (P, 3), m, displacement (P, 3), m, and stress (P, 6), Pa, of rows on all
+    meridians, in x, y, z.
 
     stress: (rows, A, 6) Pa, in cylindrical coordinates.
     """
@@ -94,7 +97,7 @@ def _turned(
 
 
 def _quads(count: int, sectors: int) -> Ints:
-    """Quadrilaterals between adjacent rows and sectors."""
+    """The quadrilaterals between adjacent rows and sectors, which close over the circumference."""
     i = np.arange(count - 1)[:, None] * sectors
     j = np.arange(sectors)[None]
     k = (j + 1) % sectors
@@ -102,7 +105,7 @@ def _quads(count: int, sectors: int) -> Ints:
 
 
 def _wedges(triangles: Ints, sectors: int) -> Ints:
-    """Wedges (.., 6) between adjacent sectors over triangles (M, 3) of numbered rows."""
+    """The wedges (.., 6) between adjacent sectors over triangles (M, 3) of numbered rows."""
     turn = np.arange(sectors)[:, None]
     meridian = triangles[:, None] * sectors + turn
     next_meridian = triangles[:, None] * sectors + (turn + 1) % sectors
@@ -112,7 +115,7 @@ def _wedges(triangles: Ints, sectors: int) -> Ints:
 def _moved(
     fields: MeridianFields, loads: PinLoads, rows: Ints, instant: int, angles: Floats
 ) -> Floats:
-    """Displacements (P, 3) along r, theta, z at rows on all meridians."""
+    """The displacements (P, 3), m, along r, theta, z of rows on all meridians."""
     amounts: dict[tuple[int, int], Floats] = {}  # of every harmonic and phase, (P, 3)
     for load, both in loads.coefficients().items():
         unit = fields.displacement[rows, :, fields.loads.index(load)]

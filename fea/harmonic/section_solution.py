@@ -29,12 +29,12 @@ from pinbase.arrays import Floats
 from pinbase.memo import Memo
 
 FIRST_MESH_SIZE = SectionSize()
-BAND_EDGE_ELEMENT = 0.04  # element at the edge of any band, of the diameter
-LOAD_EDGE_ELEMENT = 0.2  # element at a load's edge, of the excluded distance
-MIN_ZONE_STRESS = 0.5  # of the maximum elsewhere
-LOW_STRESS_POWER = 0.5  # power of the refinement where stresses are low
-RING_END_ELEMENT = 0.25  # of a ring of contact pressure: the elements at its ends
-# Elements of the first mesh about a place of high stress, in which all are refined.
+BAND_EDGE_ELEMENT = 0.04  # element size at the edge of any band, of the diameter
+LOAD_EDGE_ELEMENT = 0.2  # element size at the edge of a load, of the excluded distance
+MIN_ZONE_STRESS = 0.5  # least stress in a zone that may govern, of the maximum elsewhere
+LOW_STRESS_POWER = 0.5  # power of the refinement ratio where stresses are low
+RING_END_ELEMENT = 0.25  # element size at the ends of a ring of contact pressure, of its length
+# Radius, in elements of the first mesh, within which a mesh is refined about high stress.
 PATCH_ELEMENTS = 2.0
 
 
@@ -42,11 +42,11 @@ PATCH_ELEMENTS = 2.0
 class HarmonicSolution:
     """The fields of a body of revolution on one mesh.
 
-    close: element size at each singularity, relative to its scale.
+    close: element size at each singularity, relative to the scale of its zone.
     nu: Poisson's ratio.
-    ends: where pressures end on the outline, (r, z) in m.
-    quiet: fillets where the mesh is coarse (fea.harmonic.quiet_corners).
-    elsewhere: stress (P, 6, K) Pa at the points that were requested.
+    ends: the places (r, z), m, on the outline where pressures end.
+    quiet: the fillets at which the mesh is coarse (fea.harmonic.quiet_corners).
+    elsewhere: stress (P, 6, K), Pa, at the additional points that were requested.
     """
 
     fields: MeridianFields
@@ -68,9 +68,9 @@ class SectionProblem:
     """A body of revolution of a material, clamped at surfaces (by name), in some cases.
 
     singularities: those of any of the cases.
-    first: the first mesh under contact pressures.
-    besides: additional unit loads to be solved.
-    memo: of meshes and unit fields, shared with other problems.
+    first: solves the first mesh where contact pressures act.
+    extra_loads: additional unit loads to be solved.
+    memo: a store of meshes and unit fields, shared with other problems.
     """
 
     pin: Pin
@@ -79,7 +79,7 @@ class SectionProblem:
     cases: tuple[PinLoads, ...]
     singularities: tuple[Zone, ...]
     first: FirstMesh | None = None
-    besides: tuple[UnitLoad, ...] = ()
+    extra_loads: tuple[UnitLoad, ...] = ()
     memo: Memo | None = None
 
 
@@ -91,13 +91,15 @@ def harmonic_solution(
     elsewhere: Floats = NO_POINTS,
     grades: Sequence[Grade] = (),
 ) -> HarmonicSolution:
-    """Solve all unit loads of the cases on mesh number `level`, each `ratio` times finer than the
-    one before.
+    """Solve all unit loads of the cases on mesh number `level`.
 
-    before: mesh results from which to refine: by the ratio where they have high stresses, by its
-    root elsewhere; without any, everywhere.
-    elsewhere: points (P, 2), r and z in m, at which stress is read too, but no maximum is searched.
-    grades: fineness of the mesh at these points.
+    Each mesh is `ratio` times finer than the one before.
+    before: the results of the mesh before, for each case. Where they have high stress the mesh is
+    refined by the ratio, elsewhere by its square root. Without any, it is refined by the ratio
+    everywhere.
+    elsewhere: additional points (P, 2), r and z in m, at which stress is read but which take no
+    part in the search for the maximum.
+    grades: the fineness of the mesh at further places.
 
     Raises: MeshError, SolveError.
     """
@@ -112,7 +114,7 @@ def harmonic_solution(
     finer = [*grades, *(_at_high_stress(pin, spots, ratio**level, place) for place in high)]
     factor = ratio ** (level * LOW_STRESS_POWER if high else level)
 
-    loads = _unit_loads(cases) + problem.besides
+    loads = _unit_loads(cases) + problem.extra_loads
     rings = tuple(dict.fromkeys(name for load in loads for name, _ in load.parts))
     finer += finer_at_rings(pin, rings)
     ends = _ends(pin, problem.clamps, loads)
@@ -127,25 +129,28 @@ def harmonic_solution(
     elif quiet:
         nu, coarse = material.poisson_ratio, solved(FIRST_MESH_SIZE, [], quiet)
         quiet = low_stress_fillets(pin, coarse, cases, singularities, nu)
-    fields, more = _apart(solved(FIRST_MESH_SIZE.finer(factor), finer, quiet), len(elsewhere))
-    return HarmonicSolution(fields, close, material.poisson_ratio, ends, quiet, more)
+    fields, stress_elsewhere = _without_extra(
+        solved(FIRST_MESH_SIZE.finer(factor), finer, quiet), len(elsewhere)
+    )
+    return HarmonicSolution(fields, close, material.poisson_ratio, ends, quiet, stress_elsewhere)
 
 
 def _unit_fields(
     problem: SectionProblem,
     first: FirstMesh | None,
-    asked: tuple[tuple[UnitLoad, ...], Floats, tuple[tuple[float, float], ...]],
+    request: tuple[tuple[UnitLoad, ...], Floats, tuple[tuple[float, float], ...]],
     places: tuple[Spot, ...],
     size: SectionSize,
     grades: list[Grade],
     quiet: tuple[int, ...],
 ) -> MeridianFields:
-    """The unit fields on a mesh, solved once for each mesh and loads.
+    """The unit fields on a mesh, solved once for each mesh and set of loads.
 
-    first: solves them if this is its mesh. asked: unit loads, points, ends of pressures.
-    places, size, grades, quiet: of the mesh.
+    first: the first mesh under contact pressures, which solves them; None on other meshes.
+    request: the unit loads, the points at which stress is read, and the ends of pressures.
+    places, size, grades, quiet: arguments of the mesh.
     """
-    pin, material, (loads, read, ends) = problem.pin, problem.material, asked
+    pin, material, (loads, read, ends) = problem.pin, problem.material, request
 
     def model() -> HarmonicModel:
         section = meridian_mesh(pin, size, places, grades, quiet)
@@ -154,21 +159,22 @@ def _unit_fields(
     mesh = size, places, tuple(grades), quiet, read.tobytes(), ends
     key = pin, material.elastic_part, problem.clamps, *mesh
     if first is not None:
-        return first.fields(model, key, asked)
+        return first.fields(model, key, request)
     memo = problem.memo or Memo()
 
     def fields() -> MeridianFields:
-        # Patterns of pressure change with any load, the mesh on which they act does not.
+        # Any change of load changes the patterns of pressure, but not the mesh: its model is kept.
         pressed = any(load.parts for load in loads)
         solved_before = memo.get(("model", *key), model) if pressed else model()
-        return solved_before.solve(*asked)
+        return solved_before.solve(*request)
 
     return memo.get(("fields", loads, *key), fields)
 
 
-def _apart(fields: MeridianFields, count: int) -> tuple[MeridianFields, Floats]:
-    """The fields without the first points after those that have a displacement, and the stress at
-    these.
+def _without_extra(fields: MeridianFields, count: int) -> tuple[MeridianFields, Floats]:
+    """The fields without the additional points, and the stress at these.
+
+    The additional points are the first `count` after those that have a displacement.
     """
     if not count:
         return fields, np.zeros((0, *fields.stress.shape[1:]))
@@ -184,7 +190,8 @@ def _at_high_stress(
 ) -> Grade:
     """The fineness of the mesh about a place of high stress, `factor` times that of the first mesh.
 
-    spots: gives the spots at which a mesh is fine that is finer by a factor.
+    spots: gives the spots of a mesh that is finer than the first by a factor.
+    place: (r, z), m.
     """
     coarse = size_at(pin, FIRST_MESH_SIZE, spots(1.0), place)
     now = size_at(pin, FIRST_MESH_SIZE.finer(factor), spots(factor), place)
@@ -194,7 +201,8 @@ def _at_high_stress(
 def finer_at_rings(pin: Pin, rings: tuple[str, ...]) -> list[Grade]:
     """The fineness of the mesh at the ends of rings of contact pressure.
 
-    It is such that the elements that feel the steps of pressure (fea.core.pressed) lie beside them.
+    Elements there are so small that those disturbed by the steps of pressure lie beside the ring
+    (fea.core.pressed).
     """
     bands = (pin.band(name) for name in rings)
     return [
@@ -229,14 +237,14 @@ def _distances(singularity: Zone) -> tuple[float, ...]:
 def _ends(
     pin: Pin, clamps: tuple[str, ...], loads: tuple[UnitLoad, ...]
 ) -> tuple[tuple[float, float], ...]:
-    """The places where a pressure ends on a smooth surface, (r, z) in m.
+    """The places (r, z), m, where a pressure ends on a smooth surface.
 
-    Contact pressure does not end where a cell does: its steps belong to the cells, and are not
-    read.
+    The ends of contact pressure are not among them: its steps belong to its cells, and stress is
+    not read there.
     """
     pushed = {name for load in loads if load.kind in ("pressure", "tilt") for name in load.surfaces}
     if not clamps and any(load.n <= 1 and not load.shears for load in loads):
-        pushed |= set(pin.connections)  # which react the imbalance
+        pushed |= set(pin.connections)  # their bands react the imbalance by pressures
     cells = {name for load in loads if load.parts for name in load.surfaces}
     return smooth_edges(pin, pushed, clamps, cells)
 
@@ -248,8 +256,10 @@ def _spots(
     close: tuple[float, ...],
     factor: float,
 ) -> list[Spot]:
-    """The spots where the mesh is refined: singularities, with elements `close` (of their scale),
-    and edges of bands, `factor` times finer than on the first mesh.
+    """The spots where the mesh is refined: singularities and edges of bands.
+
+    close: element size at each singularity, relative to the scale of its zone.
+    factor: how much finer the mesh is than the first mesh.
     """
     spots = [
         _spot(p, near if p.measured else CORNER_ELEMENT_SIZES[0] / factor, factor)
@@ -267,7 +277,8 @@ def _spots(
 def _spot(singularity: Zone, near: float, factor: float) -> Spot:
     """The spot at a singularity.
 
-    near: size of the element there, of the singularity's scale.
+    near: element size there, relative to the scale of the zone.
+    factor: how much finer the mesh is than the first, for edges of loads.
     """
     p = singularity
     size = near * p.scale
@@ -277,8 +288,10 @@ def _spot(singularity: Zone, near: float, factor: float) -> Spot:
 
 
 def matters(singularity: int, before: Collection[MeshMaximum]) -> bool:
-    """Return whether stress in a singularity is so large that it may govern, so that its growth is
-    measured.
+    """Return whether stress in a singular zone is so large that it may govern, so that its growth
+    is measured.
+
+    singularity: the number of the zone.
     """
     return any(
         result.singularities[singularity].felt >= MIN_ZONE_STRESS * result.maximum

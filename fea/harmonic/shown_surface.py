@@ -1,11 +1,11 @@
-"""The stress of a pin's surface for views: each side of a pressed ring by itself.
+"""The surface stress of a pin for views, with both sides of a step of pressure.
 
 At the end of a ring the outline has two points in one place, one for each side of the step of
 pressure. Where a lug presses on one side only, the free side is shown. Beside pressed cells
-(fea.core.pressed) the mesh does not resolve that step; there the stress is that of the edge of a
-lug, extrapolated from where it is resolved (fea.harmonic.free_surface), and elsewhere that of the
-nearest point at which the surface is read. So no stress shown on the free surface exceeds what is
-read of it.
+(fea.core.pressed) the mesh does not resolve that step. There the view shows the stress at the edge
+of a lug, extrapolated from where it is resolved (fea.harmonic.free_surface), and elsewhere that of
+the nearest point at which the surface is read. So no stress shown on the free surface exceeds the
+stress that is read there.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ from fea.harmonic.superposition import Circumference
 from pinbase.arrays import Floats, Ints, Mask
 
 VIEW_SECTORS = 60  # sectors about the axis under prescribed loads; chosen by judgement
-FINER_VIEW_SECTORS = 72, 90, 120, 180, 360  # numbers of sectors that begin where arcs do
-MIN_SECTORS_PER_CELL = 2  # sectors to a cell of contact, at least
-POINT_TOLERANCE = 1e-9  # of the length: points that are one
+FINER_VIEW_SECTORS = 72, 90, 120, 180, 360  # numbers of sectors that divide the number of arcs
+MIN_SECTORS_PER_CELL = 2  # least number of sectors in a cell of contact
+POINT_TOLERANCE = 1e-9  # of the length: points this near to each other are one place
 
 
 class ShownStress(Protocol):
-    """The stress that is shown of a surface at the instants of a case.
+    """The stress that views show of a surface at the instants of a case.
 
-    rows: (P,) of the skin, the first one at each place.
+    rows: (P,) numbers of points of the skin, the first one at each place.
     angles: (A,) rad.
     """
 
@@ -40,7 +40,8 @@ class ShownStress(Protocol):
     angles: Floats
 
     def stress(self, instant: int) -> tuple[Floats, Mask]:
-        """The stress (P, A, 6), Pa, at an instant, and where (P, A) a lug presses on what is shown.
+        """The stress (P, A, 6), Pa, at an instant, and a mask (P, A) of where a lug presses on the
+        surface shown.
 
         Components are rr, tt, zz, tz, rz, rt.
         """
@@ -48,19 +49,22 @@ class ShownStress(Protocol):
     def envelope(self, instant: int) -> Floats:
         """The largest von Mises stress (P, A), Pa, of the free surface over all instants.
 
-        It includes what is shown at this instant. NaN where lugs press at all instants.
+        It includes the stress shown at `instant`. It is NaN where lugs press at all instants.
         """
 
 
 def shown_surface(fields: MeridianFields, loads: PinLoads, nu: float) -> ShownStress:
-    """The surface of a pin under loads as it is shown; nu: Poisson's ratio."""
+    """The surface of a pin under loads, as views show it.
+
+    nu: Poisson's ratio.
+    """
     if loads.pressed is None:
         return _Plain(fields, loads)
     return _Free(fields, loads, loads.pressed, nu)
 
 
 def sectors_of(pressed: PressedArcs | None) -> int:
-    """The number of sectors about the axis that resolves the cells of contact."""
+    """The number of sectors about the axis that resolve the cells of contact."""
     if pressed is None:
         return VIEW_SECTORS
     return next(
@@ -71,13 +75,13 @@ def sectors_of(pressed: PressedArcs | None) -> int:
 
 
 def _first(x: Floats) -> Mask:
-    """Mask (S,) of the points of the skin that are the first ones in their place."""
+    """A mask (S,) of the points of the skin that are the first ones in their place."""
     step = np.linalg.norm(np.diff(x, axis=0), axis=1)
     return np.concatenate([[True], step > POINT_TOLERANCE * np.ptp(x[:, 1])])
 
 
 class _Plain:
-    """The surface under prescribed loads: all of it, of two points in one place the first."""
+    """The surface under prescribed loads; of two points in one place, the first is shown."""
 
     def __init__(self, fields: MeridianFields, loads: PinLoads) -> None:
         self.angles = np.asarray(np.arange(VIEW_SECTORS) * 2.0 * np.pi / VIEW_SECTORS)
@@ -89,7 +93,7 @@ class _Plain:
         return stress, np.zeros(stress.shape[:2], dtype=bool)
 
     def envelope(self, instant: int) -> Floats:
-        # Odd harmonics: half a turn says it all.
+        # With odd harmonics only, stress changes sign over half a turn, so that half is enough.
         turn = len(self.angles) // 2 if self.around.odd else len(self.angles)
         half = self.around.envelope(self.rows, self.angles[:turn])
         return np.tile(half, len(self.angles) // turn)
@@ -122,7 +126,7 @@ class _Free:
         read = self._read(self.skin, instant)
         pressed = np.logical_and.reduceat(self._on(instant), self.rows)
         free = np.logical_or.reduceat(read, self.rows)
-        # Average over the points of one place: the free ones if any is free, otherwise all.
+        # Average over the points of one place: the read ones if any is read, otherwise all.
         taken = np.where(free[self.place], read, True)[..., None]
         out = np.add.reduceat(taken * every, self.rows) / np.add.reduceat(
             taken.astype(float), self.rows
@@ -133,7 +137,7 @@ class _Free:
         return out, pressed
 
     def envelope(self, instant: int) -> Floats:
-        # Found instant by instant, hence stored so.
+        # Stored with instants first, since it is found instant by instant.
         read = np.ones((self.around.count, len(self.skin), len(self.angles)), dtype=bool)
         some = np.flatnonzero(self.free.masked(self.skin))
         for t in range(self.around.count):
@@ -149,7 +153,7 @@ class _Free:
         return self.free.read(points, np.full(len(points), instant), self.arcs)
 
     def _on(self, instant: int) -> Mask:
-        """Mask (S, A) of the points of the skin on which a lug presses."""
+        """A mask (S, A) of the points of the skin on which a lug presses."""
         on = self.pressed.on[instant][:, self.arcs]
         return np.asarray(on[self.ring] & (self.ring >= 0)[:, None])
 
@@ -157,6 +161,8 @@ class _Free:
         """Extend the stress, in place, to the edges of lugs.
 
         Between an edge and the first point that is read it varies linearly.
+        out: (P, A, 6) Pa.
+        free: (P, A) where the stress is known, which is extended, too.
         """
         for edge, cusp in reversed(self.cusps.items()):
             near, between = cusp.near, cusp.between
@@ -175,7 +181,9 @@ class _Free:
             free[places] = True
 
     def _fill(self, out: Floats, free: Mask, left: Mask) -> None:
-        """Fill the remaining places and angles (`left`), in place, from the nearest free ones."""
+        """Fill the remaining places and angles (`left`), in place, with the stress of the nearest
+        free ones.
+        """
         if not (left.any() and free.any()):
             return
         r, z = self.x[self.rows].T

@@ -1,4 +1,4 @@
-"""Stress and displacement on a section, on its skin and inside, from the unknowns of a harmonic."""
+"""Stress and displacement on a section, on its skin and inside, from the solution of a harmonic."""
 
 from __future__ import annotations
 
@@ -19,20 +19,21 @@ from fea.solid.boundary import QUARTER_TRIANGLES
 from pinbase.arrays import Floats, Ints, Mask
 
 NO_POINTS = np.zeros((0, 2))
-ON_AXIS_TOLERANCE = 1e-9  # r on it at most, of the largest
+ON_AXIS_TOLERANCE = 1e-9  # of the largest r: points with a smaller r lie on the axis
 
 
 @dataclass(frozen=True)
 class Reading:
     """The points of a mesh at which stress is read, the same in all harmonics.
 
-    points: (S, 2) r and z in m: first `skin` points, five to each edge of the outline, then the
-    `inner` nodes, then those where stress alone is read, I inside the section and those of the
-    jumps.
-    extrapolated: (E, 5) points of the skin whose stress comes from inside, at `rough` nodes,
-    because the surface is clamped and its traction unknown, or on the axis.
-    continued: matrix from values at samples in the elements to inner nodes, rough nodes and the I
-    points (fea.core.local_fit.continuation).
+    points: (S, 2) r and z in m. First come `skin` points, five on each edge of the outline, then
+    the `inner` nodes, then points where stress alone is read: I inside the section, and those of
+    the jumps.
+    extrapolated: (E, 5) the points of the skin whose stress is extrapolated from inside, because
+    they are on a clamp, where the traction is unknown, or on the axis.
+    rough: the nodes at which such points lie.
+    continued: matrix that takes values at samples in the elements to inner nodes, rough nodes and
+    the I points (fea.core.local_fit.continuation).
     """
 
     space: Section
@@ -47,11 +48,11 @@ class Reading:
     jumps: tuple[Jump, ...]
 
     def of(self, n: Ints | int, u: Floats, traction: Floats) -> tuple[Floats, Floats]:
-        """Displacement (D, 3, K), m, and stress (S, 6, K), Pa, amplitudes.
+        """The amplitudes of displacement (D, 3, K), m, and stress (S, 6, K), Pa.
 
         n: harmonics, one or (K,).
         u: (N, 3, K) m.
-        traction: (E, 3, 3, K) Pa at the nodes of the outline's edges.
+        traction: (E, 3, 3, K) Pa, at the nodes of the outline's edges.
         """
         K = u.shape[2]
         sampled = self.space.sampled_stress(self.material, n, u).reshape(-1, 6, K)
@@ -73,11 +74,13 @@ class Reading:
 
     @cached_property
     def rows(self) -> Ints:
-        """The point at each node, (N,)."""
+        """The number (N,) of the point at each node."""
         return points_of_nodes(self.outline, len(self.space.nodes))
 
     def at_points(self, forces: Floats) -> sp.csc_matrix:
-        """Forces (3 D, K) on points with a displacement, from nodal ones, (N, 3, K)."""
+        """The forces (3 D, K), N, at points that have a displacement, from forces at nodes (N, 3,
+        K).
+        """
         count, loads = self.skin + len(self.inner), forces.shape[2]
         dense = np.zeros((loads, count, 3))
         dense[:, self.rows] = forces.transpose(2, 0, 1)
@@ -88,12 +91,12 @@ class Reading:
 
     @property
     def triangles(self) -> Ints:
-        """Triangles (M, 3) of the points, which fill the section: four to an element."""
+        """The triangles (M, 3) of points that fill the section, four for each element."""
         return np.asarray(self.rows[self.space.elements][:, QUARTER_TRIANGLES].reshape(-1, 3))
 
 
 def points_of_nodes(outline: Outline, count: int) -> Ints:
-    """The point of a reading at each of `count` nodes, (N,)."""
+    """The number (N,) of the point of a reading at each of `count` nodes."""
     row = np.zeros(count, dtype=np.int64)
     inner = np.setdiff1d(np.arange(count), outline.nodes)
     row[inner] = len(EDGE_STATIONS) * len(outline.nodes) + np.arange(len(inner))
@@ -111,10 +114,10 @@ def reading(
     inside: Floats = NO_POINTS,
     ends: Iterable[tuple[float, float]] = (),
 ) -> Reading:
-    """The points at which stress is read on a mesh.
+    """The points at which stress is read on a mesh, and how.
 
     clamps: surfaces that are clamped.
-    inside: further points (I, 2), m.
+    inside: additional points (I, 2), m.
     ends: places (r, z), m, on the outline where a pressure ends.
     """
     every_jump = jumps(space, outline, material, ends)
@@ -128,8 +131,8 @@ def reading(
     on_axis = ON_AXIS_TOLERANCE * space.nodes[:, 0].max()
     axis = outline.nodes[space.nodes[outline.nodes, 0] < on_axis]
     rough = np.union1d(outline.nodes[constrained], axis)
-    # Points of the skin, inner nodes, further points inside, points of jumps; the last two have no
-    # displacement.
+    # Points of the skin, inner nodes, additional points inside, points of jumps. The last two kinds
+    # have no displacement.
     points = [skin_at.reshape(-1, 2), space.nodes[inner], inside, on_jumps]
     targets = np.concatenate([space.nodes[inner], space.nodes[rough], inside])
     continued = continuation(space.samples, targets)

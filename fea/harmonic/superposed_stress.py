@@ -1,16 +1,16 @@
 """The von Mises stress over the circumference, by superposing unit fields of harmonics.
 
 In the metric of von Mises a stress is five numbers whose squares sum to the equivalent stress
-squared (fea.harmonic.five_numbers); over the circumference three of them vary as cos psi and two as
+squared (fea.harmonic.five_numbers). Over the circumference three of them vary as cos psi and two as
 sin psi.
 
-One harmonic alone: the square is a quadratic form of (cos n theta, sin n theta) with entries A, B,
-C, so its maximum is known in closed form:
+If one harmonic acts alone, the square is a quadratic form of (cos n theta, sin n theta) with
+entries A, B, C, so its maximum is known in closed form:
 
     (A + C) / 2 + sqrt(((A - C) / 2)^2 + B^2)
 
-Several harmonics: von Mises squared is a trigonometric polynomial, so samples determine its highest
-crest (fea.harmonic.trigonometric_maximum).
+If several harmonics act, von Mises squared is a trigonometric polynomial, so samples determine its
+highest crest (fea.harmonic.trigonometric_maximum).
 """
 
 from __future__ import annotations
@@ -31,10 +31,11 @@ from pinbase.arrays import Floats, Ints, Mask
 
 Instants = slice | Ints
 
-# The sizes below change the time, never the result; chosen by judgement.
-PAIR_BATCH = 4096  # pairs of points and instants at once: limits the memory of their samples
-# Pairs of points and instants, and angles, of an envelope at once: their samples stay in the cache.
-# Tuned on 240 instants of 13 harmonics, where 16 points at all 120 angles took three times as long.
+# These sizes change the time, never the result. They are chosen by judgement.
+PAIR_BATCH = 4096  # pairs of points and instants evaluated together: limits their memory
+# Pairs of points and instants, and angles, of an envelope evaluated together, so that their samples
+# stay in the cache. Tuned on 240 instants of 13 harmonics, where 16 points at all 120 angles took
+# three times as long.
 CACHED_PAIR_BATCH, CACHED_ANGLE_BATCH = 960, 24
 ALL_INSTANTS = slice(None)
 ROUND_OFF = 1e-12  # relative, of a stress
@@ -44,7 +45,7 @@ class Region(Protocol):
     """The part of the circumference on which each point is read, instant by instant."""
 
     def masked(self, points: Ints) -> Mask:
-        """Mask (J,) of the points (J,) that are read on a part of the circumference only."""
+        """A mask (J,) of the points (J,) that are read on part of the circumference only."""
 
     def read(self, points: Ints, instants: Ints) -> Mask:
         """The arcs (J, ARC_COUNT) on which pairs of points and instants, (J,) each, are read.
@@ -58,7 +59,7 @@ class SuperposedStress:
 
     fields: of the unit loads at S points.
     loads: T instants of the case.
-    region: where on the circumference points are read; all round by default.
+    region: the part of the circumference on which points are read; all of it by default.
 
     Raises: ArgumentError when a unit load that acts is not among the fields.
     """
@@ -95,13 +96,15 @@ class SuperposedStress:
     def bound(self, points: Ints, instants: Instants = ALL_INSTANTS) -> Floats:
         """An upper bound (J, T), Pa, of the von Mises stress over the circumference.
 
+        The bound is the sum over harmonics of the maximum of each, so it is exact where one
+        harmonic acts alone.
         points: (J,) numbers.
-        instants: T of them, all by default. Exact where one harmonic acts alone.
+        instants: T of them, all by default.
         """
         return self._sum(points, self._waves, instants)
 
     def _sum(self, points: Ints, waves: Sequence[slice], instants: Instants) -> Floats:
-        """The sum (J, T), Pa, of the maxima of some harmonics, each taken by itself."""
+        """The sum (J, T), Pa, over some harmonics of the largest von Mises stress of each."""
         out = np.zeros((len(points), len(self._first[instants])))
         for wave in waves:
             out += self._of_harmonic(points, wave, instants)
@@ -113,7 +116,7 @@ class SuperposedStress:
         return int(self._n[-1]) if len(self._n) else 0
 
     def _of_harmonic(self, points: Ints, wave: slice, instants: Instants = ALL_INSTANTS) -> Floats:
-        """The largest von Mises stress (J, T), Pa, of one harmonic by itself.
+        """The largest von Mises stress (J, T), Pa, of one harmonic acting alone.
 
         wave: the columns of its unit loads.
         """
@@ -121,21 +124,23 @@ class SuperposedStress:
         first, second = self._first[instants, wave].T, self._second[instants, wave].T
         flat = np.ascontiguousarray(five).reshape(-1, five.shape[2])
         shape = (len(five), 5, first.shape[1])
-        one, other = ((flat @ x).reshape(shape) for x in (first, second))
+        phase_0, phase_1 = ((flat @ x).reshape(shape) for x in (first, second))
         if self._n[wave.start] == 0:
             # Nothing varies over the circumference, so the square itself is the maximum.
-            square = np.square(one[:, COS]).sum(axis=1) + np.square(other[:, SIN]).sum(axis=1)
+            square = np.square(phase_0[:, COS]).sum(axis=1) + np.square(phase_1[:, SIN]).sum(axis=1)
         else:
-            # The sine parts lag by a quarter wave, so their phases swap places, one with its sign
-            # changed. Then `one` multiplies cos n theta and `other` sin n theta in all five
-            # numbers.
-            one[:, SIN], other[:, SIN] = -other[:, SIN], one[:, SIN].copy()
-            A, C = np.square(one).sum(axis=1), np.square(other).sum(axis=1)
-            square = form_maximum(A + C, A - C, np.einsum("jit,jit->jt", one, other))
+            # The sine parts lag by a quarter wave. So their phases swap places, one of them with
+            # its sign changed. Then `phase_0` multiplies cos n theta and `phase_1` multiplies
+            # sin n theta in all five numbers.
+            phase_0[:, SIN], phase_1[:, SIN] = -phase_1[:, SIN], phase_0[:, SIN].copy()
+            A, C = np.square(phase_0).sum(axis=1), np.square(phase_1).sum(axis=1)
+            square = form_maximum(A + C, A - C, np.einsum("jit,jit->jt", phase_0, phase_1))
         return np.asarray(np.sqrt(np.maximum(square, 0.0, out=square)))
 
     def reach(self, points: Ints, instants: Instants = ALL_INSTANTS) -> Floats:
-        """The loosest bound (J, T), Pa: the sum over unit loads of the most that each does."""
+        """The loosest upper bound (J, T), Pa: the sum over unit loads of the most that each can
+        cause.
+        """
         # The factor covers round-off, so that a bound is never below the value that it bounds.
         return np.asarray(
             (self._unit_reach[points] @ self._amplitudes[:, instants]) * (1.0 + ROUND_OFF)
@@ -143,16 +148,17 @@ class SuperposedStress:
 
     @cached_property
     def _amplitudes(self) -> Floats:
-        """Amounts (K, T) of the unit loads irrespective of their phase."""
+        """The amounts (K, T) of the unit loads, both phases combined."""
         return np.ascontiguousarray(np.hypot(self._first, self._second).T)
 
-    def round(
+    def largest_over_angle(
         self, points: Ints, instants: Ints, beat: Floats | None = None
     ) -> tuple[Floats, Floats]:
         """The largest von Mises stress (J,), Pa, over the circumference, and its angle (J,), rad.
 
-        points, instants: (J,) each, pairs of them.
-        beat: (J,) Pa; where a pair cannot exceed it, any value below it may be returned.
+        points, instants: (J,) each, which make J pairs.
+        beat: (J,) Pa, the value to exceed. Where a pair cannot exceed it, any value below it may be
+        returned.
         """
         beat = np.zeros(len(points)) if beat is None else beat
         value, angle = np.zeros(len(points)), np.zeros(len(points))
@@ -165,29 +171,34 @@ class SuperposedStress:
                 if not len(rows):
                     continue
                 at = points[rows], instants[rows]
-                back, forth = self._pair_waves(*at, self._waves)  # (J, 5, W)
+                cosine, sine = self._pair_waves(*at, self._waves)  # (J, 5, W)
                 if region is None:
-                    crests = crest_all_round(self._orders, back, forth, beat[rows])
+                    crests = crest_all_round(self._orders, cosine, sine, beat[rows])
                 else:
-                    crests = crest_where_read(self._orders, back, forth, region.read(*at))
+                    crests = crest_where_read(self._orders, cosine, sine, region.read(*at))
                 value[rows], angle[rows] = crests
         return value, angle
 
     def crests(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
-        """The same as `round` at points that are read all round, but to the last bit the same
-        whichever other pairs are evaluated.
+        """Return what `largest_over_angle` does, at points that are read all round.
+
+        Each value is the same to the last bit whichever other pairs are evaluated with it.
         """
         return steady_crests(self._orders, *self._waves_apart(points, instants))
 
-    def last_at(self, points: Ints, instants: Ints) -> Floats:
-        """The largest stress (J,), Pa, of the highest harmonic alone at pairs, as steadily."""
+    def highest_harmonic_at(self, points: Ints, instants: Ints) -> Floats:
+        """The largest von Mises stress (J,), Pa, of the highest harmonic alone, at pairs of points
+        and instants (J,). It does not depend on the other pairs, as in `crests`.
+        """
         if not self._waves:
             return np.zeros(len(points))
-        back, forth = (np.array(x[:, :, -1:]) for x in self._waves_apart(points, instants))
-        return one_wave(self._n[-1:], back, forth)[0]
+        cosine, sine = (np.array(x[:, :, -1:]) for x in self._waves_apart(points, instants))
+        return one_wave(self._n[-1:], cosine, sine)[0]
 
     def _waves_apart(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
-        """The factors of `_pair_waves` for all harmonics, each pair summed by itself."""
+        """Return the factors of `_pair_waves` for all harmonics, each pair summed independently of
+        the others.
+        """
         five, starts = self._five[points], [wave.start for wave in self._waves]
         summed = (
             np.add.reduceat(five * x[instants][:, None], starts, axis=2)
@@ -195,9 +206,9 @@ class SuperposedStress:
         )
         # In C order, so that later sums run along memory however many pairs there are.
         a, b = (np.ascontiguousarray(x) for x in summed)
-        back, forth = a.copy(), b.copy()
-        back[:, SIN], forth[:, SIN] = -b[:, SIN], a[:, SIN]
-        return back, forth
+        cosine, sine = a.copy(), b.copy()
+        cosine[:, SIN], sine[:, SIN] = -b[:, SIN], a[:, SIN]
+        return cosine, sine
 
     def _samples(self, points: Ints, instants: Ints, waves: Sequence[slice], degree: int) -> Floats:
         """Von Mises squared (J, A), Pa^2, of some harmonics together at equally spaced angles."""
@@ -209,26 +220,27 @@ class SuperposedStress:
     ) -> tuple[Floats, Floats]:
         """The factors (J, 5, W) of cos n theta, and of sin n theta, in the five numbers.
 
-        points, instants: (J,) each.
+        points, instants: (J,) each, which make J pairs.
         waves: W harmonics.
         """
-        back, forth = (np.empty((len(points), 5, len(waves))) for _ in range(2))
+        cosine, sine = (np.empty((len(points), 5, len(waves))) for _ in range(2))
         one, i = np.unique(points, return_inverse=True)
         now, t = np.unique(instants, return_inverse=True)
         for w, wave in enumerate(waves):
             five = np.ascontiguousarray(self._five[one, :, wave])
             a, b = ((five @ x[now, wave].T)[i, :, t] for x in (self._first, self._second))
             # As in `_of_harmonic`: the sine parts lag by a quarter wave.
-            back[:, COS, w], back[:, SIN, w] = a[:, COS], -b[:, SIN]
-            forth[:, COS, w], forth[:, SIN, w] = b[:, COS], a[:, SIN]
-        return back, forth
+            cosine[:, COS, w], cosine[:, SIN, w] = a[:, COS], -b[:, SIN]
+            sine[:, COS, w], sine[:, SIN, w] = b[:, COS], a[:, SIN]
+        return cosine, sine
 
     def envelope(self, points: Ints, angles: Floats, read: Mask | None = None) -> Floats:
         """The largest von Mises stress (J, A), Pa, over all instants, to seven digits.
 
         points: (J,) numbers.
         angles: (A,) rad.
-        read: (A, J, T) where it counts, everywhere by default. -1 where it never does.
+        read: (A, J, T) whether the stress counts; always by default. The result is -1 where it
+        never does.
         """
         batch = max(1, CACHED_PAIR_BATCH // max(self.count, 1))
         parts = (slice(k, k + batch) for k in range(0, len(points), batch))
@@ -240,9 +252,9 @@ class SuperposedStress:
         return np.where(square < 0.0, -1.0, np.sqrt(np.maximum(square, 0.0)))
 
     def _squares_over_time(self, points: Ints, angles: Floats, read: Mask | None) -> Floats:
-        """The largest square (J, A), Pa^2, over all instants.
+        """The largest von Mises stress squared (J, A), Pa^2, over all instants.
 
-        The five numbers of each harmonic are found once; then they are combined at each angle.
+        The five numbers of each harmonic are found once and then combined at each angle.
         """
         turns = np.outer(angles, self._orders)
         c, s = np.cos(turns), np.sin(turns)
@@ -274,7 +286,7 @@ class SuperposedStress:
         return out
 
     def stress(self, points: Ints, instant: int, angles: Floats) -> Floats:
-        """Stress (J, A, 6), Pa, at an instant: rr, tt, zz, tz, rz, rt.
+        """The stress (J, A, 6), Pa, at an instant: rr, tt, zz, tz, rz, rt.
 
         points: (J,) numbers.
         angles: (A,) rad.

@@ -1,19 +1,21 @@
 """The largest von Mises stress over the circumference, by branch and bound.
 
-The bounds of `Circumference._search`, from the cheapest and loosest to the dearest and tightest:
+The bounds of `Circumference._search`, from the cheapest and loosest to the dearest and tightest,
+are:
 
-1. `reach`: the sum over unit loads of the most that each does at the point, a matrix product;
-2. `bound`: the sum over harmonics of the maximum of each by itself. It is a bound since von Mises
-   is a seminorm: the stress of a sum is at most the sum of the stresses;
-3. `_tightened`: the LOW_HARMONICS lowest harmonics are sampled together, only the maxima of the
+1. `reach`: the sum over unit loads of the most that each can cause at the point, a matrix product;
+2. `bound`: the sum over harmonics of the maximum of each. It is a bound since von Mises is a
+   seminorm: the stress of a sum is at most the sum of the stresses;
+3. `_tightened`: the LOW_HARMONICS lowest harmonics are sampled together, and only the maxima of the
    others are added;
-4. `_near_anchors`: loads that change little over many instants would all be evaluated. A few of
-   the instants are sampled with all harmonics; the stress of another one exceeds that of the
-   nearest of them by no more than what the difference of their loads does, by `reach`.
+4. `_near_anchors`: for loads that change little over many instants, which would otherwise all be
+   evaluated. A few instants ("anchors") are sampled with all harmonics. The stress of another
+   instant exceeds that of the nearest anchor by no more than what the difference of their loads can
+   cause, by `reach`.
 
-Pairs of a point and an instant that no bound rules out are evaluated (`round`). Points come in
-falling order of `reach`, so the search ends at the first batch that cannot exceed what has been
-reached.
+Pairs of a point and an instant that no bound rules out are evaluated (`largest_over_angle`). Points
+come in falling order of `reach`, so the search ends at the first batch that cannot exceed the
+maximum found so far (the incumbent).
 """
 
 from __future__ import annotations
@@ -28,13 +30,13 @@ from fea.harmonic.superposed_stress import PAIR_BATCH, ROUND_OFF, SuperposedStre
 from fea.harmonic.trigonometric_maximum import upper_bound
 from pinbase.arrays import Floats, Ints, Mask
 
-# The sizes below change the time of the search, never its result; chosen by judgement.
+# These sizes change the time of the search, never its result. They are chosen by judgement.
 FIRST_PAIRS = 16  # pairs of points and instants that are evaluated first
 POINT_BATCH = 64  # points bounded together
 ANCHORS = 24  # instants from which the stress of others is bounded, if there are many more
-MIN_INSTANTS_PER_ANCHOR = 4  # fewer are evaluated one by one
-LOW_HARMONICS = 4  # lowest harmonics, which are sampled together for a tighter bound
-SAME_POINT = 1e-9  # relative: places and stresses that differ by no more differ by round-off
+MIN_INSTANTS_PER_ANCHOR = 4  # with fewer, anchors cost no less than evaluating the instants
+LOW_HARMONICS = 4  # number of lowest harmonics sampled together for a tighter bound
+SAME_POINT = 1e-9  # relative difference of places and of stresses that is round-off
 
 
 @dataclass(frozen=True)
@@ -53,29 +55,34 @@ class Circumference(SuperposedStress):
     def maxima(self, among: Mask, least: float = 0.0) -> Floats:
         """The largest von Mises stress (T,), Pa, at every instant over the points of a mask (S,).
 
-        least: Pa; the result at instants at which no point exceeds it.
+        least: Pa, the result at instants at which no point exceeds it.
         """
         return self._search(among, together=False, least=least)[0]
 
     def each(self, among: Mask, least: Floats | float = 0.0) -> tuple[Floats, Ints]:
-        """The same with the points (T,) where they are; `least` may be one for each instant."""
+        """Return what `maxima` does, and the points (T,) where these stresses are.
+
+        least: Pa, one for all instants or one (T,) for each.
+        """
         value, point = self._search(among, together=False, least=least)
-        return value, self._first_there(point, among)
+        return value, self._first_coinciding(point, among)
 
-    def _first_there(self, points: Ints, among: Mask) -> Ints:
-        """The first points of a mask (S,) with the place and the stress of these.
+    def _first_coinciding(self, points: Ints, among: Mask) -> Ints:
+        """The first points of a mask (S,) at the same places as the given ones and with the same
+        stress.
 
-        Elements share points, on which they find the same stress but for round-off, each in its own
-        directions along the outline, so that a search may find either.
+        Elements share points. At a shared point they have the same stress but for round-off, since
+        each reads it in its own directions along the outline. A search may find either; the first
+        one makes its result unique.
         """
         if self.region is not None:
             return points
         one, i = np.unique(points, return_inverse=True)
-        first = [next((x for x in self._like(int(k)) if among[x]), k) for k in one]
+        first = [next((x for x in self._coinciding(int(k)) if among[x]), k) for k in one]
         return np.array(first, dtype=np.int64)[i]
 
-    def _like(self, point: int) -> list[int]:
-        """The points with the place and the stress of a point, rising."""
+    def _coinciding(self, point: int) -> list[int]:
+        """The numbers, rising, of the points with the same place and the same stress as a point."""
         known: dict[tuple[object, ...], list[int]] = self.fields.derived
         key = "like", self._at, point
         if key not in known:
@@ -89,11 +96,11 @@ class Circumference(SuperposedStress):
     def top(self, among: Mask, least: float = 0.0) -> Crest:
         """The largest von Mises stress over the points of a mask (S,) and over all instants.
 
-        least: Pa; the value of the result where no point exceeds it.
+        least: Pa, the value of the result where no point exceeds it.
         """
         reached, point = self._search(among, together=True, least=least)
-        point, instant = self._first_there(point, among), int(reached.argmax())
-        find = self.round if self.region is not None else self.crests
+        point, instant = self._first_coinciding(point, among), int(reached.argmax())
+        find = self.largest_over_angle if self.region is not None else self.crests
         value, angle = find(point[[instant]], np.array([instant]))
         most = float(value[0]) if reached[instant] > least else least
         return Crest(most, int(point[instant]), instant, float(angle[0]))
@@ -101,10 +108,10 @@ class Circumference(SuperposedStress):
     def _search(self, among: Mask, together: bool, least: Floats | float) -> tuple[Floats, Ints]:
         """The maximum (T,), Pa, at every instant and its point (T,), by branch and bound.
 
-        among: (S,) the points that are searched.
-        together: only the largest of all instants is needed; those of other instants may be too
-        low.
-        least: Pa, the value to exceed, or one (T,) for each instant.
+        among: (S,) mask of the points that are searched.
+        together: only the largest value of all instants is needed; those of other instants may be
+        too low.
+        least: Pa, the value to exceed, one for all instants or one (T,) for each.
         """
         rows, reach = self._by_reach(np.flatnonzero(among))
         best = np.full(self.count, least)
@@ -113,7 +120,9 @@ class Circumference(SuperposedStress):
         # others.
         if len(self._waves) > 1 and len(rows):
             i, t = self._likely_pairs(rows[:POINT_BATCH], together)
-            _update_best(best, point, t, self.round(i, t, np.full(len(t), least))[0], i)
+            _update_best(
+                best, point, t, self.largest_over_angle(i, t, np.full(len(t), least))[0], i
+            )
         # Step 2: go through the points, batch by batch, in falling order of what they can reach.
         for k in range(0, len(rows), POINT_BATCH):
             # No later point reaches more than this one, so the search is complete.
@@ -139,16 +148,17 @@ class Circumference(SuperposedStress):
             # and rules out more of them.
             for i, t in self._pairs_above(bound, best, together):
                 beat = np.full(len(t), best.max()) if together else best[t]
-                value = self.round(here[i], t, beat)[0]
+                value = self.largest_over_angle(here[i], t, beat)[0]
                 bound[i, t] = -1.0
                 _update_best(best, point, t, value, here[i])
         return best, point
 
     def _likely_pairs(self, points: Ints, together: bool) -> tuple[Ints, Ints]:
-        """Pairs of points and instants, (P,) each, with the greatest `reach`.
+        """The pairs of points and instants, (P,) each, with the greatest `reach`.
 
         Their true values are the first incumbents of the search.
-        together: the FIRST_PAIRS best of all instants; otherwise the best point of each instant.
+        together: return the FIRST_PAIRS best pairs of all instants; otherwise the best point of
+        each instant.
         """
         reach = self.reach(points)
         if not together:
@@ -158,11 +168,11 @@ class Circumference(SuperposedStress):
         return points[i], t
 
     def _tightened(self, points: Ints, instants: Mask, beat: Floats | float) -> Floats:
-        """A bound (J, T), Pa, at the instants of a mask that is tighter where it exceeds `beat`.
+        """A bound (J, T), Pa, at the instants of a mask, tightened where it exceeds `beat`.
 
-        The lowest harmonics are sampled together there, which keeps their mutual cancellation; the
+        There the lowest harmonics are sampled together, which keeps their mutual cancellation. The
         maxima of the higher ones are added.
-        beat: Pa, one for all instants or (T,).
+        beat: Pa, one for all instants or one (T,) for each.
         """
         at = np.flatnonzero(instants)
         low, high = self._waves[:LOW_HARMONICS], self._waves[LOW_HARMONICS:]
@@ -181,13 +191,15 @@ class Circumference(SuperposedStress):
         return bound
 
     def _near_anchors(self, bound: Floats, points: Ints, beat: Floats | float) -> None:
-        """Lower bounds (J, T), Pa, in place, by what changes since the nearest anchor.
+        """Lower bounds (J, T), Pa, in place, to what the nearest anchor and the change of loads
+        from it allow.
 
-        beat: Pa, one for all instants or (T,); lower bounds are left.
+        beat: Pa, one for all instants or one (T,) for each; bounds that do not exceed it are left
+        unchanged.
         """
         nearest, change = self._anchors
         i, t = np.nonzero(bound > beat)
-        # Pairs that remain share anchors; with too few to each, evaluating them costs no more.
+        # The remaining pairs share anchors. If too few share each, evaluating them costs no more.
         pairs, pair = np.unique(i * self.count + nearest[t], return_inverse=True)
         if len(pairs) * MIN_INSTANTS_PER_ANCHOR > len(i):
             return
@@ -197,15 +209,17 @@ class Circumference(SuperposedStress):
             here = slice(k, k + PAIR_BATCH)
             samples = self._samples(points[at[here]], anchor[here], self._waves, degree)
             there[here] = np.sqrt(upper_bound(samples, degree))
-        # The triangle inequality: stress at the anchor, plus all that the change of loads can do.
+        # By the triangle inequality: stress at the anchor, plus the most that the change of loads
+        # can cause.
         more = (self._unit_reach[points] @ change)[i, t] * (1.0 + ROUND_OFF)
         bound[i, t] = np.minimum(bound[i, t], there[pair] + more)
 
     @cached_property
     def _anchors(self) -> tuple[Ints, Floats]:
-        """The nearest anchor (T,) of every instant, and the change of amounts (K, T) since it.
+        """The nearest anchor (T,) of every instant, and the change (K, T) of the unit loads'
+        amounts from it.
 
-        Each anchor is the instant whose loads differ most from those of all before it.
+        Each anchor is the instant whose loads differ most from those of all anchors before it.
         """
         weights = self._unit_reach.max(axis=0)
         nearest = np.zeros(self.count, dtype=np.int64)
@@ -238,7 +252,8 @@ class Circumference(SuperposedStress):
     def _pairs_above(
         self, bound: Floats, best: Floats, together: bool
     ) -> Iterator[tuple[Ints, Ints]]:
-        """Batches of pairs whose bound (J, T) exceeds the incumbent, those furthest above it first.
+        """Yield batches of pairs whose bound (J, T) exceeds the incumbent, those furthest above it
+        first.
 
         The caller changes `bound` and `best`, the incumbents (T,), between batches. Batches grow
         fourfold: the first ones usually settle the maximum; if they do not, large batches are
@@ -257,7 +272,7 @@ class Circumference(SuperposedStress):
             batch *= 4
 
     def of_instant(self, instant: int) -> Circumference:
-        """The same points at one instant alone."""
+        """The stress at the same points at a single instant."""
         return Circumference(self.fields, self._loads.at(np.array([instant])), self.region)
 
 
@@ -270,4 +285,4 @@ def _update_best(best: Floats, point: Ints, t: Ints, value: Floats, at: Ints) ->
     order = np.argsort(value, kind="stable")
     t, value, at = t[order], value[order], at[order]
     more = value > best[t]
-    best[t[more]], point[t[more]] = value[more], at[more]  # the last one stays
+    best[t[more]], point[t[more]] = value[more], at[more]  # the last, the largest, stays

@@ -1,17 +1,18 @@
-"""Stress on the surface from the displacements there, the tractions being known.
+"""Stress on the surface from the displacements there and the known tractions.
 
-Along the outline (arc s, tangent t, in the order counter-clockwise) the strains in the surface are
+Along the outline (arc length s, tangent t, counter-clockwise) the strains in the surface are
 
     e_ss = t . d(U, W)/ds      e_tt = (U + n V) / r
     2 e_st = dV/ds - (t_r (n U + V) + t_z n W) / r
 
-and with the traction they give all of the stress. The first and the last are taken at two Gauss
-points of each edge, where those of quadratic elements are most exact, and interpolated by the cubic
-through the four nearest ones; where the outline has a corner, or the traction a jump, by the line
-through the edge's own two. The strains and not the derivatives are interpolated: derivatives turn
-with the outline, so that a mere rotation would leave stresses where its curvature jumps. `python -m
-benchmarks recovery` compares this with the average of extrapolated stresses: several times less
-error at a fillet.
+and with the traction they give all stress components. The strains e_ss and e_st are computed at the
+two Gauss points of each edge, at which those of quadratic elements are most exact, and interpolated
+by the cubic through the four nearest Gauss points. Where the outline has a corner, or the traction
+a jump, they are interpolated by the line through the edge's own two points. The strains are
+interpolated and not the derivatives: derivatives turn with the outline, so that a mere rotation
+would leave stresses where the curvature of the outline jumps. `python -m benchmarks recovery`
+compares this with the average of extrapolated stresses: at a fillet the error is several times
+smaller.
 """
 
 from __future__ import annotations
@@ -26,14 +27,14 @@ from fea.harmonic.boundary import Outline, shapes, slopes
 from fea.solid.boundary import MIN_SMOOTH_COSINE
 from pinbase.arrays import Floats, Ints
 
-EDGE_STATIONS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])  # of an edge, where stress is read
+EDGE_STATIONS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])  # points of an edge at which stress is read
 _GAUSS_POINT = 1.0 / np.sqrt(3.0)
-_TRACTION_JUMP = 1e-9
+_TRACTION_JUMP = 1e-9  # of the largest traction; a smaller jump is round-off
 
 
 @dataclass(frozen=True)
 class Skin:
-    """Stress and displacement, amplitudes, at five points on each edge of the outline.
+    """Amplitudes of stress and displacement at five points on each edge of the outline.
 
     points: (E, 5, 2) r, z in m.
     tangent: (E, 5, 2).
@@ -50,12 +51,12 @@ class Skin:
 def skin(
     space: Section, outline: Outline, material: Material, n: Ints | int, u: Floats, traction: Floats
 ) -> Skin:
-    """The stress on the outline of displacements under tractions.
+    """The stress on the outline from displacements and tractions.
 
+    On the axis (r = 0) the stresses are finite but meaningless.
     n: harmonics, one or (K,).
     u: (N, 3, K) m.
-    traction: (E, 3, 3, K) Pa, at the ends and middle of the edges. On an axis (r = 0) stresses are
-    finite and mean nothing.
+    traction: (E, 3, 3, K) Pa, at the ends and the middle of the edges.
     """
     x = space.nodes[outline.nodes]
     return on_edges(
@@ -73,10 +74,12 @@ def on_edges(
 ) -> Skin:
     """The stress on edges from the displacements of their nodes.
 
-    x: (E, 3, 2) m, nodes.
-    moved: (E, 3, 3, K) m.
+    n: harmonics, one or (K,).
+    x: (E, 3, 2) m, position of the nodes.
+    moved: (E, 3, 3, K) m, displacement of the nodes.
     traction: (E, 3, 3, K) Pa.
-    neighbours: edges that go on smoothly before and after each (`smooth_neighbours`).
+    neighbours: the edges that continue each edge smoothly before and after it
+    (`smooth_neighbours`).
     """
     at = np.einsum("qi,eia->eqa", shapes(EDGE_STATIONS), x)
     tangent = np.einsum("qi,eia->eqa", slopes(EDGE_STATIONS), x)
@@ -92,7 +95,9 @@ def on_edges(
 def _strains(
     neighbours: tuple[Ints, Ints], n: Ints | int, x: Floats, moved: Floats
 ) -> tuple[Floats, Floats]:
-    """e_ss and 2 e_st at the points, (E, 5, K) each; both are zero in rigid motions."""
+    """The strains e_ss and 2 e_st at the points, (E, 5, K) each; both are zero in rigid-body
+    motions.
+    """
     at = np.array([-_GAUSS_POINT, _GAUSS_POINT])
     along = slopes(at)
     path = np.einsum("qi,eia->eqa", along, x)
@@ -109,7 +114,7 @@ def _strains(
         [(1.0 - EDGE_STATIONS / _GAUSS_POINT) / 2.0, (1.0 + EDGE_STATIONS / _GAUSS_POINT) / 2.0],
         axis=1,
     )
-    # By default the line through an edge's own two Gauss points.
+    # First by the line through an edge's own two Gauss points.
     out = np.einsum("pq,eqck->epck", weights, value)
     half = np.linalg.norm(np.einsum("qi,eia->eqa", slopes(np.zeros(1)), x), axis=2)[:, 0]
     before, after = neighbours
@@ -120,8 +125,8 @@ def _strains(
         w = _lagrange(half[rows] * EDGE_STATIONS[p], np.stack(places, axis=1))
         out[rows, p] = np.einsum("eq,eqck->eck", w, np.stack(samples, axis=1))
 
-    # Where the outline goes on smoothly, the cubic through the four nearest Gauss points instead:
-    # at the edge's end, at its start, and at the three points between.
+    # Where the outline continues smoothly, by the cubic through the four nearest Gauss points
+    # instead: at the edge's end, at its start, and at the three points between.
     e, f = np.flatnonzero(right), after[right]
     places = [-a[e], a[e], half[e] + c[f], half[e] + c[f] + 2.0 * a[f]]
     cubic(e, 4, [value[e, 0], value[e, 1], value[f, 0], value[f, 1]], places)
@@ -137,7 +142,10 @@ def _strains(
 
 
 def smooth_neighbours(outline: Outline, x: Floats, traction: Floats) -> tuple[Ints, Ints]:
-    """Edges (E,) before and after each across which surface and load are smooth, or -1."""
+    """The edges (E,) before and after each edge, or -1.
+
+    A neighbour counts if surface and traction are smooth across the shared node.
+    """
     after = outline.after.copy()
     ends = np.einsum("qi,eia->eqa", slopes(np.array([-1.0, 1.0])), x)
     ends /= np.linalg.norm(ends, axis=2, keepdims=True)
@@ -155,7 +163,9 @@ def smooth_neighbours(outline: Outline, x: Floats, traction: Floats) -> tuple[In
 
 
 def _lagrange(at: Floats, places: Floats) -> Floats:
-    """Weights (E, 4) of samples at `places` (E, 4) in the cubic through them, at `at` (E,)."""
+    """The weights (E, 4) of values at `places` (E, 4) in the cubic through them, evaluated at `at`
+    (E,).
+    """
     w = np.ones_like(places)
     for i in range(4):
         for j in range(4):
@@ -167,7 +177,9 @@ def _lagrange(at: Floats, places: Floats) -> Floats:
 def _stress(
     material: Material, tangent: Floats, e_ss: Floats, e_tt: Floats, shear: Floats, applied: Floats
 ) -> Floats:
-    """Stress (E, 5, 6, K) from strains in the surface and tractions (E, 5, 3, K)."""
+    """The stress (E, 5, 6, K), Pa, from the strains in the surface and the tractions (E, 5, 3, K),
+    Pa.
+    """
     E, nu = material.youngs_modulus, material.poisson_ratio
     t_r, t_z = tangent[..., 0, None], tangent[..., 1, None]
     n_r, n_z = t_z, -t_r
@@ -184,10 +196,11 @@ def _stress(
 def in_axes(
     tangent: Floats, ss: Floats, tt: Floats, nn: Floats, ns: Floats, st: Floats, nt: Floats
 ) -> Floats:
-    """Stress (..., 6, K): rr, tt, zz, tz, rz, rt, from its components in the axes of a surface.
+    """The stress (..., 6, K), rr, tt, zz, tz, rz, rt, from its components in the axes of a surface.
 
-    tangent: (..., 2). Components: along the tangent (s), about the axis (t) and along the outward
-    normal (n), (..., K) each.
+    tangent: (..., 2).
+    ss, tt, nn, ns, st, nt: (..., K) each, along the tangent (s), about the axis (t) and along the
+    outward normal (n).
     """
     t_r, t_z = tangent[..., 0, None], tangent[..., 1, None]
     n_r, n_z = t_z, -t_r

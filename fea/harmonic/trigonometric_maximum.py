@@ -2,11 +2,11 @@
 
 More samples than twice its degree determine the polynomial, so its value, slope and curvature are
 exact at any angle. A crest lies where the slope changes sign between two angles; Newton's method
-finds it there. Between angles h apart, a polynomial of degree D rises above both by at most (D h /
-2)^2 / 2 times half its range, which itself is at most that of the samples over cos(D h / 2); so
-crests that cannot be the highest are skipped. Two crests may lie between the same two angles, and
-only one of them is found: as the slope has three zeros there, the result is at most (D h)^4 / 72 of
-half the range too low.
+finds it there. Between angles h apart, a polynomial of degree D rises above the values at both by
+at most (D h / 2)^2 / 2 times half its range. That range is at most that of the samples over cos(D h
+/ 2). So crests that cannot be the highest are skipped. Two crests may lie between the same two
+angles, and only one of them is found; as the slope has three zeros there, the result is too low by
+at most (D h)^4 / 72 of half the range.
 
 Source: H. Ehlich, K. Zeller, Math. Z. 86 (1964) 41, for the bound by samples.
 """
@@ -17,10 +17,12 @@ import numpy as np
 
 from pinbase.arrays import Floats, Ints, Mask
 
-# Angles over samples: D h = 0.3 with 5 samples per degree, so a missed second crest costs 1e-4.
+# Angles of the grid for each sample: with 5 samples per degree, D h = 0.3, so that a missed second
+# crest costs 1e-4.
 ANGLES_PER_SAMPLE = 4
 MAX_CREST_STEPS = 40  # Newton steps, or bisections where Newton's method leaves the interval
-# Last Newton step, of a wavelength over 2 pi: the remaining error is of the order of its square.
+# Size of the last Newton step, of a wavelength over 2 pi: the remaining error is of the order of
+# its square.
 CREST_STEP_TOLERANCE = 1e-6
 
 
@@ -29,8 +31,8 @@ def highest_crest(samples: Floats, degree: int, beat: Floats | float = -np.inf) 
 
     samples: (J, A) values at the angles 2 pi k / A.
     degree: of the polynomials; A > 2 `degree`.
-    beat: (J,), a value to exceed; where a polynomial cannot, the angle of its largest sample is
-    returned.
+    beat: the value to exceed, one or (J,). Where a polynomial cannot exceed it, the angle of its
+    largest sample is returned.
     """
     count = samples.shape[1]
     best = samples.argmax(axis=1) * (2.0 * np.pi / count)
@@ -44,8 +46,8 @@ def highest_crest(samples: Floats, degree: int, beat: Floats | float = -np.inf) 
     samples, slope = (np.fft.irfft(x, count, axis=1) * count for x in (c, 1j * k * c))
     c[:, 1:] *= 2.0
     top = samples.max(axis=1)
-    # Only intervals that may hold the highest crest: near the largest value, the slope changing
-    # from up to down.
+    # Only intervals that may hold the highest crest are searched: those near the largest value, in
+    # which the slope changes from up to down.
     near = samples >= (2.0 * top - upper_bound(samples, degree))[:, None]
     near |= np.roll(near, -1, axis=1)
     row, at = np.nonzero(near & (slope > 0.0) & (np.roll(slope, -1, axis=1) <= 0.0))
@@ -53,13 +55,13 @@ def highest_crest(samples: Floats, degree: int, beat: Floats | float = -np.inf) 
     angle = _crests(c[row], at * step, (at + before / (before - after)) * step, (at + 1) * step)
     value = (c[row] * np.exp(1j * k * angle[:, None])).real.sum(axis=1)
     order = np.argsort(value, kind="stable")
-    best[hopeful] = samples.argmax(axis=1) * step  # of what is flat, which has no crest
+    best[hopeful] = samples.argmax(axis=1) * step  # for flat polynomials, which have no crest
     best[hopeful[row[order]]] = angle[order]  # the last, which is the largest, stays
     return np.asarray(best)
 
 
 def upper_bound(samples: Floats, degree: int) -> Floats:
-    """The most (J,) that polynomials of a degree with the samples (J, A) can reach."""
+    """An upper bound (J,) of the polynomials of a degree that have the samples (J, A)."""
     arch = degree * np.pi / samples.shape[1]
     top = samples.max(axis=1)
     return np.asarray(top + arch**2 / 4.0 * (top - samples.min(axis=1)) / np.cos(arch))
@@ -69,7 +71,8 @@ def crest_of_samples(square: Floats) -> tuple[Floats, Floats]:
     """The square roots (J,) of the highest crests of samples (J, A), and their angles (J,), rad.
 
     A parabola through the largest sample and its neighbours gives the crest. Negative samples count
-    as absent, and next to one there is no crest. Without any sample the value is zero.
+    as absent; if a neighbour is absent, the largest sample is the crest. Without any sample the
+    value is zero.
     square: (J, A) samples of a square at the angles 2 pi k / A.
     """
     count, row = square.shape[1], np.arange(len(square))
@@ -82,9 +85,11 @@ def crest_of_samples(square: Floats) -> tuple[Floats, Floats]:
 def parabola_crest(
     before: Floats, here: Floats, after: Floats, usable: Mask | bool = True
 ) -> tuple[Floats, Floats]:
-    """The root of the crest (J,) of the parabola through three squares, and its place from the one
-    in the middle, in steps, at most one; that in the middle where it has no crest.
+    """The square root (J,) of the crest of the parabola through three squares, and the shift (J,)
+    of the crest from the middle one.
 
+    The shift is in steps, at most one. Where the parabola has no crest, the result is the middle
+    one.
     usable: where the outer squares count.
     """
     bend = 2.0 * here - before - after
@@ -100,7 +105,7 @@ def _crests(c: Floats, low: Floats, angle: Floats, high: Floats) -> Floats:
 
     c: (C, D + 1) complex Fourier coefficients.
     low, high: (C,) rad, where the slope is positive and negative.
-    angle: (C,) rad, a guess.
+    angle: (C,) rad, a first guess.
     """
     k = np.arange(c.shape[1])
     for _ in range(MAX_CREST_STEPS):
@@ -117,7 +122,7 @@ def _crests(c: Floats, low: Floats, angle: Floats, high: Floats) -> Floats:
 
 
 def form_maximum(total: Floats, apart: Floats, mixed: Floats) -> Floats:
-    """The largest value of A cos^2 + 2 B cos sin + C sin^2, in closed form.
+    """The largest value over all angles of A cos^2 + 2 B cos sin + C sin^2, in closed form.
 
     total: A + C.
     apart: A - C.
@@ -126,13 +131,16 @@ def form_maximum(total: Floats, apart: Floats, mixed: Floats) -> Floats:
     return np.asarray(total / 2.0 + np.sqrt(apart * apart / 4.0 + mixed * mixed))
 
 
-def one_wave(n: Ints, back: Floats, forth: Floats) -> tuple[Floats, Floats]:
-    """The largest von Mises stress (J,) and its angle (J,), rad, where one harmonic acts, or none.
+def one_wave(n: Ints, cosine: Floats, sine: Floats) -> tuple[Floats, Floats]:
+    """The largest von Mises stress (J,), Pa, and its angle (J,), rad, where one harmonic acts, or
+    none.
 
     n: (1,) or (0,) the harmonic.
-    back, forth: (J, 5, 1) the factors of cos n theta and sin n theta.
+    cosine, sine: (J, 5, 1) the factors of cos n theta and sin n theta.
     """
-    A, B, C = ((x * y).sum(axis=(1, 2)) for x, y in ((back, back), (back, forth), (forth, forth)))
+    A, B, C = (
+        (x * y).sum(axis=(1, 2)) for x, y in ((cosine, cosine), (cosine, sine), (sine, sine))
+    )
     if not n.any():
         return np.sqrt(A), np.zeros(len(A))
     largest = np.maximum(form_maximum(A + C, A - C, B), 0.0)

@@ -23,17 +23,18 @@ from fea.support.records import LugStress
 from pinbase.arrays import Floats
 from pinbase.memo import Memo
 
-ANGLE_DECIMALS = 6  # of degrees, which are far fewer than a mesh resolves
+ANGLE_DECIMALS = 6  # of degrees, far finer than a mesh resolves
 BENEATH = "beneath"  # the place at a bore on which the pin presses
 ALONG_FORCE = "shank along the largest force, in tension"
 
 
 @dataclass(frozen=True)
 class ShankAngle:
-    """The angle of a shank from the pin's x axis, (T,) rad, at times (T,) s; one angle and None
-    where it does not turn.
+    """The angle of a shank from the pin's x axis, at the instants of a motion.
 
-    assumed: what is assumed of it, in words.
+    angle: (T,) rad; a single angle for a shank that does not turn.
+    times: (T,) s; None for a shank that does not turn.
+    assumed: what is assumed about the angle, as text.
     """
 
     angle: Floats
@@ -41,7 +42,10 @@ class ShankAngle:
     assumed: str = ""
 
     def at(self, times: Floats | None, count: int) -> Floats:
-        """The angle at times (count,) of the same motion, which may be None for one instant."""
+        """The angle (count,), rad, at times (count,) of the same motion.
+
+        times: s; None for loads without a motion.
+        """
         if self.times is None or times is None:
             return np.full(count, float(self.angle[0]))
         return np.asarray(np.interp(times, self.times, np.unwrap(self.angle)))
@@ -51,35 +55,48 @@ class ShankAngle:
 class _LoadedLug:
     """A lug on its band, whose stress under any pressures is superposed.
 
-    rows: of its rings among those of the pin. of: material of the pin, radius of its bore and of
-    its band, m. length: of the rings, (R,) m.
+    rows: its rings among those of the pin.
+    pin_section: the material of the pin, and the radii of its bore and of its band, m.
+    length: (R,) m, of the rings.
     """
 
     lug: Lug
     rows: slice
-    of: tuple[Material, float, float]
+    pin_section: tuple[Material, float, float]
     eye: EyeStress
     length: Floats
     memo: Memo
 
     def force(self, waves: Floats) -> Floats:
-        """The force (T, 2) N of pressures (N + 1, T, rings of the pin, 2) Pa."""
-        around = 2.0 * math.pi * self.of[2] * self.length
+        """The force (T, 2), N, of the pin on the lug under pressures.
+
+        waves: (N + 1, T, rings of the pin, 2) Pa, harmonics of the pressures.
+        """
+        around = 2.0 * math.pi * self.pin_section[2] * self.length
         return np.asarray(0.5 * np.einsum("trp,r->tp", waves[1][:, self.rows], around))
 
     def load(self, waves: Floats, angle: Floats, times: Floats | None) -> LugLoad:
-        """The load by pressures. angle: of the shank, (T,) rad. times: (T,) s, or None."""
+        """The load of the lug under pressures.
+
+        waves: as for `force`.
+        angle: (T,) rad, of the shank.
+        times: (T,) s, or None.
+        """
         load = LugLoad(self.force(waves), waves[:, :, self.rows], self.length, angle, times)
-        # Round-off touches nothing in a clearance; an interference presses with any force.
+        # In a clearance, a force that is round-off brings nothing into contact, so it is removed.
+        # With an interference there is contact under any force.
         return load if self.lug.clearance < 0.0 else load.without_round_off()
 
     def largest(
         self, waves: Floats, angle: Floats, times: Floats | None
     ) -> dict[tuple[str, str], tuple[Lug, BoreStress]]:
-        """The largest stress by wall and place, and the lug in which it is: of those with either
-        end of the interference of its bushing.
+        """The largest stress for each wall and place, and the lug in which it occurs.
 
-        waves: as of `force`. angle: of the shank, (T,) rad. times: (T,) s, None for one instant.
+        The lug is computed with either end of the interference of its bushing, and the larger
+        stress counts.
+        waves: as for `force`.
+        angle: (T,) rad, of the shank.
+        times: (T,) s; None for one instant.
         """
         load = self.load(waves, angle, times)
         largest: dict[tuple[str, str], tuple[Lug, BoreStress]] = {}
@@ -94,14 +111,18 @@ class _LoadedLug:
     def planes(
         self, clearance: float
     ) -> Iterator[tuple[Lug, Callable[..., LugInPlane], Callable[..., SlippingBushing] | None]]:
-        """The lug with a clearance, m, with either end of the interference of its bushing, and what
-        makes it in its plane, bonded and, of a pressed bushing, slipping.
+        """Yield the lug with a clearance, m, and either end of the interference of its bushing.
+
+        With each lug come the functions that make it in its plane, with a bonded bushing and, if
+        the bushing is pressed in, with a slipping one.
         """
         for bushing in self.lug.pressed_bushings() or (None,):
             at = replace(self.lug, bushing=bushing, clearance=clearance)
-            bonded = partial(LugInPlane, at, *self.of, memo=self.memo)
+            bonded = partial(LugInPlane, at, *self.pin_section, memo=self.memo)
             pressed = bushing is not None and bushing.pressed
-            slipping = partial(SlippingBushing, at, *self.of, memo=self.memo) if pressed else None
+            slipping = (
+                partial(SlippingBushing, at, *self.pin_section, memo=self.memo) if pressed else None
+            )
             yield at, bonded, slipping
 
 
@@ -110,22 +131,24 @@ def lug_stresses(
 ) -> tuple[LugStress, ...]:
     """The stress at the bores of all lugs that have a shank, in one case.
 
-    angles: of shanks, by connection; a shank without one lies along the largest force.
-    varied: whether over the uncertain properties of the joint, too.
+    angles: of shanks, by connection; a shank without an entry lies along the largest force.
+    varied: whether the stress is also varied over the uncertain properties of the joint.
 
     Raises: ArgumentError for an impossible outline; MeshError, SolveError.
     """
     model, links = contact.model, contact.instants[case]
     waves, out = model.waves(contact.states(links)), list[LugStress]()
-    # A lug may be stressed most at another instant than the pin, at which the pin loads it little.
+    # The governing instant of a lug may differ from that of the pin, at which the load on the lug
+    # may be small.
     over = cache(lambda t: varied_pressures(model, contact.joined(links, t)))
     for rows, lug, ends in model.by_lug():
         if lug.shank is None:
             continue
         band = model.whole.band(lug.connection)
         inner = max(max(s.bores) for s in model.whole.segments if s.connection == lug.connection)
-        of = model.material, inner / 2.0, band.radius
-        loaded = _LoadedLug(lug, rows, of, _eye(contact, lug, ends, memo), np.diff(ends), memo)
+        pin_section = model.material, inner / 2.0, band.radius
+        eye = _eye(contact, lug, ends, memo)
+        loaded = _LoadedLug(lug, rows, pin_section, eye, np.diff(ends), memo)
         force = loaded.force(waves)
         if not force.any():
             continue
@@ -147,16 +170,18 @@ def lug_stresses(
 def _over_joint(
     loaded: _LoadedLug, pressures: Sequence[VariedPressures], angle: Floats, least: float
 ) -> dict[tuple[str, str], float]:
-    """The largest stress with its error, by wall and place, under any of some pressures, over that
-    under the first ones; not of contact with the pin.
+    """The largest stress under any of some pressures over that under the first ones, for each wall
+    and place.
 
-    least: a force, N, that is not round-off, which touches nothing in a clearance.
+    Stresses include their error. Places beneath the pin are left out.
+    least: N, a force below which the load is round-off, which brings nothing into contact.
     """
 
     def sizes(joint: VariedPressures) -> dict[tuple[str, str], float]:
         if np.linalg.norm(loaded.force(joint.waves)) <= least:
             return {}
-        # Lugs that are stiffer, as other links than theirs would make them, are of the same metal.
+        # Only the clearance is varied here. A variation of the lug's stiffness represents other
+        # links, not another material of this lug.
         (loose,) = (x.clearance for x in joint.lugs if x.connection == loaded.lug.connection)
         load, largest = loaded.load(joint.waves, angle, None), dict[tuple[str, str], float]()
         for _, bonded, slipping in loaded.planes(loose):
@@ -174,7 +199,7 @@ def _over_joint(
 
 
 def _along(force: Floats, count: int) -> Floats:
-    """The angle of a shank that pulls against the largest force on its lug, (count,) rad."""
+    """The angle (count,), rad, of a shank that pulls against the largest force on its lug."""
     x, y = -force[np.hypot(*force.T).argmax()]
     return np.full(count, math.atan2(y, x))
 
@@ -189,7 +214,7 @@ def _eye(contact: PressedCases, lug: Lug, ends: Floats, memo: Memo) -> EyeStress
 
 
 def degrees_from_shank(angle: float) -> float:
-    """The angle from a shank, from -180 to 180 degrees, without the round-off that a zero has.
+    """The angle from a shank, from -180 to 180 degrees; rounded, so that round-off does not show.
 
     angle: rad.
     """

@@ -15,11 +15,11 @@ from pinbase.arrays import Floats
 class LugLoad:
     """The load of a joint on one lug in one case, at T instants.
 
-    force: of the pin on the lug, (T, 2) N in the pin's axes.
-    pressure: harmonics (N + 1, T, R, 2) Pa of the pressure on its R rings, in the pin's axes.
-    length: of the rings, (R,) m.
-    angle: of the shank from the pin's x axis, (T,) rad.
-    times: (T,) s, None without a motion.
+    force: (T, 2) N, of the pin on the lug, in the pin's axes.
+    pressure: (N + 1, T, R, 2) Pa, harmonics of the pressure on its R rings, in the pin's axes.
+    length: (R,) m, of the rings.
+    angle: (T,) rad, of the shank from the pin's x axis.
+    times: (T,) s; None without a motion.
     """
 
     force: Floats
@@ -30,12 +30,14 @@ class LugLoad:
 
     @property
     def along_shank(self) -> Floats:
-        """The force along the shank and across it, (T, 2) N."""
+        """The components of the force along and across the shank, (T, 2) N."""
         return _turned(self.force, self.angle)
 
     @property
     def shares(self) -> Floats:
-        """The load per length of each ring over the mean, (T, R), in the direction of the force."""
+        """The load per length of each ring, over the mean of all rings, (T, R), in the direction of
+        the force.
+        """
         mean = np.einsum("trp,r->tp", self.first, self.length / self.length.sum())
         size = np.einsum("tp,tp->t", mean, mean)[:, None]
         along = np.einsum("trp,tp->tr", self.first, mean)
@@ -43,37 +45,44 @@ class LugLoad:
 
     @property
     def first(self) -> Floats:
-        """The first harmonic of pressure on the rings, (T, R, 2) Pa, which alone has a force."""
+        """The first harmonic of pressure on the rings, (T, R, 2) Pa, the only one with a resultant
+        force.
+        """
         return self.pressure[1] if len(self.pressure) > 1 else np.zeros_like(self.pressure[0])
 
     def couple(self, radius: float) -> Floats:
-        """The couple that bends the shank, (T,) N m: positive where a force along the shank is
-        larger towards the end of the band. radius: of the bore, m.
+        """The couple (T,), N m, that bends the shank.
+
+        It is positive if the force along the shank is larger towards the end of the band.
+        radius: m, of the bore.
         """
         along = _turned(self.first, self.angle[:, None])[..., 0]
         return np.asarray(math.pi * radius * (along * self.z) @ self.length)
 
     @property
     def z(self) -> Floats:
-        """The middles of the rings, (R,) m from the middle of the lug."""
+        """The positions (R,), m, of the middles of the rings, from the middle of the lug."""
         ends = np.cumsum(self.length)
         return np.asarray(ends - 0.5 * self.length - 0.5 * ends[-1])
 
     def without_round_off(self) -> LugLoad:
-        """The load without a force that is round-off of those of its rings, which make a couple."""
+        """The load, with its force set to zero where that is round-off of the forces of its rings.
+
+        The rings may still make a couple.
+        """
         size = np.linalg.norm(self.first, axis=2) @ self.length
         force = np.linalg.norm(np.einsum("trp,r->tp", self.first, self.length), axis=1)
         return replace(self, force=self.force * (force > SAME_FORCE * size)[:, None])
 
     def at(self, instant: int) -> LugLoad:
-        """The load at one instant."""
+        """The load at a single instant."""
         one = slice(instant, instant + 1)
         times = None if self.times is None else self.times[one]
         return LugLoad(self.force[one], self.pressure[:, one], self.length, self.angle[one], times)
 
 
 def _turned(vectors: Floats, angle: Floats) -> Floats:
-    """Vectors (.., 2) in axes that are turned by an angle (..), rad."""
+    """The components of vectors (.., 2) in axes that are turned by an angle (..), rad."""
     c, s = np.cos(angle), np.sin(angle)
     x, y = np.moveaxis(vectors, -1, 0)
     return np.stack([c * x + s * y, c * y - s * x], axis=-1)

@@ -1,17 +1,19 @@
 """The largest stress at the bore of a lug over all instants of a case, with its error.
 
 The hoop stress is that of the plane lug with its shank, in its own contact with the pin under the
-mean load through the thickness, and what uneven pressure through the thickness adds
-(fea.lug.through_thickness). Where the pin does not touch the bore the hoop stress is alone; beneath
-the pin the pressure acts beside it, and von Mises' stress is that of plane stress,
+load averaged through the thickness, plus what uneven pressure through the thickness adds
+(fea.lug.through_thickness). Where the pin does not touch the bore, the hoop stress is the only
+stress. Beneath the pin the pressure p acts, too, and with the hoop stress s von Mises' stress in
+plane stress is
 
-    sqrt(s^2 + s p + p^2)    with a hoop stress s and a pressure p.
+    sqrt(s^2 + s p + p^2)
 
-Hoop stress plus pressure is smooth along the bore, pressure is not: it rises as a root from where
-contact ends. So the sum is read there, not at the nearest point.
+Hoop stress plus pressure is smooth along the bore, but the pressure is not: it rises as a square
+root from where contact ends. So the sum is read at the end of contact itself, not at the nearest
+point.
 
-At the sharp edges of a bore pressure has no bound; beneath the pin the outermost rings are not read
-there, as on the pin. Beside the contact they are.
+At the sharp edges of a bore the pressure is unbounded. Beneath the pin the outermost rings are not
+read there, as on the pin. Beside the contact they are read.
 """
 
 from __future__ import annotations
@@ -32,11 +34,12 @@ from fea.support.lugs.lug import Lug
 from pinbase.arrays import Floats
 from pinbase.memo import Memo
 
-COARSER = 2  # times as long: elements and sectors with which the result is compared
-# Of the largest force on a lug: less cannot govern, as stress differs by 4 between directions, and
-# in a clearance touches less than a sector. A press fit alone is with every force alike.
+COARSER = 2  # how much coarser the elements and sectors are with which the result is compared
+# Contact is solved for forces above this part of the largest force on a lug. Smaller ones cannot
+# govern, since stress per force differs by a factor of 4 between directions, and in a clearance
+# they touch less than a sector. The stress of a press fit alone is the same for every force.
 MIN_FORCE_SHARE = 0.05
-MIN_RINGS_OF_SHARP_BORE = 2  # of which the outermost are not read beneath the pin
+MIN_RINGS_OF_SHARP_BORE = 2  # with more rings, the outermost are not read beneath the pin
 
 
 @dataclass(frozen=True)
@@ -45,11 +48,15 @@ class BoreStress:
 
     wall: "bore", "bushing" (its bore) or "hole" (of the lug about a bushing).
     place: "free" where nothing presses on the wall, "beneath" the pin, or beneath a "bushing".
-    von_mises, hoop: Pa. hoop: the largest tension; von_mises is at `angle`.
-    angle: from the shank, rad. ring: number of the ring. instant, time: of the largest.
+    von_mises: Pa, at `angle`.
+    hoop: Pa, the largest tension.
+    angle: rad, from the shank.
+    ring: number of the ring.
+    instant, time: of the largest von_mises.
     mesh, rings, sampling: parts of the error of von_mises, Pa.
-    interface: of a pressed bushing, "bonded" or "frictionless", whichever gives the larger stress;
-    other: von_mises with the other one, Pa. Empty and None otherwise.
+    interface: for a pressed bushing, "bonded" or "frictionless", whichever gives the larger stress;
+    otherwise empty.
+    other: von_mises with the other interface, Pa; otherwise None.
     """
 
     wall: str
@@ -69,14 +76,18 @@ class BoreStress:
 
     @property
     def error(self) -> float:
-        """The error of von_mises, Pa, by mesh and sectors, rings, and sampling in time."""
+        """The error of von_mises, Pa: the sum of those of mesh and sectors, rings, and sampling in
+        time.
+        """
         return self.mesh + self.rings + self.sampling
 
 
 class LugInPlane:
-    """A lug with its shank about a pin, in its plane.
+    """A lug with its shank about a pin, in its plane, with a bonded bushing if it has one.
 
+    pin: material of the pin.
     inner, radius: of the pin's bore and of its band, m.
+    around: number of elements and sectors around the bore.
     """
 
     def __init__(
@@ -99,7 +110,9 @@ class LugInPlane:
         self.misfit = misfit / self.outline.hole * E
 
     def amounts(self, pressures: Floats) -> Floats:
-        """The amounts (T, K) of the unit loads under pressures (T, M), Pa, and the misfit."""
+        """The amounts (T, K) of the unit loads under pressures (T, M), Pa, on the sectors, and the
+        misfit.
+        """
         misfit = np.full((len(pressures), 1), self.misfit)
         return np.hstack([pressures @ self.contact.waves, misfit])
 
@@ -119,9 +132,11 @@ def bore_stresses(
 ) -> tuple[BoreStress, ...]:
     """The largest stress at the walls of a lug over the instants of a load.
 
-    make: gives the plane lug by `around`, its elements around the bore. eye: of its annulus.
-    slipping: gives the same with a pressed bushing that slips; friction is between this and the
-    bonded one, and the larger stress counts.
+    A pressed bushing is computed both bonded and slipping without friction. With friction the truth
+    lies between, and the larger stress counts.
+    make: gives the plane lug for `around`, its number of elements around the bore.
+    eye: the stress of the eye of the lug as a body of revolution.
+    slipping: gives the plane lug with a slipping bushing; None if the bushing is not pressed in.
 
     Raises: MeshError, SolveError.
     """
@@ -132,7 +147,7 @@ def bore_stresses(
 
 
 def _larger(bonded: Iterable[BoreStress], slipping: Iterable[BoreStress]) -> Iterator[BoreStress]:
-    """At each wall and place the larger of two stresses, with the other one."""
+    """Yield the larger of two stresses at each wall and place, together with the other one."""
     named = {(x.wall, x.place): replace(x, interface="bonded") for x in bonded}
     others = {(x.wall, x.place): replace(x, interface="frictionless") for x in slipping}
     for at in dict.fromkeys((*named, *others)):
@@ -144,7 +159,12 @@ def _larger(bonded: Iterable[BoreStress], slipping: Iterable[BoreStress]) -> Ite
 def stresses_of(
     make: Callable[..., LugInPlane | SlippingBushing], eye: EyeStress, load: LugLoad
 ) -> tuple[BoreStress, ...]:
-    """The largest stress at the walls with one kind of bushing; as `bore_stresses`."""
+    """The largest stress at the walls with one kind of bushing; the arguments are those of
+    `bore_stresses`.
+
+    The errors of mesh and rings are the changes on a mesh with fewer elements and sectors, and with
+    the pressure averaged over pairs of rings.
+    """
     usual, coarse = (make(around=x) for x in (USUAL_AROUND, USUAL_AROUND // COARSER))
     out = []
     for stress in at_walls(usual, eye, load):
@@ -156,7 +176,7 @@ def stresses_of(
 
 
 def _same(among: list[BoreStress], stress: BoreStress) -> BoreStress:
-    """The stress at the same wall and place; the largest at the wall where there is none."""
+    """The stress at the same wall and place; if there is none, the largest at the same wall."""
     of_wall = [x for x in among if x.wall == stress.wall]
     alike = [x for x in of_wall if x.place == stress.place]
     return max(alike or of_wall, key=lambda x: x.von_mises)
@@ -164,9 +184,11 @@ def _same(among: list[BoreStress], stress: BoreStress) -> BoreStress:
 
 @dataclass(frozen=True)
 class _Around:
-    """Stress around a wall of a lug at T instants on R rings, at points where it may be largest.
+    """The stress around a wall of a lug at T instants on R rings, at P points where it may be
+    largest.
 
-    angle: (T, P) rad, from the shank. hoop, von_mises: (T, R, P) Pa, -inf where not read.
+    angle: (T, P) rad, from the shank.
+    hoop, von_mises: (T, R, P) Pa, -inf where they are not read.
     """
 
     angle: Floats
@@ -176,7 +198,7 @@ class _Around:
     def largest(
         self, wall: str, place: str, material: Material, times: Floats | None
     ) -> Iterator[BoreStress]:
-        """The largest stress over all instants, rings and points; none where none is read."""
+        """Yield the largest stress over all instants, rings and points; nothing if none is read."""
         by_instant = self.von_mises.max(axis=(1, 2), initial=-np.inf)
         if not by_instant.max() > 0.0:
             return
@@ -196,7 +218,9 @@ class _Around:
 
 
 def _beyond(times: Floats, values: Floats) -> float:
-    """The excess over the largest of values (T,) of a parabola through it and its neighbours."""
+    """The excess over the largest of values (T,) of the parabola through it and its neighbours in
+    time.
+    """
     k = int(values.argmax())
     if not 0 < k < len(values) - 1 or not np.isfinite(values[k - 1 : k + 2]).all():
         return 0.0
@@ -209,7 +233,7 @@ def _beyond(times: Floats, values: Floats) -> float:
 def at_walls(
     plane: LugInPlane | SlippingBushing, eye: EyeStress, load: LugLoad
 ) -> list[BoreStress]:
-    """The largest stress at each wall, without the parts of its error but that of sampling."""
+    """The largest stress at each wall. Of the parts of its error, only that of sampling is set."""
     bushing, lug = plane.lug.bushing, plane.lug
     forces = load.along_shank / load.length.sum()
     size = np.hypot(*forces.T)
@@ -241,10 +265,10 @@ def _added(
     angles: Floats,
     hole: bool = False,
 ) -> Floats:
-    """The stress (T, R, P), Pa, that pressure adds by being uneven through the thickness, at angles
-    (P,) from the shank.
+    """The stress (T, R, P), Pa, that pressure adds because it is uneven through the thickness.
 
-    hole: whether at that of the lug about a bushing.
+    angles: (P,) rad, from the shank.
+    hole: whether at the hole of the lug about a bushing.
     """
     amplitude = eye.added(load.pressure, load.length, hole)
     turns = angles + load.angle[:, None]  # (T, P)
@@ -259,7 +283,9 @@ def _added(
 def _bore(
     plane: LugInPlane, eye: EyeStress, load: LugLoad, pressure: Floats, amounts: Floats
 ) -> tuple[_Around, _Around]:
-    """The stress of the wall on which the pin bears, where it is free and beneath the pin."""
+    """The stress of the wall on which the pin bears, where it is free and where it is beneath the
+    pin.
+    """
     wall = plane.fields.bore
     total = (amounts @ (wall.hoop - wall.radial))[:, None] + _added(plane, eye, load, wall.angles)
     return _of_wall(plane.lug, load, wall.angles, total, pressure)
@@ -268,16 +294,17 @@ def _bore(
 def _of_wall(
     lug: Lug, load: LugLoad, angles: Floats, total: Floats, pressure: Floats
 ) -> tuple[_Around, _Around]:
-    """The stress of the wall on which the pin bears, where it is free and beneath the pin.
+    """The stress of the wall on which the pin bears, where it is free and where it is beneath the
+    pin.
 
-    total: hoop stress plus pressure (T, R, P) at angles (P,), two to a sector. pressure: on the
-    sectors, (T, P / 2), as the mean of the rings.
+    total: (T, R, P) Pa, hoop stress plus pressure at angles (P,), rad, two in each sector.
+    pressure: (T, P / 2) Pa, on the sectors, the mean of the rings.
     """
-    # At the middles of sectors; two points of a wall a sector.
+    # The middles of sectors are every second point of the wall.
     middles, here = angles[::2], pressure[:, None] * load.shares[:, :, None]
     at_middles = np.broadcast_to(middles, pressure.shape)
     hoop = total[:, :, ::2] - here
-    # And free where contact ends, of which there are two at most at most instants.
+    # The wall is also free at the ends of contact, of which there are usually two or none.
     edge, known = _ends_of_contact(pressure)
     at = np.where(known, edge, 0.0)
     beside = np.where(known[:, None], _between(total, 2.0 * at), -np.inf)
@@ -298,12 +325,15 @@ def _of_wall(
 def _slipping(
     plane: SlippingBushing, eye: EyeStress, load: LugLoad, pressures: TwoWalls
 ) -> tuple[tuple[_Around, _Around], _Around]:
-    """The stress of a slipping bushing's bore, and of the hole about it."""
+    """The stress of a slipping bushing's bore (free, beneath the pin), and of the hole about the
+    bushing.
+    """
     angles = plane.angles
     bore, hole = (x[:, None] for x in plane.stress_and_pressure(pressures))
     bore = bore + _added(plane, eye, load, angles)
     walls = _of_wall(plane.lug, load, angles, bore, pressures.bore)
-    # Beneath the bushing the press fit is even through the thickness; where it opens, as at a bore
+    # Beneath the bushing the pressure of the fit is even through the thickness. Where the fit
+    # opens, stress is also read at the ends of contact, as at a bore.
     total, pressed = hole + _added(plane, eye, load, angles, hole=True), pressures.hole[:, None]
     edge, known = _ends_of_contact(pressures.hole)
     at = np.where(known, edge, 0.0)
@@ -319,11 +349,11 @@ def _slipping(
 def _ends_of_contact(
     pressure: Floats,
 ) -> tuple[Floats, np.ndarray[tuple[int, int], np.dtype[np.bool_]]]:
-    """The ends of contact, (T, 2 M) in sectors from the first one's middle, and which of these
+    """The ends of contact, (T, 2 M), in sectors from the middle of the first one, and which of them
     exist.
 
-    Of a pressure that rises as a root, the last pressed sector has a mean that tells how far
-    contact reaches into it.
+    If pressure rises as a square root from the end of contact, the mean pressure of the last
+    pressed sector, over that of the one before, determines how far contact reaches into it.
     """
     last = pressure > 0.0
     M = pressure.shape[1]
@@ -341,7 +371,11 @@ def _ends_of_contact(
 
 
 def _between(values: Floats, at: Floats) -> Floats:
-    """Values (T, R, P), at equally spaced points around, at (T, E) points between, (T, R, E)."""
+    """The values (T, R, E) at points between others, by linear interpolation.
+
+    values: (T, R, P) at equally spaced points around the wall.
+    at: (T, E) positions, in steps between these points.
+    """
     P = values.shape[2]
     low = np.floor(at).astype(np.int64)
     part = (at - low)[:, None]
@@ -351,7 +385,7 @@ def _between(values: Floats, at: Floats) -> Floats:
 
 
 def _hole(plane: LugInPlane, eye: EyeStress, load: LugLoad, amounts: Floats) -> _Around:
-    """The stress of the lug about its bushing."""
+    """The stress of the lug at the hole about its bonded bushing."""
     assert plane.fields.hole is not None
     wall = plane.fields.hole.at(amounts)
     hoop = wall.hoop[:, None] + _added(plane, eye, load, wall.angles, hole=True)
@@ -361,7 +395,7 @@ def _hole(plane: LugInPlane, eye: EyeStress, load: LugLoad, amounts: Floats) -> 
 
 
 def _on_pairs(load: LugLoad) -> LugLoad:
-    """The load with the pressure even over each pair of rings."""
+    """The load with the pressure averaged over each pair of rings."""
     pressure, length = load.pressure.copy(), load.length
     for first in range(0, len(length) - 1, 2):
         pair = slice(first, first + 2)

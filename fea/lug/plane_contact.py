@@ -1,8 +1,8 @@
-"""Contact of a pin with a lug in its plane, with the lug as stiff as its outline makes it.
+"""The contact of a pin with a lug in its plane, with the flexibility of the lug's outline.
 
-The flexibility of the pin is that of a round section, exact by harmonics; that of the lug comes
-from its finite elements; what is beyond their harmonics is a half-plane's, of both. Contact is
-frictionless, as in fea.support.contact.
+The flexibility of the pin is that of a round section, exact for each harmonic. That of the lug
+comes from its finite elements. Higher harmonics have the flexibility of a half-plane, for both.
+Contact is frictionless, as in fea.support.contact.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from pinbase.arrays import Floats
 
 
 def in_plane_stress(material: Material) -> Material:
-    """The material whose plane strain is the given one's plane stress."""
+    """The material that behaves in plane strain as the given one does in plane stress."""
     E, nu = material.youngs_modulus, material.poisson_ratio
     return Material(
         material.name, E * (1.0 + 2.0 * nu) / (1.0 + nu) ** 2, nu / (1.0 + nu), material.density
@@ -35,10 +35,14 @@ def in_plane_stress(material: Material) -> Material:
 class PlaneContact:
     """A pin's section in a lug.
 
-    fields: of the lug. modulus: of the lug, Pa. bearing: the material on which the pin bears.
-    inner, radius: of the pin's bore, 0 if solid, and of the surface, m.
-    clearance: of the diameters, m, of a bushing's bore when it is in the lug: what a misfit changes
-    of the shape of that bore is left out.
+    fields: of the lug.
+    modulus: Young's modulus of the lug, Pa.
+    bearing: the material on which the pin bears.
+    pin: the material of the pin.
+    inner, radius: of the pin's bore, 0 if solid, and of its surface, m.
+    clearance: of the diameters, m; of a bushing's bore when it is in the lug. The change of the
+    shape of that bore by a misfit is not included.
+    sectors: their number.
     """
 
     fields: PlaneFields
@@ -52,7 +56,7 @@ class PlaneContact:
 
     @cached_property
     def problem(self) -> ContactProblem:
-        """The contact problem, with lengths of a band of 1 m."""
+        """The contact problem of a band of 1 m length."""
         r = self.radius
         pin, bearing = in_plane_stress(self.pin), in_plane_stress(self.bearing)
         tail = np.array([half_plane(pin, r) + half_plane(bearing, r)])
@@ -65,14 +69,15 @@ class PlaneContact:
 
     @cached_property
     def waves(self) -> Floats:
-        """The amounts of the unit pressures under unit pressures on the sectors, (M, 2 H + 1)."""
+        """The amounts (M, 2 H + 1) of the unit loads for a unit pressure on each sector."""
         return unit_waves(self.sectors, HARMONICS).T
 
     def pressures(self, forces: Floats) -> Floats:
-        """The pressures (T, M), Pa, on the sectors under forces (T, 2) of the pin on the lug, N/m,
-        along the shank and across it.
+        """The pressures (T, M), Pa, on the sectors.
 
-        Raises: SolveError where contact does not settle.
+        forces: (T, 2) N/m, of the pin on the lug, along the shank and across it.
+
+        Raises: SolveError where contact does not converge.
         """
         out, start = [], None
         for force in forces:
@@ -89,9 +94,11 @@ def unit_waves(sectors: int, highest: int) -> Floats:
 
 
 def sector_flexibility(fields: PlaneFields, radius: float, modulus: float, sectors: int) -> Floats:
-    """The mean displacement outwards of a lug's sectors under forces on them, (M, M) m/N.
+    """The mean outward displacement of a lug's sectors under forces on them, (M, M) m/N.
 
-    fields: of the lug, its modulus in Pa. radius: of the wall on which the forces act, m.
+    fields: of the lug.
+    radius: of the wall on which the forces act, m.
+    modulus: Young's modulus of the lug, Pa.
     """
     n = np.arange(HARMONICS + 1)
     turns = np.outer(2.0 * np.pi * np.arange(sectors) / sectors, n)

@@ -1,16 +1,16 @@
-"""What the wall of a lug's bore does under pressure on it: plane stress, by finite elements.
+"""The response of a lug to pressures on the wall of its bore: plane stress, by finite elements.
 
 Unit loads are pressures cos n theta and sin n theta on the bore, each with the reaction of the held
-end of the shank, and the misfit of a bushing. The displacements of the bore's nodes, which are
-equally spaced, are differentiated as Fourier series: with the pressure they give the hoop stress,
-without a stress extrapolated from elements,
+end of the shank, and the misfit of a bushing. The nodes of the bore are equally spaced, so their
+displacements are differentiated as Fourier series. Together with the pressure they give the hoop
+stress, without extrapolating stress from elements,
 
     hoop = E e_tt - nu p,    e_tt = (u_r + du_t / dtheta) / r.
 
 At the interface of a bushing the traction follows from the forces between the nodes of both parts.
 
-Everything is in units of the bore's radius and of the lug's modulus; stress is per pressure.
-Plane stress is right at the faces of a lug, and the safe side of yield inside of it.
+All quantities are in units of the bore's radius and of the lug's modulus; stress is per pressure.
+Plane stress is exact at the faces of a lug, and on the safe side of yield inside it.
 """
 
 from __future__ import annotations
@@ -27,14 +27,15 @@ from geometry.shape.lug_outline import LugOutline
 from pinbase.arrays import Floats, Ints
 from pinbase.memo import Memo
 
-HARMONICS = 16  # of pressure; what is beyond changes the hoop stress by its negative
-# Elements, and sectors of contact, around the bore; docs/measured has what fewer and more give
+# Highest harmonic of pressure; higher ones change the hoop stress by minus the pressure.
+HARMONICS = 16
+# Elements, and sectors of contact, around the bore; docs/measured has results with fewer and more.
 USUAL_AROUND = 96
 
 
 @dataclass(frozen=True)
 class Elasticity:
-    """Elastic constants in plane stress, those of a bushing relative to the lug's modulus."""
+    """The elastic constants in plane stress; the modulus of a bushing is relative to the lug's."""
 
     poisson_ratio: float
     bushing_modulus: float = 1.0
@@ -46,8 +47,8 @@ class Wall:
     """The stresses of a cylindrical wall under K unit loads, at points around it.
 
     angles: (P,) rad, equally spaced from 0 on.
-    hoop, radial, shear: stresses (K, P), per pressure; of the last load, the misfit, per strain
-    times the lug's modulus.
+    hoop, radial, shear: (K, P) stress per pressure; for the last load, the misfit, stress per
+    strain and per modulus of the lug.
     """
 
     angles: Floats
@@ -64,9 +65,10 @@ class Wall:
 class PlaneFields:
     """A lug under the unit pressures of harmonics 0 to HARMONICS, cosines then sines, and a misfit.
 
-    flexibility: (2 H + 1, 2 H + 1) Fourier coefficients of u_r, rows, under each pressure, in units
-    of the bore's radius over the lug's modulus.
-    bore: of what the pin bears on. hole: of the lug about a bushing; None without one.
+    flexibility: (2 H + 1, 2 H + 1) the Fourier coefficients of u_r (rows) under each pressure, in
+    units of the bore's radius over the lug's modulus.
+    bore: the wall on which the pin bears.
+    hole: the wall of the lug about a bushing; None without one.
     """
 
     flexibility: Floats
@@ -79,8 +81,8 @@ def plane_fields(
 ) -> PlaneFields:
     """The fields of a lug under unit loads.
 
-    around: elements around the bore.
-    memo: of what is solved already.
+    around: number of elements around the bore.
+    memo: a store of lugs that are solved already.
 
     Raises: MeshError, SolveError.
     """
@@ -92,7 +94,7 @@ def plane_fields(
 
 
 def waves(angles: Floats, highest: int = HARMONICS) -> Floats:
-    """The pressures of the unit loads at angles (P,), (2 H + 1, P)."""
+    """The pressures (2 H + 1, P) of the unit loads at angles (P,), rad."""
     turns = np.outer(np.arange(highest + 1), angles)
     return np.concatenate([np.cos(turns), np.sin(turns[1:])])
 
@@ -107,7 +109,7 @@ def _coefficients(values: Floats) -> Floats:
 
 
 def _derivative(values: Floats) -> Floats:
-    """The derivative of values (.., P) by the angle."""
+    """The derivative of values (.., P) at equally spaced angles with respect to the angle."""
     P = values.shape[-1]
     spectrum = np.fft.rfft(values, axis=-1)
     spectrum[..., 2 * HARMONICS + 1 :] = 0.0  # noise of the mesh: loads and response are smooth
@@ -140,7 +142,7 @@ class _Plane:
         hole = None
         if interface is not None:
             hole = self._hole(loads, u, interface / self.outline.bore)
-            # Of the bushing's strain under its misfit the free part makes no stress.
+            # The free expansion of the bushing under its misfit causes no stress.
             wall.hoop[-1] -= made_of[0]
         return PlaneFields(_coefficients(self._polar(bore, u)[0])[:-1].T, wall, hole)
 
@@ -170,8 +172,9 @@ class _Plane:
         return sp.csr_matrix(total)
 
     def _loads(self) -> Floats:
-        """The forces (unknowns, 2 H + 2) of the unit pressures, in balance for a ring, and of the
-        misfit.
+        """The forces (unknowns, 2 H + 2) of the unit pressures and of the misfit.
+
+        Those on a ring are balanced by a reaction on its outer surface (`_held`).
         """
         from skfem import FacetBasis, LinearForm
 
@@ -194,7 +197,7 @@ class _Plane:
         return self._held(loads) if self.outline.shape == "ring" else loads
 
     def _misfit(self) -> Floats:
-        """The forces of a bushing that would be larger by a unit strain if it were free."""
+        """The forces of a bushing that would expand by a unit strain if it were free."""
         from skfem import Basis, LinearForm
         from skfem.helpers import div
 
@@ -232,15 +235,16 @@ class _Plane:
         return np.asarray(loads)
 
     def _components(self, axis: int) -> Ints:
-        """The unknowns of displacements along an axis."""
+        """The unknowns of the displacements along an axis."""
         dofs = self.basis.dofs
         return np.concatenate([dofs.nodal_dofs[axis], dofs.facet_dofs[axis]]).astype(np.int64)
 
     def _displaced(self, K: sp.csr_matrix, loads: Floats) -> Floats:
-        """The displacements (unknowns, K) under loads."""
+        """The displacements (unknowns, K) under loads (unknowns, K)."""
         free = np.ones(self.basis.N)
         x = self.basis.doflocs[0]
-        if self.outline.shape == "ring":  # three unknowns, which balanced loads do not feel
+        # A ring is held at three unknowns, which need no reaction since its loads are balanced.
+        if self.outline.shape == "ring":
             outer = self._circle(self.outline.head / self.outline.bore)
             free[[outer[0, 0], outer[1, 0], outer[1, outer.shape[1] // 2]]] = 0.0
         else:
@@ -259,7 +263,7 @@ class _Plane:
         return np.stack(rows)
 
     def _polar(self, circle: Ints, values: Floats) -> tuple[Floats, Floats]:
-        """The components along r and theta (K, P) of values (unknowns, K) on a circle."""
+        """The components along r and theta, (K, P) each, of values (unknowns, K) on a circle."""
         angle = self.angle[circle[0]]
         x, y = values[circle[0]].T, values[circle[1]].T
         return x * np.cos(angle) + y * np.sin(angle), y * np.cos(angle) - x * np.sin(angle)
@@ -283,17 +287,21 @@ class _Plane:
     def _hole(self, loads: Floats, u: Floats, radius: float) -> Wall:
         """The wall of the lug about its bushing."""
         circle = self._circle(radius)
-        # What the bushing's elements leave unbalanced at the interface, the lug reacts.
+        # The lug reacts the nodal forces that the bushing's elements leave unbalanced at the
+        # interface.
         force = loads - self._stiffness(only_bushing=True) @ u
         pushed = self._polar(circle, force)
-        traction = [_per_length(x, radius) for x in pushed]
+        traction = [_consistent_traction(x, radius) for x in pushed]
         return self._wall(
             circle, radius, u, -traction[0], -traction[1], self._constants(bushing=False)
         )
 
 
-def _per_length(forces: Floats, radius: float) -> Floats:
-    """The traction (K, P) whose quadratic interpolation has nodal forces (K, P), corners first."""
+def _consistent_traction(forces: Floats, radius: float) -> Floats:
+    """The traction (K, P) whose quadratic interpolation has the nodal forces (K, P).
+
+    The P nodes are corners and middles of elements in turn, beginning with a corner.
+    """
     P = forces.shape[1]
     size = 4.0 * np.pi * radius / P  # of an element
     mass = np.zeros((P, P))

@@ -1,11 +1,11 @@
-"""A ring in plane stress under pressures in its bore and about it, harmonic by harmonic.
+"""A ring in plane stress under pressures in its bore and around it, harmonic by harmonic.
 
 With u_r = U(r) cos n theta and u_t = V(r) sin n theta the strains are
 
     e_r = U',    e_t = (U + n V) / r,    g = V' - (V + n U) / r,
 
-and U and V are polynomials in r that make the energy least: exact to round-off for a thin wall.
-Pressures of harmonic 1 must be in balance; a part that is not moves nothing.
+and U and V are the polynomials in r that minimise the energy; for a thin wall they are exact to
+round-off. Pressures of harmonic 1 must be in balance; a resultant moves nothing.
 """
 
 from __future__ import annotations
@@ -17,15 +17,16 @@ import numpy as np
 from fea.core.material import Material
 from pinbase.arrays import Floats
 
-DEGREE = 16  # of the polynomials: the press fit of a ring of 1 to 5 is exact to 1e-6
+DEGREE = 16  # of the polynomials: a press fit on a ring of radii 1 to 5 is exact to 1e-6
 
 
 @dataclass(frozen=True)
 class RingFields:
-    """A ring under unit pressures of the harmonics 0 to N in its bore (first) and about it.
+    """A ring under unit pressures of the harmonics 0 to N in its bore (first) and on its outside.
 
-    flexibility: (N + 1, 2, 2) m/Pa: by how much bore (first row) and outside give way, both away
-    from the pressure on them. hoop: (N + 1, 2, 2) stress of bore and outside per pressure.
+    flexibility: (N + 1, 2, 2) m/Pa, the displacement of bore (first row) and outside away from the
+    pressure on them.
+    hoop: (N + 1, 2, 2) hoop stress of bore (first row) and outside, per pressure.
     """
 
     flexibility: Floats
@@ -33,7 +34,7 @@ class RingFields:
 
 
 def ring_fields(inner: float, outer: float, material: Material, highest: int) -> RingFields:
-    """The fields of a ring of two radii, m, to the harmonic `highest`."""
+    """The fields of a ring between two radii, m, up to the harmonic `highest`."""
     E, nu = material.youngs_modulus, material.poisson_ratio
     half, n = 0.5 * (outer - inner), np.arange(highest + 1.0)[:, None, None]
     x, w = np.polynomial.legendre.leggauss(2 * DEGREE)
@@ -49,14 +50,14 @@ def ring_fields(inner: float, outer: float, material: Material, highest: int) ->
     ends, _ = _legendre(np.array([-1.0, 1.0]))
     away = _both(ends * np.array([[1.0], [-1.0]]), np.zeros_like(ends))
     radii = np.array([[inner], [outer]])
-    # pinv: the rigid motion of n = 1, and the twist of n = 0, move nothing
+    # The pseudo-inverse leaves out the rigid motion of n = 1 and the rotation of n = 0.
     u = np.linalg.pinv(K, rcond=1e-13, hermitian=True) @ (away * radii).T
     stretch = _both(ends, n * ends) @ u / radii
     return RingFields(np.asarray(away @ u), np.asarray(E * stretch - nu * np.eye(2)))
 
 
 def _both(U: Floats, V: Floats) -> Floats:
-    """The parts of the coefficients of U and V beside each other."""
+    """The coefficients of U and those of V, side by side."""
     return np.concatenate(np.broadcast_arrays(U, V), axis=-1)
 
 
@@ -65,7 +66,7 @@ def _product(a: Floats, b: Floats, weight: Floats) -> Floats:
 
 
 def _legendre(x: Floats) -> tuple[Floats, Floats]:
-    """Legendre's polynomials and their derivatives, (P, DEGREE + 1), at points (P,)."""
+    """Legendre's polynomials and their derivatives, (P, DEGREE + 1) each, at points (P,)."""
     from numpy.polynomial import legendre
 
     unit = np.eye(DEGREE + 1)

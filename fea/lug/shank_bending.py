@@ -1,10 +1,11 @@
-"""What a shank that bends out of its plane adds to the hoop stress beside the bore of its lug.
+"""The hoop stress that a shank adds beside the bore of its lug when it bends out of its plane.
 
 A pin that bends presses more on one face of a lug than on the other, and the shank carries the
-couple. The eye as a body of revolution carries it all around (fea.lug.through_thickness), a lug
-that is pulled beside its bore alone: there lugs in three dimensions have 0.7 to 0.9 of the nominal
-bending stress of the net section more than such an eye, most at 82 degrees from the shank. Lugs
-that are pressed have less than the eye, which is safe. Measured by `python -m benchmarks shanks`.
+couple. The eye as a body of revolution carries it all around (fea.lug.through_thickness). A lug
+that is pulled carries it beside its bore alone: in three dimensions such lugs have 0.7 to 0.9 of
+the nominal bending stress of the net section more than the eye, most at 82 degrees from the shank.
+Lugs that are pressed have less than the eye, which is safe. Measured by `python -m benchmarks
+shanks`.
 """
 
 from __future__ import annotations
@@ -17,16 +18,19 @@ from fea.lug.lug_load import LugLoad
 from geometry.shape.lug_outline import LugOutline
 from pinbase.arrays import Floats
 
-# Of the nominal stress: with it no lug of the benchmark has more from 90 degrees on, where contact
-# of a pulled lug ends; at 75 degrees two have 0.90 and 0.91, this 0.87.
+# The largest addition, of the nominal stress. With it no lug of the benchmark has a larger one from
+# 90 degrees on, where contact of a pulled lug ends; at 75 degrees two have 0.90 and 0.91, where
+# this has 0.87.
 SHARE = 0.88
-ANGLE = math.radians(82.0)  # from the shank, where it is largest; it falls as cos^2 on both sides
+# The angle from the shank at which it is largest; it falls as cos^2 on both sides.
+ANGLE = math.radians(82.0)
 
 
 def bent(outline: LugOutline, load: LugLoad, angles: Floats) -> Floats:
-    """The addition (T, R, P), Pa, to the hoop stress of the rings at angles (P,) from the shank.
+    """The addition (T, R, P), Pa, to the hoop stress of the rings.
 
     outline: of the lug, m.
+    angles: (P,) rad, from the shank.
     """
     thick, net_width = load.length.sum(), outline.width_at_bore - outline.hole
     along, across = load.along_shank.T

@@ -1,12 +1,12 @@
 """A lug about a pressed bushing that slips in it without friction, in its plane.
 
 Pin and bushing, and bushing and lug, are in frictionless contact: pressures at both walls are never
-negative, and are zero where a gap opens. Both pass on the same force, as the bushing is in balance.
-So it is the contact problem of a joint with two bands in one: of the bore, whose gap begins with
-half the clearance, and of the hole, whose gap begins with the interference. The bushing is a ring
-that both load (fea.lug.plane_ring).
+negative, and are zero where a gap opens. Both walls transmit the same force, since the bushing is
+in equilibrium. So this is the contact problem of a joint with two bands in one: the bore, whose
+initial gap is half the clearance, and the hole, whose initial gap is minus half the interference.
+The bushing is a ring that both pressures load (fea.lug.plane_ring).
 
-With friction the truth is between this and a bonded bushing.
+With friction the truth lies between this and a bonded bushing.
 """
 
 from __future__ import annotations
@@ -30,19 +30,23 @@ from geometry.shape.lug_outline import LugOutline
 from pinbase.arrays import Floats, Ints, Mask
 from pinbase.memo import Memo
 
-# Harmonic of the bushing: of a wall of a tenth of the bore's radius e^-4.8 gets through.
+# Highest harmonic of the bushing: through a wall of a tenth of the bore's radius, e^-4.8 of it is
+# transmitted.
 HIGHEST = 48
 
 
 @dataclass(frozen=True)
 class TwoWalls:
-    """Pressures (T, M), Pa, on the sectors of bore and hole, and their harmonics (T, 2 N + 1)."""
+    """The pressures on the walls of a slipping bushing.
+
+    bore, hole: (T, M) Pa, on the sectors of both walls.
+    """
 
     bore: Floats
     hole: Floats
 
     def amounts(self, highest: int) -> tuple[Floats, Floats]:
-        """The harmonics of both, cosines then sines."""
+        """The harmonics (T, 2 highest + 1) of both pressures, cosines then sines."""
         of_sectors = unit_waves(self.bore.shape[1], highest).T
         return self.bore @ of_sectors, self.hole @ of_sectors
 
@@ -50,7 +54,9 @@ class TwoWalls:
 class SlippingBushing:
     """A lug, its pressed bushing and a pin in their plane.
 
-    inner, radius: of the pin's bore and of its band, m. around: sectors, and elements of the lug.
+    pin: material of the pin.
+    inner, radius: of the pin's bore and of its band, m.
+    around: number of sectors, and of elements around the lug's hole.
     """
 
     def __init__(
@@ -75,18 +81,21 @@ class SlippingBushing:
 
     @cached_property
     def pressed_in(self) -> Floats:
-        """The pressure (M,), Pa, of the press fit alone on the hole."""
+        """The pressure (M,), Pa, on the hole that the press fit causes without a load."""
         problem = self._problem(walls=(1,), gaps=(-0.5 * self._interference,))
         state = problem.solve(np.zeros((1, 2)), start=np.ones((1, self.sectors), bool))
         return np.asarray(state.pressure[0])
 
     def pressures(self, forces: Floats) -> TwoWalls:
-        """The pressures under forces (T, 2) of the pin on the lug, N/m, along the shank and across.
+        """The pressures on both walls.
 
-        Raises: SolveError where contact does not settle.
+        forces: (T, 2) N/m, of the pin on the lug, along the shank and across it.
+
+        Raises: SolveError where contact does not converge.
         """
         shrunk = self.ring.flexibility[0, 0, 1] * self.pressed_in.mean()
-        # the clearance is that of the bore when the bushing is in the lug
+        # The clearance is that of the bore when the bushing is in the lug, so the gap of the free
+        # bushing is larger by what the press fit shrinks its bore.
         gaps = 0.5 * self.lug.clearance - shrunk, -0.5 * self._interference
         problem, out, start = self._problem((0, 1), gaps), list[Floats](), None
         for force in forces:
@@ -97,9 +106,12 @@ class SlippingBushing:
         return TwoWalls(both[:, 0], both[:, 1])
 
     def pressures_where(self, forces: Floats, strong: Mask) -> TwoWalls:
-        """The pressures under forces (T, 2), N/m; the press fit alone where these are not strong.
+        """The pressures under forces (T, 2), N/m; those of the press fit alone where forces are
+        weak.
 
-        Raises: SolveError where contact does not settle.
+        strong: (T,) the forces for which contact is solved.
+
+        Raises: SolveError where contact does not converge.
         """
         bore = np.zeros((len(forces), self.sectors))
         hole = np.tile(self.pressed_in, (len(forces), 1))
@@ -114,8 +126,9 @@ class SlippingBushing:
         return self.lug.bushing.misfit
 
     def _problem(self, walls: tuple[int, ...], gaps: tuple[float, ...]) -> ContactProblem:
-        """The contact problem of walls (0: bore, 1: hole) with initial gaps, m, of the radii, on
-        bands of 1 m.
+        """The contact problem of walls (0: bore, 1: hole), for a length of 1 m.
+
+        gaps: initial gap at each wall, m, of the radii.
         """
         pin, bearing, lug = map(in_plane_stress, (self.pin, self.lug.bearing, self.lug.material))
         r = np.array([self.radius, self.hole])
@@ -140,7 +153,10 @@ class SlippingBushing:
 
     def stress_and_pressure(self, pressures: TwoWalls) -> tuple[Floats, Floats]:
         """The hoop stress plus the pressure, (T, P) Pa, of the bushing's bore and of the lug's
-        hole at P points, two to a sector: smooth where pressure has a root.
+        hole.
+
+        The P points are two in each sector. The sum is smooth where pressure rises as a square
+        root.
         """
         angles = self.angles
         inside, outside = pressures.amounts(HIGHEST)
@@ -159,7 +175,9 @@ class SlippingBushing:
 
 
 def _beyond(known: Floats, material: Material, radius: float, n: Ints) -> Floats:
-    """The flexibility of harmonics n (N,), m/Pa: of the known ones, then a half-plane's."""
+    """The flexibility of harmonics n (N,), m/Pa: the known ones, and beyond them that of a
+    half-plane.
+    """
     known = known[: HARMONICS + 1]
     far = half_plane(material, radius) / np.maximum(n, 1)
     return np.asarray(np.where(n < len(known), np.resize(known, len(n)), far))

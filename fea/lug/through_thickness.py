@@ -1,15 +1,15 @@
-"""What uneven pressure through the thickness of a lug adds to the stress of its bore.
+"""The stress of a lug's bore that is due to uneven pressure through the thickness of the lug.
 
-A pin that bends presses on the edges of its lugs, and even under an even pressure a thick eye is
+A pin that bends presses on the edges of its lugs. Even under an even pressure, a thick eye is
 stressed more in its middle than at its faces. The eye as a body of revolution, whose rings'
-flexibilities serve contact, has both, in three dimensions; what a plane eye has of it is left to
-the plane lug with its shank.
+flexibilities serve contact, has both effects, in three dimensions. The part that a plane eye has,
+too, is subtracted, since the plane lug with its shank covers it.
 
 With u the displacements under a unit pressure of harmonic n on one ring, and p that pressure,
 
     hoop + p = E / (1 - nu^2) (e_tt + nu e_zz) - nu / (1 - nu) p + p,
 
-each on the mean over a ring.
+each averaged over a ring.
 """
 
 from __future__ import annotations
@@ -28,20 +28,24 @@ Edges = np.ndarray[tuple[int, int], np.dtype[np.int64]]  # nodes at the ends, th
 
 @dataclass(frozen=True)
 class EyeStress:
-    """The stress of each ring (rows) under unit pressures on rings, (N + 1, R, R), by harmonic.
+    """The stress of each ring (rows) under unit pressures on rings, (N + 1, R, R), for each
+    harmonic.
 
-    bore: hoop stress plus pressure.
-    hole: hoop stress of a lug about its bushing, by its stretch alone; None without a bushing.
+    bore: hoop stress plus pressure, of the wall on which the pin bears.
+    hole: hoop stress of a lug at the hole about its bushing, from the circumferential strain alone;
+    None without a bushing.
     """
 
     bore: Floats
     hole: Floats | None = None
 
     def added(self, waves: Floats, length: Floats, hole: bool = False) -> Floats:
-        """The addition to the stress of a plane eye under the mean pressure, (N + 1, T, R, 2) Pa
-        by phase; its mean through the thickness is zero under an even pressure.
+        """The addition (N + 1, T, R, 2), Pa, to the stress of a plane eye under the mean pressure,
+        for each phase.
 
-        waves: harmonics (N + 1, T, R, 2) of the pressures, Pa. length: of the rings, (R,) m.
+        Under an even pressure its mean through the thickness is zero.
+        waves: (N + 1, T, R, 2) Pa, harmonics of the pressures.
+        length: (R,) m, of the rings.
         hole: whether at the hole about a bushing.
         """
         stress = self.hole if hole else self.bore
@@ -57,7 +61,8 @@ def eye_stress(eye: RingBody, lug: Lug, highest: int) -> EyeStress:
     """The stress of an eye's bore, and of its hole about a bushing, under unit pressures on its
     rings.
 
-    highest: harmonic.
+    eye: the eye as a body of revolution.
+    highest: highest harmonic.
 
     Raises: SolveError.
     """
@@ -81,7 +86,9 @@ def eye_stress(eye: RingBody, lug: Lug, highest: int) -> EyeStress:
 
 
 def _mean_between(at: Floats, edges: Edges, radius: float, u: Floats) -> Floats:
-    """The mean (K,) of values (N, K) at nodes of a radius that are as high as a ring."""
+    """The mean (K,) along the axis of values (N, K) at the nodes of a radius, between the ends of a
+    ring.
+    """
     low, high = at[np.unique(edges), 1].min(), at[np.unique(edges), 1].max()
     tiny = 1e-6 * radius
     here = np.flatnonzero(
@@ -100,7 +107,7 @@ def _mean(edges: Edges, at: Floats, u: Floats) -> Floats:
 
 
 def _stretch(edges: Edges, at: Floats, u: Floats) -> Floats:
-    """The mean stretch (K,) of a ring along the axis, from displacements (N, K)."""
+    """The mean strain (K,) of a ring along the axis, from displacements (N, K)."""
     nodes = np.unique(edges)
     low, high = nodes[at[nodes, 1].argmin()], nodes[at[nodes, 1].argmax()]
     return np.asarray((u[high] - u[low]) / (at[high, 1] - at[low, 1]))

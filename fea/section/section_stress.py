@@ -207,7 +207,7 @@ class SectionField:
         Sections whose stress follows from their neighbours' are left out.
         """
         points = np.arange(len(self.fields.points))
-        stress, _ = self.around(loads).round(points, np.full(len(points), instant))
+        stress, _ = self.around(loads).largest_over_angle(points, np.full(len(points), instant))
         largest = stress.reshape(len(self._z), -1).max(axis=1)
         allowed = np.full((len(largest), 1), COURSE_TOLERANCE * float(largest.max()) or 1.0)
         jumps = np.diff(self._z, prepend=-np.inf, append=np.inf) <= 0.0

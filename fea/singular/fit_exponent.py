@@ -1,8 +1,8 @@
-"""How stress grows towards a singularity, measured on a mesh that is graded towards it.
+"""The growth of stress towards a singularity, measured on a mesh that is graded towards it.
 
-Along the free surface the stress is A d^-s + B d^q at small distances d: s is what is looked for,
-and q that of the next term, 0 where it is not known to be another. The sum of squares of relative
-differences is smallest at s; A and B follow from s by linear least squares.
+Along the free surface the stress is A d^-s + B d^q at small distances d. The exponent s is fitted;
+q is that of the next term, 0 where no other value is known. The sum of squares of relative
+differences is minimised over s; A and B follow from s by linear least squares.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ import numpy as np
 from pinbase.arrays import Floats
 
 # Chosen by judgement; `python -m benchmarks corners` shows how exponents compare with theory.
-MIN_FIT_POINTS = 8  # points in the range
-MIN_DISTANCE_RATIO = 5.0  # largest over least distance in the range
-MAX_FIT_ERROR = 0.05  # rms of relative differences: more is no power
-EXPONENT_LIMITS = (0.01, 0.95)  # between which the exponent is fitted
+MIN_FIT_POINTS = 8  # least number of points in the fit
+MIN_DISTANCE_RATIO = 5.0  # least ratio of the largest to the smallest distance in the fit
+MAX_FIT_ERROR = 0.05  # largest rms of relative differences: with more, stress is not a power
+EXPONENT_LIMITS = (0.01, 0.95)  # limits of the fitted exponent
 
 
 def growth_exponent(distance: Floats, stress: Floats, following: float = 0.0) -> float | None:
     """The exponent s of stress A d^-s + B d^q fitted to samples; None if they show no such growth.
 
-    distance, stress: (J,) each.
+    distance, stress: (J,) m and Pa.
     following: q.
     """
     if (

@@ -1,22 +1,23 @@
-"""Exponent of pressure at the sharp edge of a lug on a smooth pin: it grows like d^-s.
+"""The exponent of pressure at the sharp edge of a lug on a smooth pin: it grows like d^-s.
 
-The pin is a half plane -pi < theta < 0, the lug a wedge 0 < theta < w; they touch without friction
+The pin is a half-plane -pi < theta < 0, the lug a wedge 0 < theta < w. They touch without friction
 at theta = 0, and their other sides are free. With Williams' stress function r^(L + 1) f(theta), f a
-sum of cos and sin of (L + 1) theta and (L - 1) theta, a wedge of angle w under the normal stress
-p r^(L - 1) on its side, without shear, moves along the normal there by u r^L,
+sum of cos and sin of (L + 1) theta and (L - 1) theta, consider a wedge of angle w under the normal
+stress p r^(L - 1) on its side, without shear. It moves along the normal there by u r^L,
 
     u / p = c k N(w) / D(w),    N = sin 2 L w + L sin 2 w,    D = sin^2 L w - L^2 sin^2 w,
 
-where k = (1 - nu^2) / E, and c = 1 / L is that of all wedges. For the half plane N / D is
-2 cos L pi / sin L pi. Under the same stress both stay in touch if their displacements sum to zero:
+where k = (1 - nu^2) / E, and c = 1 / L is the same for all wedges. For the half-plane N / D is 2
+cos L pi / sin L pi. Under the same stress both stay in contact if their displacements sum to zero:
 
     h(L) = 2 k_pin cos(L pi) D(w) + k_lug sin(L pi) N(w) = 0,    s = 1 - Re L.
 
-D > 0 for 0 < L < 1 and 0 < w < pi, so h > 0 at L = 1/2. Towards L = 1 h goes to zero, from below
-where there is a singularity: always for w >= pi/2. Then the least root is real and between. No
-other has 0 < Re L < 1: counted in tests/fea/singular/test_lug_edge.py by the argument principle.
+D > 0 for 0 < L < 1 and 0 < w < pi, so h > 0 at L = 1/2. Towards L = 1, h goes to zero, from below
+where there is a singularity: always for w >= pi/2. Then the least root is real and lies between. No
+other root has 0 < Re L < 1; tests/fea/singular/test_lug_edge.py counts them by the argument
+principle.
 
-Contact without friction transmits no shear out of the plane: in torsion there is no singularity.
+Contact without friction transmits no shear out of the plane, so in torsion there is no singularity.
 
 Source: J. Dundurs & M. S. Lee, J. Elasticity 2 (1972) 109, for the problem; M. L. Williams, J.
 Appl. Mech. 19 (1952) 526, for the stress functions.
@@ -29,11 +30,12 @@ import math
 from fea.core.material import Material
 
 RIGHT_ANGLE = math.pi / 2.0  # the angle of a lug's edge
-MIN_EXPONENT = 1e-9  # exponents below are those of no singularity
+MIN_EXPONENT = 1e-9  # with a smaller exponent there is no singularity
 
 
 def lug_edge_exponent(pin: Material, lug: Material, angle: float = RIGHT_ANGLE) -> float:
-    """Exponent s of pressure and stress ~ d^-s at the sharp edge of a lug; 0 where finite.
+    """The exponent s of pressure and stress ~ d^-s at the sharp edge of a lug; 0 where they are
+    finite.
 
     lug: the material that touches the pin, a bushing's if there is one.
     angle: of the edge, rad.
@@ -44,9 +46,11 @@ def lug_edge_exponent(pin: Material, lug: Material, angle: float = RIGHT_ANGLE) 
 
 
 def edge_exponent(pin: float, lug: float, angle: float = RIGHT_ANGLE) -> float:
-    """The same from the plane compliances (1 - nu^2) / E of both, whose ratio counts; 0 is rigid.
+    """Return what `lug_edge_exponent` does, from plane compliances (1 - nu^2) / E, whose ratio
+    counts.
 
-    angle: between 0 and pi.
+    pin, lug: 1/Pa; 0 for a rigid body.
+    angle: rad, between 0 and pi.
     """
     share = lug / (pin + lug)
     if _h(1.0 - MIN_EXPONENT, share, angle) >= 0.0:
@@ -59,7 +63,7 @@ def edge_exponent(pin: float, lug: float, angle: float = RIGHT_ANGLE) -> float:
 def next_power(pin: Material, lug: Material) -> float:
     """The power of distance of the next term of pressure at the edge of a lug of 90 degrees.
 
-    It is 0.5 for a rigid lug and up to 1 for a very soft one; regular terms have no lower power.
+    It is 0.5 for a rigid lug and up to 1 for a very soft one. Regular terms have no lower power.
     """
     pin_part, lug_part = pin.plane_compliance, lug.plane_compliance
     share = lug_part / (pin_part + lug_part)
@@ -69,7 +73,10 @@ def next_power(pin: Material, lug: Material) -> float:
 
 
 def _h(L: float, share: float, angle: float) -> float:
-    """h(L) over the sum of both compliances; share: the lug's part of it."""
+    """The function h(L) of the module over the sum of both compliances.
+
+    share: the lug's part of that sum.
+    """
     N = math.sin(2.0 * L * angle) + L * math.sin(2.0 * angle)
     D = math.sin(L * angle) ** 2 - (L * math.sin(angle)) ** 2
     return 2.0 * (1.0 - share) * math.cos(L * math.pi) * D + share * math.sin(L * math.pi) * N

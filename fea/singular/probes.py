@@ -1,6 +1,8 @@
-"""Where stress is read near the surface: on circles about singularities, inside the body.
+"""The points near the surface at which stress is read: circles about singularities, inside the
+body.
 
-A maximum outside of a singularity is often on its rim, and not where a mesh happens to have a node.
+A maximum outside of a singularity often lies on the rim of its zone, and not where a mesh happens
+to have a node.
 """
 
 from __future__ import annotations
@@ -14,15 +16,15 @@ from fea.core.zone import Zone
 from geometry import Pin
 from pinbase.arrays import Floats, Ints
 
-RIM_POINTS = 32  # points round a singularity in the section
+RIM_POINTS = 32  # points of a circle about a singularity in the section
 CIRCUMFERENCE_POINTS = 36  # points about the axis
-NEAREST_ELEMENTS = 12  # elements by their middles, among which the one round a point is looked for
+NEAREST_ELEMENTS = 12  # elements with the nearest middles, searched for the one that has a point
 
 _ELEMENTS: dict[int, Element] = {4: ElementTetP1(), 10: ElementTetP2()}
 
 
 def rim(pin: Pin, singularity: Zone, distance: float) -> Floats:
-    """Points (P, 2), r and z in m, inside the pin at a `distance` (m) from a singularity."""
+    """The points (P, 2), r and z in m, inside the pin at a `distance` (m) from a singularity."""
     angle = 2.0 * np.pi * (np.arange(RIM_POINTS) + 0.5) / RIM_POINTS
     x = distance * np.stack([np.cos(angle), np.sin(angle)], axis=1) + [singularity.r, singularity.z]
     inner, outer = pin.radii_at(x[:, 1])
@@ -33,7 +35,10 @@ def rim(pin: Pin, singularity: Zone, distance: float) -> Floats:
 
 
 def all_round(points: Floats) -> Floats:
-    """Points (P, 2) of a section turned about the axis: (CIRCUMFERENCE_POINTS P, 3), x, y, z, m."""
+    """The points (P, 2) of a section turned about the axis.
+
+    Returns x, y, z in m, (CIRCUMFERENCE_POINTS P, 3).
+    """
     angle = 2.0 * np.pi * np.arange(CIRCUMFERENCE_POINTS)[:, None] / CIRCUMFERENCE_POINTS
     r, z = points.T
     x = np.stack([r * np.cos(angle), r * np.sin(angle), z + 0.0 * angle], axis=2)
@@ -41,10 +46,10 @@ def all_round(points: Floats) -> Floats:
 
 
 def interpolation(nodes: Floats, elements: Ints, points: Floats) -> sp.csr_matrix:
-    """Matrix (P, N) from values at nodes (N, d) to points (P, d) inside the body.
+    """A matrix (P, N) that interpolates values at nodes (N, d) to points (P, d) inside the body.
 
-    It uses the shape functions of the element (M, k) that contains each point, taken as
-    straight-sided.
+    It uses the shape functions of the element (M, k) that contains each point, as if its edges were
+    straight.
     """
     if not len(points):
         return sp.csr_matrix((0, len(nodes)))  # a tree of all elements takes a while

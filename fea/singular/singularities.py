@@ -18,10 +18,12 @@ from geometry.shape.polygon import SMOOTH_ANGLE_TOLERANCE
 from pinbase.arrays import Floats, Mask
 
 # Chosen by judgement:
-MIN_ADVISED_FILLET = 0.1  # of the smaller diameter: the radius to try
-# Excluded distance at a logarithm over that at a power: a logarithm is felt that much closer only.
+MIN_ADVISED_FILLET = 0.1  # radius of the advised fillet, of the smaller diameter
+# Excluded distance at a logarithmic singularity over that at a power: a logarithm affects stress at
+# much smaller distances only.
 LOGARITHM_DISTANCE_RATIO = 0.1
-# Of the radius of an arc that begins at a singularity: up to there it is nearly straight.
+# The distance, of the radius of an arc that begins at a singularity, up to which the arc is nearly
+# straight.
 STRAIGHT_ARC_SHARE = 0.25
 
 
@@ -29,20 +31,19 @@ STRAIGHT_ARC_SHARE = 0.25
 def find_singularities(
     pin: Pin, clamps: tuple[str, ...], loaded: tuple[str, ...], nu: float, distance: float = 0.1
 ) -> tuple[Zone, ...]:
-    """Every stress singularity of a pin, in the order of `vertices`.
+    """All stress singularities of a pin, in the order of `vertices`.
 
-    The zone of each ends where a fillet or a groove begins: farther away its term K d^-theory does
-    not govern stress. Zones of other singularities may overlap it, since neither has stress that
-    counts.
-    clamps: surfaces (by the pin's names) that are clamped.
-    loaded: those under a traction that does not fade towards their edges; a bearing pressure's
-    shear does.
+    The zone of each ends where a fillet or a groove begins, since farther away its term K d^-theory
+    does not govern the stress. Zones of other singularities may overlap it, since in neither the
+    stress counts.
+    clamps: names of the clamped surfaces.
+    loaded: names of the surfaces under a traction that does not fade towards their edges (the shear
+    of a bearing pressure does).
     nu: Poisson's ratio.
-    distance: of the local diameter, within which stress is not read; a tenth of it at the edge of a
+    distance: within which stress is not read, of the local diameter; a tenth of it at the edge of a
     load.
 
-    Raises: GeometryError for a surface that the pin does not have; ValueError outside -1 < nu <
-    0.5.
+    Raises: GeometryError for a surface that the pin does not have.
     """
     constrained = {pin.surface(name) for name in clamps}
     pushed = {pin.surface(name) for name in loaded}
@@ -59,18 +60,21 @@ def find_singularities(
 
 
 def free_of_arcs(pin: Pin, r: Floats, z: Floats) -> Floats:
-    """Distances (S,), m, from points at r, z (S,), m, to the nearest fillet or groove."""
+    """The distances (S,), m, from points at r, z (S,), m, to where the nearest fillet or groove
+    begins.
+    """
     at, far = np.stack([r, z], axis=1), np.full(len(r), math.inf)
     return np.asarray(np.min([far, *(_free_of(arc, at) for arc in _inner_arcs(pin))], axis=0))
 
 
 def begins(gap: float, radius: float) -> float:
-    """Distance (m) from a singularity up to which stress is its own beside a feature.
+    """The distance (m) from a singularity beside a feature up to which the singularity governs
+    stress.
 
     The feature is a fillet, a groove or a hole.
-    gap: m, to the feature.
-    radius: m, of the feature. Where the feature begins at the singularity or nearly so, it is
-    STRAIGHT_ARC_SHARE of the radius.
+    gap: m, to the feature. If the feature begins at the singularity or nearly so, the distance is
+    STRAIGHT_ARC_SHARE of its radius.
+    radius: m, of the feature.
     """
     return max(gap, STRAIGHT_ARC_SHARE * radius)
 
@@ -81,7 +85,7 @@ def _inner_arcs(pin: Pin) -> tuple[Arc, ...]:
 
 
 def outside(singularities: Iterable[Zone], r: Floats, z: Floats) -> Mask:
-    """Mask (S,) of the points at r, z (S,), m, that lie in none of the singularities."""
+    """A mask (S,) of the points at r, z (S,), m, that lie in none of the zones."""
     out = np.ones(len(r), dtype=bool)
     for p in singularities:
         out &= np.hypot(r - p.r, z - p.z) >= p.radius * (1.0 - 1e-9)
@@ -91,9 +95,10 @@ def outside(singularities: Iterable[Zone], r: Floats, z: Floats) -> Mask:
 def smooth_edges(
     pin: Pin, surfaces: Collection[str], clamps: Collection[str], cells: Collection[str] = ()
 ) -> tuple[tuple[float, float], ...]:
-    """Rims (r, z), m, of surfaces across which the outline goes on smoothly, neither side clamped.
+    """The rims (r, z), m, of surfaces across which the outline continues smoothly, neither side
+    clamped.
 
-    surfaces, clamps: by the pin's names.
+    surfaces, clamps: names of surfaces.
     cells: surfaces of one pressure, between which there is no rim.
     """
     names, constrained = (
@@ -110,7 +115,7 @@ def smooth_edges(
 
 
 def clamp_rims(pin: Pin, clamps: tuple[str, ...]) -> tuple[tuple[float, float], ...]:
-    """Rims (r, z) of the clamped surfaces, m."""
+    """The rims (r, z), m, of the clamped surfaces."""
     constrained = {pin.surface(name) for name in clamps}
     return tuple((v.r, v.z) for v in vertices(pin) if constrained & set(v.between))
 
@@ -120,8 +125,9 @@ def _singularity(
 ) -> Zone | None:
     """The singularity at a vertex, or None where stress stays finite.
 
-    constrained, pushed: surfaces that are clamped, or loaded up to their edges.
-    distance: as in `find_singularities`.
+    constrained: names of the clamped surfaces.
+    pushed: names of the surfaces whose load does not fade towards their edges.
+    nu, distance: as in `find_singularities`.
     """
     sides: list[Side] = ["clamped" if name in constrained else "free" for name in v.between]
     first, second = sides
@@ -145,14 +151,14 @@ def _singularity(
 
 
 def _free_of(arc: Arc, points: Floats) -> Floats:
-    """Distances (P,), m, from points (P, 2), r and z in m, to where an arc begins."""
+    """The distances (P,), m, from points (P, 2), r and z in m, to where an arc begins."""
     return np.maximum(arc.distance(points), begins(0.0, arc.radius))
 
 
 def _feature(every: tuple[Vertex, ...], k: int, constrained: set[str]) -> float:
-    """The shorter of the two surfaces that meet at vertex k, m.
+    """The length, m, of the shorter of the two surfaces that meet at vertex k.
 
-    Each is measured as far as the outline goes on smoothly, all of it clamped or all of it free.
+    Each is measured as far as the outline continues smoothly and is either all clamped or all free.
     """
 
     def length(step: int) -> float:
@@ -183,7 +189,9 @@ _BORE_ADVICE = "a radius here would make it finite: the bore_radius of the wider
 
 
 def _fillet_advice(pin: Pin, v: Vertex) -> str:
-    """The fillet to try at an inner corner, and why not a larger one, for people."""
+    """The advice for an inner corner: the fillet to use, and what limits its size if it must be
+    small.
+    """
     i = min(range(len(pin.segments) - 1), key=lambda i: abs(pin.stations[i + 1] - v.z))
     left, right = pin.segments[i], pin.segments[i + 1]
     before, after = left.diameters[1], right.diameter
@@ -211,13 +219,16 @@ def singularities_of(
     cases: tuple[PinLoads, ...],
     distance: float = 0.1,
 ) -> tuple[Zone, ...]:
-    """Zones of unbounded stress in any of the cases; for bodies of revolution only."""
+    """The zones of unbounded stress in any of the cases; none for a body that is not of revolution.
+
+    distance: as in `find_singularities`.
+    """
     profile = body_of_revolution(pin)
     if profile is None:
         return ()
     acting = {load for case in cases for load in _shearing(profile, case)}
     loaded = {load.surface for load in acting}
-    if acting and not clamps:  # all bands react the imbalance
+    if acting and not clamps:  # the shear that reacts the imbalance acts on all bands
         loaded |= set(pin.connections)
     nu = material.poisson_ratio
     zones = find_singularities(profile, clamps, tuple(sorted(loaded)), nu, distance)
@@ -232,15 +243,13 @@ def singularities_of(
 def edges_of_loads(
     pin: Pin, surfaces: Collection[str], material: Material, distance: float
 ) -> tuple[Zone, ...]:
-    """Zones about the edges of shears that are even on surfaces (by name)."""
+    """The zones about the edges of surfaces (by name) under a shear that does not fade."""
     every = find_singularities(pin, (), tuple(surfaces), material.poisson_ratio, distance)
     return tuple(zone for zone in every if zone.kind == "edge of a load")
 
 
 def _shearing(pin: Pin, case: PinLoads) -> Iterator[UnitLoad]:
-    """The unit loads with a shear at their edges that act at some instant, by more than
-    round-off.
-    """
+    """Yield the unit loads with a shear at the edges of their bands that is more than round-off."""
     force, moment = (np.abs(x).max(initial=0.0) for x in (case.forces, case.moments))
     largest = max(float(force), float(moment) / pin.length)
     for load, amount in case.coefficients().items():
@@ -250,7 +259,9 @@ def _shearing(pin: Pin, case: PinLoads) -> Iterator[UnitLoad]:
 
 
 def _load_advice(pin: Pin, zone: Zone, acting: Collection[UnitLoad]) -> str:
-    """Return what would make stress finite at the edge of a load, by the loads on its band."""
+    """Return the change that would make stress finite at the edge of a load, by the loads on its
+    band.
+    """
     here = {load for load in acting if pin.surface(load.surface) in zone.between}
     causes = {
         _TRACTION_ADVICE: any(x.kind == "force" and x.n == 1 for x in here),

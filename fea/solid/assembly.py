@@ -1,8 +1,8 @@
-"""Stiffness matrix of linear elasticity, for all elements at once, summed by pairs of nodes.
+"""The stiffness matrix of linear elasticity, for all elements at once, summed by pairs of nodes.
 
-Basis functions, mapping and quadrature are scikit-fem's; only the assembly is ours, because a form
-there evaluates its whole integrand for each of the 30 x 30 pairs of unknowns of an element
-(`python -m benchmarks assembly` for the ratio).
+Basis functions, mapping and quadrature are those of scikit-fem. Only the assembly is ours, because
+a form there evaluates its whole integrand for each of the 30 x 30 pairs of unknowns of an element
+(for the ratio of times: `python -m benchmarks assembly`).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class Discretisation:
     """Tetrahedra on a mesh (m) with K nodes and Q quadrature points each.
 
     K and Q are 10 and 4 for quadratic tetrahedra, 4 and 1 for linear ones (MeshTet1). Unknown 3 n +
-    c is component c of the displacement of node n; node numbers are the mesh's.
+    c is component c of the displacement of node n. Node numbers are those of the mesh.
     """
 
     def __init__(self, mesh: MeshTet1) -> None:
@@ -34,28 +34,28 @@ class Discretisation:
 
     @property
     def unknowns(self) -> int:
-        """Number of displacement components."""
+        """The number of displacement components."""
         return 3 * int(self.basis.N)
 
     @cached_property
     def nodes(self) -> Floats:
-        """Node coordinates (N, 3), m."""
+        """The node coordinates (N, 3), m."""
         return np.ascontiguousarray(self.mesh.doflocs.T)
 
     @cached_property
     def elements(self) -> Ints:
-        """Node numbers (M, K): corners, then edges 01, 12, 02, 03, 13, 23."""
+        """The node numbers (M, K): corners, then edges 01, 12, 02, 03, 13, 23."""
         return np.ascontiguousarray(self.basis.element_dofs.T).astype(np.int64)
 
     @cached_property
     def gradients(self) -> Floats:
-        """Derivatives of the shape functions at the quadrature points, (M, Q, K, 3), 1/m."""
+        """The derivatives of the shape functions at the quadrature points, (M, Q, K, 3), 1/m."""
         grad = np.stack([part[0].grad for part in self.basis.basis])  # (K, 3, M, Q)
         return np.ascontiguousarray(grad.transpose(2, 3, 0, 1))
 
     @cached_property
     def weights(self) -> Floats:
-        """Quadrature weights times det J, (M, Q), m^3."""
+        """The quadrature weights times det J, (M, Q), m^3."""
         return np.asarray(self.basis.dx)
 
     def stiffness(self, material: Material) -> sp.csr_matrix:
@@ -76,7 +76,7 @@ class Discretisation:
         return pattern.matrix(blocks)
 
     def strain(self, displacement: Floats) -> Floats:
-        """Strains (M, Q, 6) at the quadrature points: xx, yy, zz, yz, xz, xy, tensor shears.
+        """The strains (M, Q, 6) at the quadrature points: xx, yy, zz, yz, xz, xy, tensor shears.
 
         displacement: (N, 3) m.
         """

@@ -1,4 +1,4 @@
-"""The boundary of a solid mesh: its curved facets, their nodes and normals, and loads on it."""
+"""The boundary of a solid mesh: its curved facets, their nodes and normals, and loads on them."""
 
 from __future__ import annotations
 
@@ -13,8 +13,10 @@ from fea.solid.assembly import Discretisation
 from geometry.mesh.section_mesh import triangle_shapes
 from pinbase.arrays import Floats, Ints, Mask
 
-_PLANE_TOLERANCE = 1e-6  # difference of unit normals on a plane facet, by round-off and gmsh's
-# Cosine between a node's normals below which it sits on an edge of the body; chosen by judgement.
+# Difference of unit normals on a plane facet, due to round-off and the precision of gmsh.
+_PLANE_TOLERANCE = 1e-6
+# Cosine between the normals at a node below which it lies on an edge of the body; chosen by
+# judgement.
 MIN_SMOOTH_COSINE = 0.97
 
 # The quarters of a quadratic triangle by its nodes.
@@ -23,7 +25,8 @@ _TRIANGLE_NODES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5
 
 
 def slopes_at(x: Floats, y: Floats, nodes: int = 6) -> tuple[Floats, Floats]:
-    """Shape functions (Q, K) at points (Q,) of a facet, and their derivatives by x and y (Q, K, 2).
+    """The shape functions (Q, K) at points (Q,) of a facet, and their derivatives by x and y (Q, K,
+    2).
 
     nodes: 6 for quadratic functions (corners, then edges 01, 12, 02), 3 for linear ones.
     """
@@ -35,7 +38,7 @@ def slopes_at(x: Floats, y: Floats, nodes: int = 6) -> tuple[Floats, Floats]:
 
 
 def quadrature() -> tuple[Floats, Floats]:
-    """Points (2, Q) of a facet and their weights (Q,), exact to the fourth degree."""
+    """The points (2, Q) of a facet and their weights (Q,), exact to the fourth degree."""
     at, weight = get_quadrature(RefTri, 4)
     return np.asarray(at), np.asarray(weight)
 
@@ -46,7 +49,7 @@ class SurfaceMesh:
 
     nodes: (S,) node numbers.
     facets: (F,) facet numbers.
-    corners: (F, K) node numbers, K = 6, or 3 on linear elements.
+    corners: (F, K) node numbers of each facet, K = 6, or 3 on linear elements.
     normals: (F, K, 3) outward unit vectors at those nodes.
     """
 
@@ -61,7 +64,7 @@ class SurfaceMesh:
         return not np.allclose(self.normals, self.normals[:, :1], atol=_PLANE_TOLERANCE)
 
     def on(self, space: Discretisation, surfaces: Iterable[str]) -> Mask:
-        """Mask (F,) of the facets on any of the named surfaces."""
+        """A mask (F,) of the facets on any of the named surfaces."""
         named = [space.mesh.boundaries[name] for name in surfaces]
         return np.isin(self.facets, np.concatenate([*named, np.zeros(0, dtype=np.int64)]))
 
@@ -77,7 +80,8 @@ def surface(space: Discretisation) -> SurfaceMesh:
     normals = area_vectors(x, *_TRIANGLE_NODES[: corners.shape[1]].T)
     normals /= np.linalg.norm(normals, axis=2, keepdims=True)
     middle = space.nodes[space.elements[mesh.f2t[0, facets]][:, :4]].mean(axis=1)
-    # by the plane between the corners: a curved facet may bulge past the middle of its element
+    # The plane through the corners decides which side is outside, since a curved facet may bulge
+    # past the middle of its element.
     plane = np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0])
     inward = np.sum(plane * (middle - x[:, 0]), axis=1) > 0.0
     normals[inward] *= -1.0
@@ -85,17 +89,18 @@ def surface(space: Discretisation) -> SurfaceMesh:
 
 
 def clamped_nodes(space: Discretisation, surfaces: tuple[str, ...]) -> Ints:
-    """Numbers of the nodes on the named surfaces."""
+    """The numbers of the nodes on the named surfaces."""
     nodes = [space.basis.get_dofs(space.mesh.boundaries[s]).flatten() for s in surfaces]
     return np.unique(np.concatenate(nodes)).astype(np.int64)
 
 
 class Patch:
-    """One named surface and the tractions that load it.
+    """One named surface and the tractions on it.
 
-    rows: (P,) its facets among the boundary's.
-    area: m^2. Tractions (P, K, 3, L), Pa per unit of each load, are values at the nodes of its
-    facets, and quadratic between them.
+    Tractions (P, K, 3, L), Pa per unit of each of L loads, are values at the nodes of its facets,
+    and quadratic between them.
+    rows: (P,) numbers of its facets among those of the boundary.
+    area: m^2.
     """
 
     def __init__(self, space: Discretisation, boundary: SurfaceMesh, name: str) -> None:
@@ -109,7 +114,7 @@ class Patch:
         self.area = float(size.sum())
 
     def nodal_forces(self, traction: Floats) -> Floats:
-        """Consistent nodal forces (N, 3, L) of a traction."""
+        """The consistent nodal forces (N, 3, L), N, of a traction."""
         out = np.zeros((len(self._nodes), *traction.shape[2:]))
         np.add.at(out, self._corners, np.einsum("pij,pjal->pial", self._mass, traction))
         return out
@@ -122,10 +127,10 @@ class Patch:
     def exactly(self, traction: Floats, target: Floats, middle: float) -> Floats:
         """The traction (P, K, 3, L) corrected to have exactly the resultants `target`.
 
-        target: (6, L) force (N) and moment (N m) about (0, 0, middle). The mesh's surface is not
-        quite round, and holes may be cut into it, so a traction has resultants slightly different
-        from those intended; small parts of uniform tractions, of such that grow along z and of one
-        tangential about z make up for that.
+        The mesh's surface is not quite round, and holes may be cut into it, so the resultants of a
+        traction differ slightly from those intended. The difference is made up by small additional
+        tractions: uniform ones, ones that grow along z, and a tangential one about z.
+        target: (6, L) force (N) and moment (N m) about (0, 0, middle).
         """
         x = self.points - [0.0, 0.0, middle]
         trial = np.zeros((*x.shape, 6))
@@ -139,12 +144,16 @@ class Patch:
 
 
 def resultants(nodes: Floats, forces: Floats, z: float = 0.0) -> Floats:
-    """Force and moment (6, L), in N and N m, of nodal forces (N, 3, L) about (0, 0, z)."""
+    """The force and moment (6, L), in N and N m, of nodal forces (N, 3, L) about (0, 0, z)."""
     moments = np.cross((nodes - [0.0, 0.0, z])[:, :, None], forces, axisa=1, axisb=1, axisc=1)
     return np.concatenate([forces.sum(axis=0), moments.sum(axis=0)])
 
 
 def area_vectors(x: Floats, at_x: Floats, at_y: Floats) -> Floats:
-    """Cross products (F, Q, 3) of the tangents of facets with nodes x (F, K, 3) at Q points."""
+    """The cross products (F, Q, 3) of the tangents of facets at Q points.
+
+    x: (F, K, 3) m, nodes of the facets.
+    at_x, at_y: (Q,) the points, as for slopes_at.
+    """
     tangents = np.einsum("qfc,tfa->tqca", slopes_at(at_x, at_y, x.shape[1])[1], x)
     return np.cross(tangents[:, :, 0], tangents[:, :, 1])

@@ -1,4 +1,4 @@
-"""Results of the solid model for a pin's cases on one mesh."""
+"""The maxima of a pin's cases in the solid model on one mesh."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ from geometry.mesh.elements import Element
 from geometry.mesh.solid_mesh import MeshSize
 from geometry.shape.band import END_FACES
 
-# Tetrahedra are larger than a small step. What the harmonic model feels at its corner, a tenth of
-# the step away from it, is 1.6 to 2.1 times the stress of the shaft there.
+# Tetrahedra are larger than a small step. At a tenth of the step from its corner, the harmonic
+# model finds 1.6 to 2.1 times the stress of the shaft there. This factor stands for that rise.
 SHALLOW_STEP_FACTOR = 1.5
 # The scatter was measured on fillets with and without a bore, 0.07 to 0.13.
 SOLID_MESHES = MeshSequence(
@@ -40,8 +40,8 @@ def solid_solution(
 ) -> SolidSolution:
     """Solve all unit loads of the cases on a mesh that is finer at edges of bands and clamps.
 
-    The problem has the zones of a body of revolution; those of any other body are found on its
-    mesh.
+    The zones of a body of revolution are those of the problem; those of any other body are found on
+    its mesh.
 
     Raises: MeshError, SolveError.
     """
@@ -82,10 +82,10 @@ def solid_solution(
 
 @dataclass(frozen=True)
 class SolidMeshSolution:
-    """A mesh solved as a solid (fea.core.model.MeshSolution).
+    """One mesh solved as a solid (fea.core.model.MeshSolution).
 
     ratio: how much coarser the mesh before is.
-    before: its maxima by case, from which the growth of stress in zones follows.
+    before: the maxima of that mesh for each case, from which the growth of stress in zones follows.
     """
 
     solution: SolidSolution
@@ -96,13 +96,13 @@ class SolidMeshSolution:
 
     @property
     def zones(self) -> tuple[Zone, ...]:
-        """The zones of the problem for a body of revolution; those found on the mesh for any
-        other.
+        """The zones of the problem for a body of revolution; for any other body, those found on the
+        mesh.
         """
         return self.solution.singularities
 
     def field(self, case: str) -> SolidField:
-        """The stress of a case; every case has the same zones."""
+        """The stress of a case; all cases have the same zones."""
         return SolidField(self.solution)
 
     def maximum(self, loads: PinLoads) -> MeshMaximum:
@@ -113,7 +113,8 @@ class SolidMeshSolution:
 class Solid:
     """The model of any body by tetrahedra (fea.core.model.Model).
 
-    given: whether its mesh comes from a file, which can only be refined by halving its elements.
+    given: whether the mesh comes from a file, so that it can only be refined by halving its
+    elements.
     """
 
     name = "solid"
@@ -125,7 +126,7 @@ class Solid:
     def solve(
         self, problem: MeshProblem, level: int, before: MeshBefore | None = None
     ) -> SolidMeshSolution:
-        """Solve one mesh, as every model does."""
+        """Solve all unit loads on mesh number `level` (fea.core.model.Model.solve)."""
         size = MeshSize().finer(self.meshes.ratio**level)
         solution = solid_solution(problem, size, self._element)
         maxima = {} if before is None else before.maxima
@@ -135,10 +136,11 @@ class Solid:
 def solid_result(
     solution: SolidSolution, earlier: Mapping[str, MeshMaximum], ratio: float, loads: PinLoads
 ) -> MeshMaximum:
-    """The maximum outside the singularities and that inside each of them.
+    """The maximum outside the singularities, and the maximum inside each of them.
 
-    Exponents follow from the growth since the `earlier` mesh result of the same case, on a mesh
-    `ratio` times coarser.
+    Exponents follow from the growth of stress since the mesh before.
+    earlier: the result of each case on the mesh before.
+    ratio: how much coarser that mesh is.
     """
     fields, before = solution.fields, earlier.get(loads.case)
     top = envelope(fields, loads, solution.outside, solution.within)

@@ -17,14 +17,16 @@ from fea.solid.model import UnitFields
 from fea.solid.superposition import envelope
 from pinbase.arrays import Floats, Ints, Mask
 
-MAX_SHOWN_NODES = 6000  # of a surface of quadratic triangles, to show their middle nodes, too
+# Most nodes of a surface of quadratic triangles whose middle nodes are shown, too.
+MAX_SHOWN_NODES = 6000
 
 
 @dataclass(frozen=True)
 class SolidSolution:
-    """The unit fields on one mesh, and which of their points are in each singularity.
+    """The unit fields on one mesh, and which of their points lie in each singularity.
 
-    varied: the points that are in none if half and twice the distance is excluded.
+    within: for each singularity, a mask of the points in its zone.
+    varied: masks of the points that are in no zone if half, and if twice, the distance is excluded.
     """
 
     fields: UnitFields
@@ -34,13 +36,14 @@ class SolidSolution:
 
     @property
     def outside(self) -> Mask:
-        """The points that are in no singularity."""
+        """A mask of the points that are in no singularity."""
         return in_none(self.within, len(self.fields.points))
 
     @cached_property
     def shown(self) -> tuple[Ints, Ints]:
-        """The nodes (P,), sorted, and the plane triangles (M, 3) of the surface in views; of a fine
-        mesh the corners alone.
+        """The nodes (P,), sorted, and the plane triangles (M, 3) of the surface in views.
+
+        On a fine mesh these are corner nodes alone.
         """
         surface = self.fields.surface
         corners = surface.corners
@@ -63,7 +66,7 @@ class SolidSolution:
 
 
 def in_none(within: Iterable[Mask], count: int) -> Mask:
-    """Mask of the `count` points that are in none of some masks."""
+    """A mask of the `count` points that are in none of some masks."""
     return np.asarray(~np.any([np.zeros(count, dtype=bool), *within], axis=0))
 
 
@@ -74,16 +77,16 @@ class SolidField:
         self.solution = solution
 
     def maxima(self, loads: Loads, _: float = 0.0) -> Floats:
-        """Largest von Mises stress (T,) Pa at every instant outside the singularities."""
+        """The largest von Mises stress (T,), Pa, at every instant outside the singularities."""
         return envelope(self.solution.fields, loads, self.solution.outside).maxima
 
     def largest(self, loads: Loads) -> tuple[float, int]:
-        """The largest of these (Pa), and the number of its instant."""
+        """The largest von Mises stress over all instants, Pa, and the number of its instant."""
         top = envelope(self.solution.fields, loads, self.solution.outside)
         return top.maximum, top.instant
 
     def points(self, loads: PinLoads) -> StressPoints:
-        """Stress at points of the surface, for fatigue."""
+        """The stress at points of the surface, for fatigue."""
         fields, surface = self.solution.fields, self.solution.outside.copy()
         surface[len(fields.surface.nodes) :] = False
         return StressPoints.in_space(
@@ -114,4 +117,4 @@ class SolidField:
         )
 
     def volume(self, loads: PinLoads, instant: int) -> None:
-        """Return None: the picture has all of the body."""
+        """Return None, since the picture shows the whole body."""

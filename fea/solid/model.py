@@ -1,7 +1,7 @@
 """The solid model: a pin in tetrahedra, quadratic ones by default, under unit loads.
 
-One factorisation per mesh; each unit load that acts has a field per phase, of which the stress at
-any instant of any case is a linear combination.
+There is one factorisation for each mesh. Each unit load that acts has a field for each phase. The
+stress at any instant of any case is a linear combination of these.
 """
 
 from __future__ import annotations
@@ -32,15 +32,15 @@ _NO_POINTS = np.zeros((0, 3))
 
 @dataclass(frozen=True)
 class UnitFields:
-    """Fields of L unit loads, each in one phase, per unit of load.
+    """The fields of L unit loads, each in one phase, per unit of load.
 
     displacement: (N, 3, L) m.
     stress: (N, 6, L) Pa.
-    forces: (N, 3, L) N, on the nodes.
-    extra: (P, 3) m, further points inside the body where stress is read.
-    fixed: numbers of constrained displacement components, 3 n + c for component c of node n.
+    forces: (N, 3, L) N, at the nodes.
+    extra: (P, 3) m, additional points inside the body where stress is read.
+    fixed: numbers of the constrained displacement components, 3 n + c for component c of node n.
     support: (6, L) force and moment of the clamps about (0, 0, 0), from the residual of the system;
-    minus those of the load if the solution is right.
+    in equilibrium they are minus those of the load.
     revolved: whether the pin is a body of revolution.
     """
 
@@ -57,7 +57,9 @@ class UnitFields:
 
     @property
     def points(self) -> Floats:
-        """The points (S + P, 3), m, where stress is read: on the surface, then extra ones."""
+        """The points (S + P, 3), m, where stress is read: those on the surface, then the additional
+        ones.
+        """
         return np.concatenate([self.space.nodes[self.surface.nodes], self.extra])
 
     @cached_property
@@ -75,7 +77,7 @@ class UnitFields:
         return StrainEnergy(self.loads, forces.T @ moved)
 
     def coefficients(self, loads: Loads) -> Floats:
-        """The amount of each unit load at each instant, (T, L).
+        """The amount (T, L) of each unit load at each instant.
 
         Raises: ArgumentError when there is no field for a part of the loads.
         """
@@ -83,7 +85,7 @@ class UnitFields:
 
 
 def acting(cases: Iterable[PinLoads]) -> tuple[Unit, ...]:
-    """The unit loads of which the cases are made, in all phases, so that loads can be turned."""
+    """The unit loads of which the cases consist, in all phases, so that loads can be turned."""
     loads = dict.fromkeys(load for case in cases for load in case.coefficients())
     return tuple((load, phase) for load in loads for phase in load.phases)
 
@@ -91,11 +93,11 @@ def acting(cases: Iterable[PinLoads]) -> tuple[Unit, ...]:
 class SolidModel:
     """A pin on one mesh, clamped at surfaces (by name).
 
-    Without clamps the resultants of every load are taken up by closing tractions on the bands of
-    all connections, which cancel where loads are in balance, and six unknowns are constrained
-    against rigid motions.
+    Without clamps, closing tractions on the bands of all connections react the resultants of every
+    load; they cancel where loads are in balance. Six unknowns are then constrained against
+    rigid-body motions.
 
-    Leaves out: plasticity, contact and clearance (loads are tractions).
+    Plasticity, contact and clearance are not included: loads are tractions.
     """
 
     def __init__(
@@ -111,7 +113,7 @@ class SolidModel:
 
     @cached_property
     def fixed(self) -> Ints:
-        """Numbers of the constrained unknowns."""
+        """The numbers of the constrained unknowns."""
         if self.clamps:
             nodes = clamped_nodes(self.space, self.clamps)
             return (3 * nodes[:, None] + np.arange(3)).ravel()
@@ -120,8 +122,8 @@ class SolidModel:
     def solve(self, units: tuple[Unit, ...], extra: Floats = _NO_POINTS) -> UnitFields:
         """The unit fields of loads in their phases.
 
-        extra: (P, 3) m, further points inside the body. On surfaces that are no bands, only forces
-        may act.
+        On surfaces that are not bands, only forces may act.
+        extra: (P, 3) m, additional points inside the body where stress is read.
 
         Raises: SolveError when the pin is not constrained or a check fails.
         """
@@ -140,7 +142,11 @@ class SolidModel:
         )  # fmt: skip
 
     def _displace(self, F: Floats) -> tuple[Floats, Floats]:
-        """Displacements (N, 3, L) under nodal forces F (N, 3, L), and resultants of clamps."""
+        """The displacements (N, 3, L), m, under nodal forces F (N, 3, L), N, and the resultants (6,
+        L) of the clamps.
+
+        Raises: SolveError when the reactions do not balance the loads.
+        """
         shape, F = F.shape, F.reshape(self.space.unknowns, -1)
         free = np.setdiff1d(np.arange(self.space.unknowns), self.fixed)
         K = self.stiffness
@@ -162,7 +168,10 @@ class SolidModel:
 
 
 def rigid_modes(x: Floats) -> Floats:
-    """Three translations and three rotations (3 N, 6) about the origin of x (N, 3) m, scaled."""
+    """Three translations and three rotations (3 N, 6) about the origin.
+
+    x: (N, 3) m, nodes; rotations are scaled by the largest coordinate.
+    """
     x = x / np.abs(x).max()
     modes = np.zeros((len(x), 3, 6))
     for a in range(3):
@@ -173,7 +182,7 @@ def rigid_modes(x: Floats) -> Floats:
 
 
 def _isostatic(nodes: Floats) -> Ints:
-    """Six unknowns whose constraint prevents rigid motions, chosen well apart by a pivoted QR."""
+    """Six unknowns whose constraint prevents rigid-body motions, chosen far apart by pivoted QR."""
     _, _, pivot = scipy.linalg.qr(
         rigid_modes(nodes - nodes.mean(axis=0)).T, mode="economic", pivoting=True
     )

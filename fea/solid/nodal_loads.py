@@ -15,18 +15,18 @@ from fea.solid.boundary import Patch, SurfaceMesh, resultants
 from geometry import Band, GeometryError, PinLike
 from pinbase.arrays import Floats, Mask
 
-RESULTANT_TOLERANCE = 1e-10  # of the nodal forces: error of their resultant, by round-off
-# Parts of a band's area by which a mesh may differ from it; chosen by judgement.
+RESULTANT_TOLERANCE = 1e-10  # of the nodal forces: error of their resultant due to round-off
+# Largest difference of a band's area in the mesh, of its true area; chosen by judgement.
 MAX_CURVED_AREA_LOSS = 0.01  # with curved facets
 MAX_STRAIGHT_AREA_LOSS = 0.1  # with plane ones
 
 
 @dataclass(frozen=True)
 class NodalLoads:
-    """L unit loads on a mesh.
+    """L unit loads on a mesh, per unit of load.
 
     traction: (F, K, 3, L) Pa, at the nodes of the boundary's facets.
-    forces: (N, 3, L) N, on the nodes. Both per unit of load.
+    forces: (N, 3, L) N, at the nodes.
     """
 
     traction: Floats
@@ -40,9 +40,10 @@ def nodal_loads(
     boundary: SurfaceMesh,
     units: tuple[Unit, ...],
 ) -> NodalLoads:
-    """Unit loads on bands of a pin, on any other surface (uniform forces only), and on the whole.
+    """The unit loads on bands of a pin, on any other surface (uniform forces only), and on the
+    whole.
 
-    Raises: SolveError when the mesh cannot carry one, or a body load lacks the density.
+    Raises: SolveError when the mesh cannot represent a load, or a body load lacks the density.
     """
     lost = MAX_CURVED_AREA_LOSS if boundary.curved else MAX_STRAIGHT_AREA_LOSS
     t = np.zeros((*boundary.normals.shape, len(units)))
@@ -84,11 +85,11 @@ def with_closing_tractions(
     loads: NodalLoads,
     pressing: Mask | None = None,
 ) -> NodalLoads:
-    """The loads plus closing tractions on all bands that make each free of resultants.
+    """The loads with closing tractions on all bands, so that the sum has no resultants.
 
-    pressing: (L,) which loads are closed by pressures; none by default.
+    pressing: (L,) whether each load is closed by pressures; none by default.
 
-    Raises: SolveError when there is no band to take them up.
+    Raises: SolveError when there is no band to carry them.
     """
     patches = {name: Patch(space, boundary, name) for name in pin.connections}
     out = NodalLoads(loads.traction.copy(), loads.forces.copy())
@@ -100,7 +101,7 @@ def with_closing_tractions(
         unit, F = _closing(pin, space, boundary, patches, pressure)
         has = resultants(space.nodes, F)
         amount = np.zeros((F.shape[2], len(here)))
-        for _ in range(2):  # once more for round-off
+        for _ in range(2):  # the second pass removes round-off
             left = resultants(space.nodes, loads.forces[..., here] + F @ amount)
             amount -= np.linalg.solve(has, left)
         out.traction[..., here] += unit @ amount
@@ -115,7 +116,7 @@ def _closing(
     patches: dict[str, Patch],
     pressure: bool,
 ) -> tuple[Floats, Floats]:
-    """Closing tractions (F, K, 3, 6), Pa, and their nodal forces (N, 3, 6)."""
+    """The closing tractions (F, K, 3, 6), Pa, and their nodal forces (N, 3, 6), N."""
     fields: list[Floats] = []
     for n, phase in ((1, 0), (1, 1), (0, 0), (0, 1)):
         for everywhere in closing_tractions(pin, n, phase, pressure):
@@ -132,15 +133,19 @@ def _closing(
 
 
 def components(t: Traction, x: Floats, n: int, phase: int) -> Floats:
-    """A traction of harmonic n and a phase at points x (..., 3): along x, y and z, Pa."""
+    """The components (..., 3) along x, y and z, Pa, of a traction of harmonic n and a phase at
+    points x (..., 3), m.
+    """
     angle = np.arctan2(x[..., 1], x[..., 0])
     return vectors(t.at(x[..., 2]), n * angle - phase * np.pi / 2.0, angle, -1)
 
 
 def vectors(amplitude: Floats, psi: Floats, angle: Floats, axis: int) -> Floats:
-    """Vectors along x, y and z of a harmonic, from amplitudes along r, theta and z, on an `axis`.
+    """The vectors along x, y and z of a harmonic, from amplitudes along r, theta and z.
 
-    psi: of the harmonic, n theta - p pi / 2. angle: theta, both rad.
+    psi: n theta - p pi / 2 of the harmonic, rad.
+    angle: theta, rad.
+    axis: the axis of the arrays that has the three components.
     """
     radial, round_, along = np.moveaxis(amplitude, axis, 0)
     radial, round_, along = radial * np.cos(psi), round_ * np.sin(psi), along * np.cos(psi)
@@ -156,7 +161,7 @@ def _band(pin: PinLike, name: str) -> Band | None:
 
 
 def _resultant(load: UnitLoad, phase: int) -> Floats:
-    """Force and moment (6,) of a unit load about the band's middle."""
+    """The force and moment (6,) of a unit load about the band's middle."""
     out = np.zeros(6)
     if load.kind in ("force", "pull"):
         out[phase if load.n else 2] = 1.0
@@ -170,7 +175,7 @@ def _resultant(load: UnitLoad, phase: int) -> Floats:
 
 
 def _body_forces(material: Material, space: Discretisation, units: list[Unit]) -> Floats:
-    """Nodal forces (N, 3, L) of one m/s^2 on the whole body."""
+    """The nodal forces (N, 3, L), N, of an acceleration of 1 m/s^2 on the whole body."""
     shapes = np.stack([np.asarray(part[0]) for part in space.basis.basis])  # (K, M or 1, Q)
     shapes = np.broadcast_to(shapes, (len(shapes), *space.weights.shape))
     shares = np.einsum("imq,mq->mi", shapes, space.weights)
@@ -182,9 +187,11 @@ def _body_forces(material: Material, space: Discretisation, units: list[Unit]) -
 
 
 def relative_resultant(pin: PinLike, resultant: Floats, F: Floats) -> Floats:
-    """Forces and moments (6, L) relative to the sum of the sizes of nodal forces.
+    """The forces and moments (6, L) relative to the sum of the magnitudes of nodal force
+    components.
 
-    F: (N, 3, L) N. Moments are also divided by the pin's length.
+    Moments are also divided by the pin's length.
+    F: (N, 3, L) N, nodal forces.
     """
     arm = np.repeat([1.0, pin.length], 3)
     return np.asarray(np.abs(resultant) / arm[:, None] / np.abs(F).sum(axis=(0, 1)))

@@ -1,4 +1,4 @@
-"""Edges of any solid at which linear elasticity has no finite stress, found on its mesh."""
+"""The edges of a solid at which linear elasticity predicts unbounded stress, found on its mesh."""
 
 from __future__ import annotations
 
@@ -14,17 +14,19 @@ from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh
 from pinbase.arrays import Floats, Ints, Mask
 
-# Least turn of an inner corner: less is a facet of a curved wall, or hardly sharp; by judgement.
+# Least angle by which the surface turns at a sharp inner corner: less belongs to the facets of a
+# curved wall, or is hardly sharp. Chosen by judgement.
 MIN_EDGE_TURN = np.radians(40.0)
-FACET_SIDES = ((0, 1, 2), (1, 2, 0), (0, 2, 1))  # of a facet: ends and the corner across
+FACET_SIDES = ((0, 1, 2), (1, 2, 0), (0, 2, 1))  # sides of a facet: both ends, opposite corner
 
 
 @dataclass(frozen=True)
 class SharpEdges:
-    """Points (K, 3), m, along inner corners and along edges of clamps.
+    """The points (K, 3), m, along inner corners (first) and along edges of clamps.
 
+    corner, rim: the points of both.
     radius: (K,) m, of the body at their z.
-    limit: (K,) m, to which their zones reach at most.
+    limit: (K,) m, the largest radius of their zones.
     """
 
     corner: Floats
@@ -35,9 +37,10 @@ class SharpEdges:
     def singularities(self, x: Floats, part: float) -> list[tuple[Zone, Mask]]:
         """The zones near inner corners and near edges of clamps, with the points in each.
 
+        All inner corners make one zone, and all edges of clamps another. The reach of the nearest
+        point of an edge decides whether a point lies in the zone.
         x: (S, 3) m.
-        part: of the diameter, radius of the zones. All inner corners make one zone, all edges of
-        clamps another; of several corners the nearest counts.
+        part: radius of the zones, of the diameter.
         """
         first = len(self.corner)
         every = np.minimum(part * 2.0 * self.radius, self.limit)
@@ -48,8 +51,6 @@ class SharpEdges:
         zones = []
         for kind, points, reach, advice in kinds:
             if len(points):
-                # A point lies in the zone if it is within the reach of the nearest point of an
-                # edge.
                 distance, nearest = cKDTree(points).query(x)
                 at = points[0]
                 singularity = Zone(
@@ -73,10 +74,9 @@ _RADIUS_ADVICE = "a radius there would make it finite"
 class TurnedEdges:
     """The E edges between facets.
 
-    facets: (2, E) rows of the two facets among the boundary's.
+    facets: (2, E) numbers of the two facets among those of the boundary.
     nodes: (E, 2 or 3).
-    turn: (E,) rad,
-    by which the surface turns inwards: above zero at an inner corner.
+    turn: (E,) rad, by which the surface turns inwards; positive at an inner corner.
     """
 
     facets: Ints
@@ -87,11 +87,12 @@ class TurnedEdges:
 def turned_edges(
     space: Discretisation, surface: SurfaceMesh, plane: Floats | None = None
 ) -> TurnedEdges:
-    """All edges between facets, with their turn by the normals amid the edges.
+    """All edges between facets, with the angle by which the surface turns at each.
 
-    plane: (F, 3) normals that replace these.
+    The angle is that between the normals at the middle of the edge.
+    plane: (F, 3) normals of the facets that replace these.
     """
-    side_of = space.mesh.f2e[:, surface.facets]  # each is shared by two facets
+    side_of = space.mesh.f2e[:, surface.facets]  # each edge is shared by two facets
     order = np.argsort(side_of.ravel(), kind="stable").reshape(-1, 2)
     facet, side = (order % len(surface.facets)).T, (order // len(surface.facets)).T
     nodes = np.array(FACET_SIDES)[side[1]]  # of the second facet: ends, across
@@ -118,12 +119,13 @@ def sharp_edges(
     clamps: tuple[str, ...],
     limit: Callable[[Floats, Floats], Floats] | None = None,
 ) -> SharpEdges:
-    """Inner corners that turn by more than MIN_EDGE_TURN, and the rims of the clamped surfaces.
+    """The inner corners that turn by more than MIN_EDGE_TURN, and the rims of the clamped surfaces.
 
-    limit: radii (S,), m, to which zones reach at most, from r, z (S,), m; none by default.
+    limit: gives the largest radii (S,), m, of zones at r, z (S,), m; without it there is no limit.
     """
     clamped = surface.on(space, clamps)
-    # of facets made plane: sides that were straightened for the elements' sake kink curved ones
+    # Normals are those of plane facets: where sides were straightened for the quality of elements,
+    # curved facets have kinks.
     edges = turned_edges(space, surface, _plane_normals(space.nodes, surface))
     first, second = clamped[edges.facets]
     corner = (edges.turn > MIN_EDGE_TURN) & ~(first & second)
@@ -139,16 +141,18 @@ def sharp_edges(
 
 
 def _plane_normals(nodes: Floats, surface: SurfaceMesh) -> Floats:
-    """Outward unit normals (F, 3) of the plane triangles between the facets' corners."""
+    """The outward unit normals (F, 3) of the plane triangles between the facets' corners."""
     x = nodes[surface.corners[:, :3]]
     normals = np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0])
-    mean = surface.normals[:, -3:].sum(axis=1)  # amid the sides, where there are nodes
+    mean = surface.normals[:, -3:].sum(axis=1)  # at the middles of sides, or the corners if linear
     normals *= np.sign(np.sum(normals * mean, axis=1))[:, None]
     return np.asarray(normals / np.linalg.norm(normals, axis=1, keepdims=True))
 
 
 def _outer_radius(nodes: Floats, points: Floats) -> Floats:
-    """Largest distance (K,) of surface nodes from the z-axis near the z of points (K, 3)."""
+    """The largest distance (K,), m, of surface nodes from the z-axis near the z of points (K, 3),
+    m.
+    """
     r = np.hypot(nodes[:, 0], nodes[:, 1])
     order = np.argsort(nodes[:, 2])
     z, r, near = nodes[order, 2], r[order], 0.1 * r.max()

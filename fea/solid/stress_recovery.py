@@ -1,7 +1,7 @@
-"""Stress at the nodes of a solid from a displacement field.
+"""The stress at the nodes of a solid from a displacement field.
 
-Values at the quadrature points are extended linearly to each element's nodes and averaged there;
-on the surface the traction is known, and the stress is corrected to carry exactly that.
+Values at the quadrature points are extrapolated linearly to the nodes of each element and averaged
+there. On the surface the traction is known, and the stress is corrected to match it exactly.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pinbase.arrays import Floats, Mask
 
 
 def nodal_stress(space: Discretisation, material: Material, displacement: Floats) -> Floats:
-    """Stress (N, 6, L), Pa, at the nodes, of L displacement fields (N, 3, L), m."""
+    """The stress (N, 6, L), Pa, at the nodes, of L displacement fields (N, 3, L), m."""
     to_nodes = nodal_extrapolation(space.elements, space.basis.X, space.basis.elem.doflocs.T)
     fields = []
     for k in range(displacement.shape[2]):
@@ -29,11 +29,12 @@ def nodal_stress(space: Discretisation, material: Material, displacement: Floats
 def with_known_traction(
     stress: Floats, surface: SurfaceMesh, traction: Floats, clamped: Mask
 ) -> Floats:
-    """Stress (N, 6, L) corrected on the surface to carry the given traction.
+    """The stress (N, 6, L), Pa, corrected on the surface to match the given traction.
 
+    Nodes on clamps and on edges of the body are not changed. Where two tractions meet on a smooth
+    surface, their mean is taken.
     traction: (F, .., 3, L) Pa, at the nodes of the facets.
-    clamped: (F,) facets whose traction is unknown. Nodes there and on edges of the body are not
-    changed; where two tractions meet on a smooth surface their mean is taken.
+    clamped: (F,) the facets whose traction is unknown.
     """
     n_nodes = len(stress)
     node = surface.corners.ravel()

@@ -1,13 +1,13 @@
 """The maximum over all instants and all points that are read, by superposing unit fields.
 
 Von Mises squared is a quadratic form of the stress, so at every point it is c . M c with the
-instant's loads c: two matrix products cover any number of instants. With many unit loads the
-stresses themselves take fewer operations.
+amounts c of the unit loads at an instant: two matrix products cover any number of instants. With
+many unit loads, computing the stresses themselves takes fewer operations.
 
-A body of revolution must answer the same whichever way round it is loaded; its mesh does not quite.
-So all loads are also turned together about the axis: the mean over these directions is the maximum,
-and how far they scatter is a part of its error that is seen directly. Any other body is loaded as
-it is.
+The maximum of a body of revolution must not depend on the direction of its loads about the axis;
+because of the mesh it does slightly. So all loads are also turned together about the axis. The mean
+over these directions is the maximum, and their scatter is a directly observed part of its error.
+Any other body is loaded as it is.
 """
 
 from __future__ import annotations
@@ -23,11 +23,12 @@ from fea.core.voigt import VON_MISES
 from fea.solid.model import UnitFields
 from pinbase.arrays import Floats, Mask
 
-# They limit time and memory alone.
-MAX_PAIRED_LOADS = 12  # unit loads up to which products in pairs take less time than stresses
-PRODUCT_BATCH = 16  # instants of stresses at once
-KEPT_INSTANTS = 256  # instants whose squares at all points are kept at once
-# Directions to which loads are turned, chosen by judgement; odd, as opposite ones are equivalent.
+# These limit time and memory, and do not change the result.
+MAX_PAIRED_LOADS = 12  # most unit loads for which products of pairs take less time than stresses
+PRODUCT_BATCH = 16  # instants whose stresses are computed together
+KEPT_INSTANTS = 256  # instants whose squares at all points are held in memory together
+# Number of directions to which loads are turned, chosen by judgement; odd, since opposite
+# directions are equivalent.
 DIRECTION_COUNT = 9
 
 
@@ -36,10 +37,10 @@ class Envelope:
     """The largest von Mises stress of a case.
 
     maximum: Pa, at the governing `instant`, the mean over directions.
-    maxima: (T,) the same at every instant.
-    scatter: half its range over the directions, Pa.
+    scatter: half the range of that stress over the directions, Pa.
     location: m, with the loads as they are.
-    field: (S,) each surface node's largest over all instants, Pa.
+    field: (S,) Pa, the largest stress of each surface node over all instants.
+    maxima: (T,) Pa, the maximum at every instant.
     inside: the largest stress (Pa) and its location (m) in each excluded region.
     """
 
@@ -61,10 +62,10 @@ def envelope(
 ) -> Envelope:
     """The largest von Mises stress over the points of the fields and all instants of a case.
 
-    fields: with all the unit loads of which `loads` are made.
-    outside: (S + P,) points among which the maximum is looked for, all by default.
-    within: regions of which the largest stress is wanted as well.
-    directions: number of turned loads for a body of revolution.
+    fields: of all the unit loads of which `loads` consist.
+    outside: (S + P,) mask of the points that are searched, all by default.
+    within: masks of regions whose largest stress is found, too.
+    directions: number of directions to which the loads of a body of revolution are turned.
     """
     points, surface = fields.points, len(fields.surface.nodes)
     among = np.ones(len(points), dtype=bool) if outside is None else outside
@@ -103,9 +104,9 @@ def envelope(
 
 
 def squares(stress: Floats) -> Callable[[Floats], Floats]:
-    """A function that gives von Mises squared (S, T) from amounts of loads (T, L).
+    """Return a function that gives von Mises squared (S, T), Pa^2, from amounts of loads (T, L).
 
-    stress: (S, 6, L) unit stresses.
+    stress: (S, 6, L) Pa, unit stresses.
     """
     if stress.shape[2] > MAX_PAIRED_LOADS:
 

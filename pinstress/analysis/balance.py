@@ -1,9 +1,9 @@
-"""The stress inside a pin that is shown by cells, balanced with the forces on its sections.
+"""The stress inside a pin that is shown by cells, corrected to balance the forces on its sections.
 
 Cells show stress that is linear between their nodes. Behind a fillet the shear force is a small
-difference of large stresses, as an axial force is beside bending; for these that is too coarse:
-sections of the cells carry up to 5 % more or less than statics says. Stress that is smooth along
-the pin, and zero on its surface, makes up for it.
+difference of large stresses, and so is an axial force next to bending. Linear stress is too coarse
+for these: sections of the cells carry up to 5 % more or less than statics demands. The correction
+is a stress that is smooth along the pin and zero on its surface.
 """
 
 from __future__ import annotations
@@ -21,32 +21,34 @@ from geometry import Pin, meridian
 from geometry.mesh.clip import EIGHT_TETRAHEDRA
 from pinbase.arrays import Floats, Ints
 
-ON_SECTIONS = [4, 3, 2]  # rows of the stress: xz, yz, zz
-TETRAHEDRA = {  # that each type of cell is shown as
+ON_SECTIONS = [4, 3, 2]  # components of stress that act on sections: xz, yz, zz
+TETRAHEDRA = {  # into which each type of cell is split to be shown
     "tetra": np.array([[0, 1, 2, 3]]),
     "tetra10": EIGHT_TETRAHEDRA,
     "wedge": np.array([[0, 1, 2, 3], [1, 2, 3, 4], [2, 3, 4, 5]]),
 }
-# Edges from nodes below a section to nodes above it, of a tetrahedron in the order of z, triangle
-# by triangle, by the number of nodes below.
+# Triangles in which a section cuts a tetrahedron, by the number of nodes below the section. Each
+# corner lies on an edge from a node below to a node above; nodes are in the order of z.
 SECTIONS = {
     1: (((0, 1), (0, 2), (0, 3)),),
     2: (((0, 2), (0, 3), (1, 3)), ((0, 2), (1, 3), (1, 2))),
     3: (((0, 3), (1, 3), (2, 3)),),
 }
-LEVELS = 400  # sections at which forces are compared
-STEPS = 200  # between which the added stress is linear along the pin
+LEVELS = 400  # number of sections at which forces are compared
+STEPS = 200  # number of z between which the added stress is linear along the pin
 SMALLNESS, SMOOTHNESS = 0.01, 0.1  # weights of the added force, and of its change between steps
-MIN_DEPTH = 0.05  # of the largest: nodes that are less deep belong to the surface
+MIN_DEPTH = 0.05  # relative to the largest depth: nodes that are less deep belong to the surface
 
 
 def balanced(
     body: Picture, pin: Pin, surface: Floats, forces: Callable[[Floats], Floats]
 ) -> Picture:
-    """The body with stress that gives its sections their forces.
+    """The body with added stress, so that its sections carry the given forces.
 
-    pin: without cuts. surface: (P, 3) m, points of its surface, near each other at cuts.
-    forces: (S, 3) N along x, y and z on the part before z (S,), m; NaN where unknown.
+    pin: without cuts.
+    surface: (P, 3) m, points of the pin's surface, dense at cuts.
+    forces: function of z (S,), m, that returns the forces (S, 3), N, along x, y and z on the part
+    before each z; NaN where unknown.
     """
     points, tetrahedra = body.points, _tetrahedra(body)
     levels, steps = (_between_nodes(points[:, 2], count) for count in (LEVELS, STEPS))
@@ -65,8 +67,8 @@ def balanced(
     if not gain.any():  # a wall without nodes inside
         return body
     known = np.isfinite(wanted).all(axis=1)
-    # Amounts are scaled by the force that they would have if all were the same, so that those
-    # between two rows of nodes are not large.
+    # The unknowns are scaled by the force that a uniform added stress would have at each step, so
+    # that steps between two rows of nodes do not get large values.
     size = np.interp(steps, levels, gain.sum(axis=1)).clip(min=1e-9 * gain.sum(axis=1).max())
     changes = np.diff(np.eye(len(steps)), axis=0)
     rows = np.concatenate(
@@ -74,20 +76,22 @@ def balanced(
     )
     missing = np.concatenate([(wanted - carried)[known], np.zeros((2 * len(steps) - 1, 3))])
     amounts = np.linalg.lstsq(rows, missing, rcond=None)[0] / size[:, None]
-    more = np.stack([np.interp(points[:, 2], steps, a) for a in amounts.T], axis=1)
+    added = np.stack([np.interp(points[:, 2], steps, a) for a in amounts.T], axis=1)
     out = body.stress.copy()
-    out[:, ON_SECTIONS] += depth[:, None] * more
+    out[:, ON_SECTIONS] += depth[:, None] * added
     return replace(body, stress=out)
 
 
 def _tetrahedra(body: Picture) -> Ints:
-    """The linear tetrahedra (M, 4) that all cells are shown as."""
+    """The linear tetrahedra (M, 4) into which all cells are split."""
     by_type = {body.cell_type: body.cells, **body.more}
     return np.concatenate([c[:, TETRAHEDRA[k]].reshape(-1, 4) for k, c in by_type.items()])
 
 
 def _between_nodes(z: Floats, count: int) -> Floats:
-    """About `count` z, m, each amid two nodes, as dense as these."""
+    """About `count` values of z, m, each midway between two rows of nodes; half are spread like the
+    rows, half evenly.
+    """
     rows = np.unique(np.round(z, 12))
     middles = 0.5 * (rows[1:] + rows[:-1])
     even = np.linspace(rows[0], rows[-1], count // 2 + 2)[1:-1]
@@ -97,7 +101,7 @@ def _between_nodes(z: Floats, count: int) -> Floats:
 
 
 def _hats(z: Floats, steps: Floats) -> sp.csr_matrix:
-    """The matrix (S, N) of weights of each step at nodes, linear between steps."""
+    """The matrix (S, N) of the weight of each step at each node, linear between steps."""
     place = np.interp(z, steps, np.arange(len(steps)))
     before = np.minimum(place.astype(int), len(steps) - 2)
     part, node = place - before, np.arange(len(z))
@@ -107,7 +111,7 @@ def _hats(z: Floats, steps: Floats) -> sp.csr_matrix:
 
 
 def _areas(points: Floats, tetrahedra: Ints, levels: Floats) -> Iterator[Floats]:
-    """The part (N,), m^2, of each section that each node's value counts for."""
+    """The area (N,), m^2, of each section that counts for the value of each node."""
     order = np.argsort(points[tetrahedra, 2], axis=1, kind="stable")
     nodes = np.take_along_axis(tetrahedra, order, axis=1)
     z = points[nodes, 2]

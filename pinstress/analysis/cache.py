@@ -1,10 +1,10 @@
-"""Cache of earlier solutions: a folder of files, each named by the SHA-256 of everything on which
+"""Cache of earlier solutions in a folder of files, each named by the SHA-256 of everything on which
 its content depends.
 
-A file is a line with our name, the hash of its own name and its content, and the content
-(pinbase.records). A file that is damaged, renamed or of another type counts as
-missing, and so does a folder that cannot be written. Other programs, too, name files by hashes:
-only files that begin with our line are ever removed.
+A file consists of a signature line, the hash of its own name and content, and the content
+(pinbase.records). A file that is damaged, renamed or of another type counts as missing, and so does
+a folder that cannot be written. Other programs name files by hashes, too, so only files that begin
+with the signature are ever removed.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ from pinbase.records import pack, unpack
 
 T = TypeVar("T")
 
-CACHE_VARIABLE = "PINSTRESS_CACHE"  # the folder; empty or CACHE_OFF: none
+CACHE_VARIABLE = "PINSTRESS_CACHE"  # the folder; empty or CACHE_OFF: no cache
 CACHE_OFF = "off"
-MAX_CACHE_SIZE = 10**9  # bytes of all files; the longest unused go first
-# Packages that have a hand in an answer.
+MAX_CACHE_SIZE = 10**9  # bytes of all files; the least recently used are removed first
+# Packages of this program whose source affects a result.
 SOURCE_PACKAGES = ("assess", "fea", "geometry", "loads", "pinbase", "pinstress", "reports")
-# On which answers depend.
+# Distributions whose versions affect a result.
 REQUIRED_PACKAGES = (
     "pinstress",
     "numpy",
@@ -50,7 +50,7 @@ log = logging.getLogger(__name__)
 
 
 class OutcomeStore(Protocol):
-    """A store of solved pins by the content of all they depend on."""
+    """A store of solved pins, each under the content of all it depends on."""
 
     def key(self, inputs: object) -> str: ...
     def read(self, key: str, kind: type[T]) -> T | None: ...
@@ -59,20 +59,20 @@ class OutcomeStore(Protocol):
 
 @dataclass(frozen=True)
 class Cache:
-    """A folder of answers of one `program` (identified by the hash of its versions and source)."""
+    """A folder of results of one `program` (identified by the hash of its versions and source)."""
 
     folder: Path
     program: str
     limit: int = MAX_CACHE_SIZE
 
     def key(self, inputs: object) -> str:
-        """Return the name of the answer to a question (a value that pinbase.records
-        packs).
+        """Return the name under which the result for these inputs is stored (pinbase.records packs
+        them).
         """
         return hashlib.sha256(self.program.encode() + pack(inputs)).hexdigest()
 
     def read(self, key: str, kind: type[T]) -> T | None:
-        """Return the stored answer as a `kind`; None when there is none that can be trusted."""
+        """Return the stored result as a `kind`, or None if there is no intact one."""
         path = self._path(key)
         try:
             if not path.is_file():
@@ -81,19 +81,19 @@ class Cache:
             if seal != _seal(key, content):
                 raise ValueError("damaged")
             value = unpack(kind, content)
-            with suppress(OSError):  # of a folder that can only be read
-                os.utime(path)  # used now
-        except Exception as error:  # whatever is wrong with it, it is solved anew
+            with suppress(OSError):  # the folder may be read-only
+                os.utime(path)  # the time of last use
+        except Exception as error:  # whatever is wrong with the file, the pin is solved again
             log.debug("%s is not used: %s", path, error)
             return None
         return value
 
     def has(self, key: str) -> bool:
-        """Return whether there is an answer of this name, which may turn out to be damaged."""
-        return os.path.isfile(self._path(key))  # False, too, in a folder that may not be searched
+        """Return whether there is a result of this name, which may turn out to be damaged."""
+        return os.path.isfile(self._path(key))  # also False in a folder that may not be searched
 
     def write(self, key: str, value: object) -> None:
-        """Store an answer if possible; its file is complete or absent."""
+        """Store a result if possible; its file is complete or absent."""
         path = self._path(key)
         try:
             content = pack(value)
@@ -114,14 +114,13 @@ class Cache:
     def trim(self) -> None:
         """Remove the least recently used files until the rest is within the limit.
 
-        Partial files, which killed runs leave, count too; files with other names than ours are
-        kept.
+        Partial files, which killed runs leave, count too; files of other programs are kept.
         """
         files, room = [], self.limit
-        with suppress(OSError):  # it is not there, or not ours
+        with suppress(OSError):  # the folder is missing or not accessible
             for entry in os.scandir(self.folder):
                 if CACHE_FILE_PATTERN.fullmatch(entry.name) and _ours(entry.path):
-                    with suppress(FileNotFoundError):  # another run was quicker
+                    with suppress(FileNotFoundError):  # another run has just removed the file
                         seen = entry.stat(follow_symlinks=False)
                         files.append((seen.st_mtime_ns, seen.st_size, entry.path))
             for _, size, path in sorted(files, reverse=True):
@@ -136,9 +135,9 @@ class Cache:
 
 
 def user_cache() -> Cache | None:
-    """Return the user's cache, None when it is switched off or there is no folder for it.
+    """Return the user's cache, or None if it is switched off or there is no folder for it.
 
-    The folder is the one that PINSTRESS_CACHE names, else in the system's folder of caches
+    The folder is the one that PINSTRESS_CACHE names, or else one in the system's folder of caches
     (XDG_CACHE_HOME).
     """
     named = os.environ.get(CACHE_VARIABLE)
@@ -147,7 +146,7 @@ def user_cache() -> Cache | None:
     try:
         folder = Path(named).expanduser() if named else _usual()
         return Cache(folder.absolute(), program())
-    except (OSError, RuntimeError, ImportError) as error:  # no home, say
+    except (OSError, RuntimeError, ImportError) as error:  # the user has no home folder, say
         log.debug("no cache: %s", error)
         return None
 
@@ -161,7 +160,7 @@ def _usual() -> Path:
 def program() -> str:
     """Return the hash of versions and source, on which results depend in addition to the task.
 
-    The source is included so that a changed formula never meets answers of the old one.
+    The source is included so that a changed formula never reuses results of the old one.
     """
     made_by = [(name, _version(name)) for name in REQUIRED_PACKAGES], portable()
     digest = hashlib.sha256(repr(made_by).encode())
@@ -174,8 +173,8 @@ def program() -> str:
 
 
 def _version(name: str) -> str | None:
-    """Return the version of a package, None where it is not installed: pymetis is not on every
-    system.
+    """Return the version of a package, or None if it is not installed: pymetis does not exist for
+    every system.
     """
     try:
         return version(name)
@@ -195,7 +194,9 @@ def _split(data: bytes) -> tuple[bytes, bytes]:
 
 
 def _ours(path: str) -> bool:
-    """Return whether a file is ours, by its first line or by the suffix of partial files."""
+    """Return whether this program wrote a file, by its first line or by the suffix of partial
+    files.
+    """
     if path.endswith(PARTIAL_SUFFIX):
         return True
     try:

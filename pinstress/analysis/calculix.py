@@ -57,5 +57,5 @@ def _in_lugs(task: Task, rows: tuple[PinResult, ...], tell: Tell) -> tuple[Opini
 
 
 def slow_rows(plan: Plan) -> list[tuple[str, str]]:
-    """Return the pin and case of the rows that take CalculiX minutes."""
+    """Return the pin and case of the rows that CalculiX needs minutes for."""
     return [(t.pin.name, loads.case) for t in plan.tasks if t.lugs for loads in t.loads]

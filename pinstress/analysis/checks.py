@@ -1,4 +1,4 @@
-"""Optional checks of a study: a cantilever against beam theory, a motion against a closed form."""
+"""Optional comparisons of a cantilever with beam theory, and of a motion with a closed form."""
 
 from __future__ import annotations
 
@@ -45,7 +45,9 @@ def beam_check(study: Study, task: Task) -> BeamCheck:
 def motion_check(
     study: Study, loads: dict[str, CaseLoads], published: Published
 ) -> MotionCheck | None:
-    """Return a joint's speed and acceleration beside the closed form; None if not requested."""
+    """Return a joint's speed and acceleration compared with the closed form; None if not
+    requested.
+    """
     check = study.table.motion_check
     case = loads.get(check.case) if check else None
     if check is None or case is None:

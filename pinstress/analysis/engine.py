@@ -1,12 +1,12 @@
-"""A study that can be asked again, with changes; what a change does not touch is not solved again.
+"""A study that can be solved again with changes; what a change does not affect is not solved again.
 
-Every full answer is that of `pinstress.run` on the changed study, to the last bit. A quick one of a
-pin in contact is scaled from the study as it is (pinstress.analysis.scaled), or in full where its
-lugs press on it elsewhere, or on arcs too narrow for rough cells, and where the stress of lugs
-or of a hardened surface is wanted, which needs fine ones. The range over its joint is scaled, too,
-or that of the rough cells where it may be another one. Both answers are the same whatever was
-asked before: what is remembered has the content of everything it depends on as its
-key, and nothing is updated in place.
+A full answer equals that of `pinstress.run` on the changed study, to the last bit. A quick answer
+scales a pin in contact from the study as it is (pinstress.analysis.scaled). It solves the pin in
+full if contact has moved, if contact arcs are too narrow for rough cells, or if the stress of lugs
+or of a hardened surface is needed, which requires fine cells. The range over the joint is scaled,
+too; if the change may alter it, it is computed on rough cells instead. Neither answer depends on
+what was asked before: every stored result has the content of everything it depends on as its key,
+and nothing is updated in place.
 """
 
 from __future__ import annotations
@@ -57,45 +57,48 @@ Changes = Mapping[str, float | str]  # "pin.E.profile[2].diameter": 2.4, in the 
 
 AS_IS: Changes = MappingProxyType({})
 TABLES_WITHOUT_ROWS = "vary", "beam_check", "motion_check", "report"
-# Bytes: what nine pins in contact need for quick answers (50 MB each), and as much again.
+# Bytes: twice what nine pins in contact need for quick answers (50 MB each).
 ENGINE_MEMO_SIZE = 10**9
-QUICK_TOLERANCE = 0.1  # of a quick answer, whose error says how far it is to be believed
+QUICK_TOLERANCE = 0.1  # of a quick answer, which states its own error
 
 
 class SolvedPins:
-    """Solved pins by the content of all they depend on (pinstress.analysis.cache.OutcomeStore)."""
+    """A store of solved pins, each under the content of all it depends on (an OutcomeStore of
+    pinstress.analysis.cache).
+    """
 
     def __init__(self, memo: Memo) -> None:
         self._memo = memo
 
     def key(self, inputs: object) -> str:
-        """The name of what these inputs yield (pinbase.records packs them)."""
+        """The name of the result of these inputs (pinbase.records packs them)."""
         return hashlib.sha256(pack(inputs)).hexdigest()
 
     def read(self, key: str, kind: type[T]) -> T | None:
-        """The value of a key, a `kind`; None where nothing is remembered."""
+        """The value of a key, of type `kind`, or None if nothing is stored."""
         known = self._memo.read(key)
         return None if known is None else unpack(kind, known)
 
     def write(self, key: str, value: object) -> None:
-        """Remember a value."""
+        """Store a value."""
         self._memo.write(key, pack(value))
 
 
 @dataclass(frozen=True)
 class AsIs:
-    """A pin of the study as it is: its tasks, and by case its rows, in full and coarse."""
+    """A pin of the study as it is: its tasks, and for each case its full and its coarse row."""
 
     tasks: list[Task]
     rows: dict[str, tuple[PinResult, PinResult]]
 
 
 class Engine:
-    """A study, asked with changes. It lives in one process.
+    """A study that answers questions with changes. It lives in one process.
 
-    pins, cases: names; all by default. memo: of solved pins, and of the flexibilities, meshes and
-    unit fields of pins that have changed since, shared with other engines; by default two of its
-    own, of ENGINE_MEMO_SIZE and for answers.
+    pins, cases: names; all by default.
+    memo: a store of solved pins and of the flexibilities, meshes and unit fields of their variants,
+    which other engines may share. By default the engine has two of its own, one of ENGINE_MEMO_SIZE
+    and one for answers.
     """
 
     def __init__(
@@ -109,18 +112,19 @@ class Engine:
         self.study = study
         self._pins = None if pins is None else list(pins)
         self._cases = None if cases is None else list(cases)
-        # What is large must not displace answers, which are small.
+        # Large flexibilities and meshes must not displace answers, which are small.
         self._memo = Memo(ENGINE_MEMO_SIZE) if memo is None else memo
         self._answers = Memo() if memo is None else memo
         self._as_is: dict[str, AsIs] = {}
 
     @cached_property
     def _raw(self) -> Mapping[str, Any]:
-        """The content of the study, but for tables that no row needs."""
+        """The content of the study without the tables that no row needs."""
         return {k: v for k, v in raw_study(self.study).items() if k not in TABLES_WITHOUT_ROWS}
 
     def changed(self, changes: Changes = AS_IS) -> Study:
-        """The study with other values by their keys, in its own units or as texts with a unit.
+        """The study with other values, given by their keys, in its own units or as texts with a
+        unit.
 
         Raises: InputError with the key and what is wrong with its value.
         """
@@ -136,8 +140,9 @@ class Engine:
     def row(
         self, changes: Changes, pin: str, case: str, *, accuracy: Accuracy = "full"
     ) -> PinResult:
-        """One row of the answer, for which no other pin is solved, and nothing that only explains
-        it. Raises: InputError, also for a pin or case without a row.
+        """One row of the answer. No other pin is solved, and nothing that only explains the row.
+
+        Raises: InputError, also for a pin or case without a row.
         """
         rows = self.rows(changes, [pin], accuracy=accuracy)
         _require_row(pin, case, [name for _, name in rows])
@@ -146,7 +151,7 @@ class Engine:
     def rows(
         self, changes: Changes, pins: Iterable[str] | None = None, *, accuracy: Accuracy = "full"
     ) -> dict[tuple[str, str], PinResult]:
-        """The rows of some pins (all by default) by pin and case, as `row` has each.
+        """The rows of some pins (all by default) by pin and case, each as from `row`.
 
         Raises: InputError.
         """
@@ -162,9 +167,13 @@ class Engine:
     def slopes(
         self, changes: Changes, pin: str, case: str, keys: Collection[str]
     ) -> dict[str, float] | str:
-        """The derivatives of the largest stress of a row with respect to lengths and other numbers
-        of its pin, by their keys ("pin.E.profile[2].diameter"), in the study's units; or, as a
-        text, why there are none. Raises: InputError.
+        """The derivatives of the largest stress of a row with respect to numbers of its pin.
+
+        keys: of lengths and other numbers of the pin ("pin.E.profile[2].diameter").
+        Returns the derivatives by key, in the study's units, or the reason why there are none, as a
+        text.
+
+        Raises: InputError.
         """
         results = self._solved(changes, [pin], "full", sensitive=True)
         _require_row(pin, case, [s.case for s in results.sensitivities])
@@ -203,13 +212,17 @@ class Engine:
         return [self._quick(plan, task) for task in plan.tasks]
 
     def _quick(self, plan: Plan, task: Task) -> PinOutcome:
-        """The outcome of a task, scaled or on rough cells where either will do."""
+        """The outcome of a task, scaled or on rough cells where these suffice, otherwise in
+        full.
+        """
         if task.lugs and needs_fine_cells(task):
             return self._solve(plan, [task])[0]
         return (self._scaled(plan, task) if scalable(task) else None) or self._rough(plan, task)
 
     def _rough(self, plan: Plan, task: Task) -> PinOutcome:
-        """The outcome of a task on rough cells; in full where these are too large."""
+        """The outcome of a task on rough cells, or in full if these are too large for its
+        contact.
+        """
         rough = replace(plan, requirement=_quick(plan.requirement))
         outcome = self._solve(rough, [task])[0]
         again = any(map(too_rough, outcome.rows))
@@ -220,8 +233,8 @@ class Engine:
         return solve_tasks(plan, cache=SolvedPins(self._answers), memo=self._memo)
 
     def _scaled(self, plan: Plan, task: Task) -> PinOutcome | None:
-        """The outcome of a task, scaled from that of the study as it is, or in full where contact
-        has changed; None where it cannot be scaled.
+        """The outcome of a task, scaled from the study as it is, or in full if contact has changed;
+        None if the task cannot be scaled.
         """
         name = task.pin.name
         if name not in self._as_is:
@@ -229,7 +242,7 @@ class Engine:
         tasks, as_is = self._as_is[name].tasks, self._as_is[name].rows
         if not all(comparable(as_is[x.case][0]) for x in task.loads if x.case in as_is):
             return None
-        # Cases at other temperatures are tasks of their own, with other clearances.
+        # Cases at other temperatures are separate tasks, with other clearances.
         cases = {loads.case for loads in task.loads}
         same = all(same_ranges(x, task) for x in tasks if cases & {y.case for y in x.loads})
         varied = () if same else [loads.case for loads in task.loads]
@@ -246,7 +259,9 @@ class Engine:
         return PinOutcome(rows) if rows else None
 
     def _judged(self, plan: Plan, task: Task, now: tuple[PinResult, ...]) -> tuple[PinResult, ...]:
-        """The rows of a task scaled by its coarse ones; none where one cannot be scaled."""
+        """The rows of a task, scaled by its coarse rows `now` and assessed; empty if one cannot be
+        scaled.
+        """
         as_is = self._as_is[task.pin.name].rows
         of = for_task(plan.study, task, plan.requirement)
         rows = [
@@ -257,7 +272,9 @@ class Engine:
         return () if len(judged) < len(rows) else judged
 
     def _both(self, pin: str) -> AsIs:
-        """A pin of the study as it is; without rows where it cannot be built."""
+        """The full and coarse rows of a pin of the study as it is; empty if the pin cannot be
+        built.
+        """
         try:
             plan = replace(self._plan(self.study, self._raw, [pin]), explained=False)
         except InputError:
@@ -271,14 +288,14 @@ class Engine:
     def _coarse(
         self, plan: Plan, task: Task, varied: Collection[str] = ()
     ) -> tuple[PinResult, ...]:
-        """The rows of a task whose ratios are taken; none where they cannot be solved.
+        """The coarse rows of a task, whose ratios are taken; empty if they cannot be solved.
 
-        varied: the cases whose range over the joint is wanted, too.
+        varied: the cases whose range over the joint is needed, too.
         """
         as_is = self._as_is.get(task.pin.name)  # None while it is being made
         lasting = as_is is None or any(same_shape(x, task) for x in as_is.tasks)
         task, rows = elastic_task(task), list[PinResult]()
-        # By unit pressures each case is solved alone, and again only where its own loads change.
+        # With unit pressures each case is solved on its own, and again only if its loads change.
         for one in map(task.of_case, task.loads) if lasting else [task]:
             vary = any(loads.case in varied for loads in one.loads)
             requirement = coarse(plan.requirement, lasting, vary)
@@ -298,20 +315,24 @@ class Engine:
 
 
 def _quick(requirement: Requirement) -> Requirement:
-    """A requirement that few meshes meet, on rough cells of contact."""
+    """A requirement with rough contact cells and a tolerance that a few meshes meet."""
     tolerance = max(requirement.tolerance, QUICK_TOLERANCE)
     return replace(requirement, tolerance=tolerance, cells="rough")
 
 
 def _require_accuracy(accuracy: object) -> None:
-    """Raises: ChoiceError for what is not an accuracy, which would be taken for the quick one."""
+    """Raise ChoiceError for an unknown accuracy, which would otherwise be taken for the
+    quick one.
+    """
     if accuracy not in get_args(Accuracy):
         text = f"accuracy: must be 'full' or 'quick', not {as_text(accuracy)}"
         raise ChoiceError(text, code="unknown-accuracy")
 
 
 def _require_row(pin: str, case: str, cases: Collection[str]) -> None:
-    """Raises: ChoiceError for a case in which a pin has no row. cases: in which it has one."""
+    """Raise ChoiceError for a case in which a pin has no row. cases: those in which the pin has a
+    row.
+    """
     if case not in cases:
         text = f"case: pin {pin} has no row in case {as_text(case)}; {near(case, cases)}"
         raise ChoiceError(text, code="unknown-case")

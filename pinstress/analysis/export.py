@@ -1,4 +1,6 @@
-"""Decks for a reviewer: a row's pin at the governing instant, below the numbers to expect."""
+"""Input decks for a reviewer, with a row's pin at the governing instant and the expected numbers at
+the head.
+"""
 
 from __future__ import annotations
 
@@ -57,7 +59,7 @@ DIALECT_NOTES = {
 class ExpectedNumbers:
     """The numbers that a reviewer compares, as lines "key = value" in the deck's units.
 
-    row, results: in these units. task: of the pin.
+    row, results: in the same units.
     """
 
     row: PinResult
@@ -93,8 +95,8 @@ class ExpectedNumbers:
 def review_deck(study: Study, pin: str, case: str, dialect: Dialect, tell: Tell) -> list[str]:
     """Return the lines of the deck of a pin in a case, its head first.
 
-    Raises: InputError for a pin or case that does not exist, a row without a stress, and what the
-    deck cannot have.
+    Raises: InputError for a pin or case that does not exist, a row without a stress, and a pin that
+    the deck cannot represent.
     """
     plan = prepare(study, pins=[pin], cases=[case])
     plan = replace(plan, explained=False)

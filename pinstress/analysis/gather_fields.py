@@ -1,4 +1,4 @@
-"""Fields of pins, as reports show them."""
+"""Stress fields of pins, as reports show them."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.tasks import Task
 from reports.data.fields import BandLoad, Field, Still, Volume
 
-MAX_STILLS = 50  # of a motion, besides the governing instant
-MIN_DEPTH = 1e-3  # of the radius: what is less deep counts as the surface
+MAX_STILLS = 50  # instants of a motion, besides the governing one
+MIN_DEPTH = 1e-3  # relative to the radius: points that are less deep belong to the surface
 
 
 def field(
@@ -30,10 +30,11 @@ def field(
     also: ExtraFields = None,
     pressure: CellPressure | None = None,
 ) -> Field | None:
-    """Return a pin's field at its governing instant; None if not solved, or if the model has none.
+    """Return a pin's field at its governing instant; None if it is not solved, or the model has no
+    field.
 
-    also: adds the other instants, at most MAX_STILLS of them, or the whole of the pin.
-    pressure: contact pressure of its lugs.
+    also: adds the other instants, at most MAX_STILLS of them, or the whole volume of the pin.
+    pressure: contact pressure of the lugs on the pin.
     """
     peak = solution.peak
     solution = at_samples(solution, case)
@@ -77,9 +78,9 @@ def field(
 def _volume(
     task: Task, solution: Solution, surface: Floats, pressure: CellPressure | None
 ) -> Volume | None:
-    """Return the whole of a pin; None for a solid model, whose field has it already.
+    """Return the whole volume of a pin; None for a solid model, whose field includes it already.
 
-    surface: (P, 3) m, points of it.
+    surface: (P, 3) m, points of the surface.
     """
     assert solution.answer is not None
     shown = solution.answer.volume(solution.loads, solution.instant)
@@ -88,7 +89,7 @@ def _volume(
     held = solution.held if solution.pressure is not None else None
     profile = (held.pin if held else task.pin).profile
     if profile is not None:
-        # Here, for what is read from the cache loads no solver.
+        # Imported here, so that results from the cache load no solver.
         from fea.section.section_stress import SectionField
         from pinstress.analysis.balance import balanced
 
@@ -112,13 +113,15 @@ def _volume(
 
 
 def instants(count: int, governing: int) -> list[int]:
-    """Return at most MAX_STILLS of `count` instants, evenly spaced, and the governing one."""
+    """Return at most MAX_STILLS of `count` instants, evenly spaced, and the governing instant."""
     even = np.linspace(0, count - 1, min(count, MAX_STILLS)).round().astype(int)
     return sorted({*even.tolist(), governing})
 
 
 def at_samples(solution: Solution, case: CaseLoads) -> Solution:
-    """Return a solution with its loads at the case's samples and the governing instant only."""
+    """Return a solution with its loads at the samples of the case and at the governing instant
+    only.
+    """
     if solution.loads.times is None or case.reactions.times is None:
         return solution
     samples = np.flatnonzero(np.isin(solution.loads.times, case.reactions.times))
@@ -128,7 +131,7 @@ def at_samples(solution: Solution, case: CaseLoads) -> Solution:
 
 
 def _still(task: Task, answer: StressField, loads: PinLoads, instant: int, time: float) -> Still:
-    # Whose envelope is then of this instant only
+    # With the loads of one instant, the envelope is of this instant only.
     shown = answer.picture(loads.at(np.array([instant])), 0)
     assert shown is not None
     return Still(
@@ -158,9 +161,9 @@ def _bands(task: Task, loads: PinLoads, instant: int) -> tuple[BandLoad, ...]:
 
 def _outside(peak: Maximum) -> tuple[float, tuple[float, float, float]] | None:
     """Return the largest stress of the surface outside singularities and lug contact, and its
-    place.
+    position.
 
-    It is returned whether or not the singularities govern.
+    The value is returned whether or not the singularities govern.
     """
     places = peak.places
     if places is not None and places.contact is not None:
@@ -173,7 +176,9 @@ def _outside(peak: Maximum) -> tuple[float, tuple[float, float, float]] | None:
 def _beneath(
     task: Task, peak: Maximum, shown: Picture
 ) -> tuple[float, tuple[float, float, float]] | None:
-    """Return the row's stress and its place, if that is inside and only the surface is shown."""
+    """Return the row's stress and its position, if that is inside the pin and only the surface is
+    shown.
+    """
     profile, place = task.pin.profile, peak.location
     if shown.cell_type == "tetra10" or profile is None or peak.max_von_mises is None or not place:
         return None
@@ -181,8 +186,8 @@ def _beneath(
     bore, outer = profile.radii(z)
     if r > (1.0 - MIN_DEPTH) * outer or (bore and r < (1.0 + MIN_DEPTH) * bore):
         return None
-    # The walls of cuts, and the faces of steps, are surface, too: what is read there are points of
-    # it, but for the angle.
+    # Walls of cuts and faces of steps are surface, too. A maximum there coincides with a point of
+    # the surface except for its angle.
     x, y, at = shown.points.T
     on_surface = np.hypot(np.hypot(x, y) - r, at - z).min() < MIN_DEPTH * outer
     return None if on_surface else (peak.max_von_mises, place)

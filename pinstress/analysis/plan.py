@@ -1,4 +1,4 @@
-"""Plan of an analysis: the tasks to solve, after every input has been read and checked."""
+"""Plan of an analysis with its tasks, made after every input has been read and checked."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from pinstress.study.schema.cases import GivenCase
 from pinstress.study.schema.shown import as_text
 
 ExtraFields = Literal["motion", "solid"] | None
-LoadsOf = Callable[[Study, list[str]], dict[str, CaseLoads]]  # of cases, by their names
+LoadsOf = Callable[[Study, list[str]], dict[str, CaseLoads]]  # the loads of named cases
 
 
 def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
@@ -40,7 +40,7 @@ def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
     """
     wrong = Errors(study.path)
     mechanism = wrong.attempt(lambda: any_linkage(study)) if study.table.mechanism else None
-    if mechanism is not None:  # once, not in every case
+    if mechanism is not None:  # one error for the mechanism, instead of one for every case
         wrong.attempt(partial(determined, study, mechanism))
     given = [name for name in cases if isinstance(study.table.case[name], GivenCase)]
     possible = given if wrong.lines else cases
@@ -57,12 +57,12 @@ def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
 class Plan:
     """The inputs of an analysis before anything is solved; all have been read and checked.
 
-    pins: names of those that were chosen, also where no case loads them.
+    pins: names of the chosen pins, including those that no case loads.
     checked: the task whose pin the beam check compares, if any.
-    also: the fields that are wanted in addition to those of the model at the governing instant.
-    sensitive: whether sensitivities of all cases are wanted, instead of each pin's worst one only.
-    limit_load: whether the limit loads of all rows that yield are wanted, however long they take.
-    explained: whether what explains the rows is wanted, too: surfaces, histories, remedies,
+    also: the fields to keep in addition to those of the model at the governing instant.
+    sensitive: whether to compute sensitivities of all cases instead of each pin's worst case only.
+    limit_load: whether to compute the limit loads of all rows that yield, however long they take.
+    explained: whether to compute what explains the rows: surfaces, histories, remedies,
     sensitivities.
     """
 
@@ -99,10 +99,10 @@ def prepare(
     pins, cases: names; all by default.
     model, tolerance: override those of the study.
     memory: MB that a solid model may take, by default most of the free memory.
-    also: fields along the whole motion, or of the whole of a revolved pin.
+    also: additional fields, along the whole motion or of the whole volume of a revolved pin.
     limit_load: compute the limit load of every row that yields, however long it takes; otherwise
     the study decides, where "auto" gives each 20 s of processor time.
-    loads_of: gives the loads of cases.
+    loads_of: function that returns the loads of cases.
 
     Raises: InputError for bad input.
     """
@@ -114,7 +114,7 @@ def prepare(
     names = select(study.table.pin, pins, "pin")
     chosen = chosen_cases(study, cases)
     requirement = requirement_of(study, require_model(model), require_tolerance(tolerance), memory)
-    # A minor case may still damage a pin by its cycles.
+    # A case with a low maximum may still damage a pin by its cycles.
     requirement = replace(requirement, every=study.table.fatigue is not None)
     wrong = Errors(study.path)
     published = wrong.attempt(lambda: read_published(study))
@@ -140,7 +140,7 @@ def _require_solvable(
 ) -> Task | None:
     """Return the task whose pin the beam check compares, if any.
 
-    Raises: InputError with all mistakes that would end a run after some of its solutions.
+    Raises: InputError with all mistakes that would otherwise end a run after some of its solutions.
     """
     wrong = Errors(study.path)
     wrong.attempt(lambda: checks.motion_check(study, loads, published))
@@ -162,7 +162,7 @@ def requirement_of(
     tolerance: float | None = None,
     memory: float | None = None,
 ) -> Requirement:
-    """Return the requirement of a study on a solution.
+    """Return the requirement that a study places on a solution.
 
     model, tolerance, memory: as in `prepare`.
     """
@@ -178,21 +178,24 @@ def requirement_of(
 
 
 def for_task(study: Study, task: Task, requirement: Requirement) -> Requirement:
-    """Return a requirement with the joints and the factors of a task."""
+    """Return a requirement with the joints and the required factors of a task."""
     factors = required_factors(study, task.pin.name, (loads.case for loads in task.loads))
     every = requirement.every or _needs_every_case(study, task)
     return replace(requirement, joints=_joints(study, task), factors=factors, every=every)
 
 
 def needs_fine_cells(task: Task) -> bool:
-    """Return whether cells of contact must be fine in every case: the stress of lugs, and of the
-    parts of a hardened pin, has no error of cells of its own.
+    """Return whether contact needs fine cells in every case.
+
+    The stress of lugs and of the parts of a hardened pin has no estimate of the error of the cells.
     """
     return bool(task.material.hardened) or any(lug.shank for lug in task.lugs)
 
 
 def _needs_every_case(study: Study, task: Task) -> bool:
-    """Return whether the required factor against yield does not say enough of a minor case."""
+    """Return whether the maxima of minor cases are needed, too: for fine cells, or for requirements
+    beyond a factor against yield.
+    """
     if needs_fine_cells(task):
         return True
     pin, cases = task.pin.name, [loads.case for loads in task.loads]
@@ -200,12 +203,13 @@ def _needs_every_case(study: Study, task: Task) -> bool:
 
 
 def _joints(study: Study, task: Task) -> Joints:
-    """Return the joints by which lugs hold a pin."""
+    """Return the model of the joints by which lugs hold a pin."""
     joints = study.table.analysis.joints
     if joints == "contact" or joints == "foundation":
         return joints
     # A beam on foundations gives no pressure around the bores of lugs.
     if any(lug.shank for lug in task.lugs):
         return "contact"
-    # A beam sees no holes; damage depends on stress itself, not on a limit.
+    # A beam on foundations leaves out holes. Damage depends on the value of the stress, not only on
+    # whether it is below a limit.
     return "auto" if task.pin.revolved and study.table.fatigue is None else "contact"

@@ -14,7 +14,7 @@ from pinstress.study.reading.file import Study
 from pinstress.study.reading.published_tables import Published, PublishedRow
 from reports.data.mechanics import PublishedValue
 
-# quantity: what it is of, and its dimension
+# quantity: the kind of object that it belongs to, and its dimension
 PUBLISHED_QUANTITIES = {
     "force_x": ("connection", "force"),
     "force_y": ("connection", "force"),
@@ -114,7 +114,7 @@ def _of_body(row: PublishedRow, dynamics: Dynamics) -> Floats:
             joints = linkage.joints_on(row.name)
             (x1, y1), (x2, y2) = joints[0].at, joints[1].at
             angle = math.atan2(y2 - y1, x2 - x1) + motion.angle(row.name)
-            # of the angles a turn apart, the one nearest to the published
+            # of the equivalent angles, full turns apart, the one nearest to the published angle
             near = math.radians(row.value)
             return angle + 2.0 * math.pi * np.round((near - angle) / (2.0 * math.pi))
     _, velocity, acceleration = motion.centres

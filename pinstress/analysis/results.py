@@ -1,4 +1,6 @@
-"""Results of `pinstress.run`: those that the command writes, with access from notebooks."""
+"""Results of `pinstress.run`, which are also those that the command writes, with access from
+notebooks.
+"""
 
 from __future__ import annotations
 
@@ -39,8 +41,8 @@ if TYPE_CHECKING:
 class RunResults(Results):
     """Results in the study's units, with tables, frames, and fields by pin and case.
 
-    fields: those that were kept.
-    plan: used to solve pins without a kept field again.
+    fields: the fields that were kept.
+    plan: the plan by which a pin without a kept field is solved again.
     """
 
     fields: dict[tuple[str, str], Field] = dataclasses.field(default_factory=dict)
@@ -54,7 +56,7 @@ class RunResults(Results):
     def __getitem__(self, row: tuple[str, str]) -> Row:
         """Return the result of a pin in a case: results["E", "landing"].
 
-        Raises: KeyError that says which pins and cases there are.
+        Raises: KeyError, which lists the existing pins and cases.
         """
         return Row.of(super().__getitem__(row), self, self.to_pyvista)
 
@@ -74,7 +76,7 @@ class RunResults(Results):
         return {t.name: t for t in (*stress_tables(self), *load_tables(self))}
 
     def frame(self, table: str = "safety_factors") -> pandas.DataFrame:
-        """Return a table as a pandas frame, by default a line per pin and case.
+        """Return a table as a pandas frame, by default with a row for each pin and case.
 
         table: one of `tables`.
 
@@ -104,9 +106,10 @@ class RunResults(Results):
         return frame
 
     def to_pyvista(self, pin: str, case: str) -> pyvista.UnstructuredGrid:
-        """Return a pin's mesh with its fields at the governing instant, as its VTU file has them.
+        """Return a pin's mesh with its fields at the governing instant, with the contents of its
+        VTU file.
 
-        Raises: ValueError when the run kept no such field.
+        Raises: ValueError if the pin has no field in the case.
         """
         import pyvista
 
@@ -120,12 +123,12 @@ class RunResults(Results):
         mesh: pyvista.UnstructuredGrid = pyvista.wrap(grid(content))
         return mesh
 
-    mesh = to_pyvista  # its name before
+    mesh = to_pyvista  # the earlier name
 
     def picture(self, pin: str, case: str) -> Png:
         """Return a picture of a pin coloured by its von Mises stress.
 
-        Raises: ValueError as `to_pyvista`, RuntimeError where nothing can be drawn.
+        Raises: ValueError as `to_pyvista`, RuntimeError if nothing can be drawn.
         """
         import tempfile
         from pathlib import Path
@@ -222,11 +225,14 @@ def solve(
     cache: OutcomeStore | None = None,
     memo: Memo | None = None,
 ) -> RunResults:
-    """Solve what `prepare` returned; fields, jobs: as in `run`. cache: where pins that were solved
-    before are found, and the others kept. memo: of parts of their solutions.
+    """Solve the plan that `prepare` returned.
 
-    Raises: InputError where the study has [fatigue] and its extra is not installed, and for what is
-    no number of jobs, or no plan.
+    fields, jobs: as in `run`.
+    cache: where pins that were solved before are found, and the others stored.
+    memo: parts of solutions that other runs in this process share.
+
+    Raises: InputError if the study has [fatigue] and its extra is not installed, for an invalid
+    number of jobs, and for an argument that is not a plan.
     """
     given: object = plan
     if not isinstance(given, Plan):

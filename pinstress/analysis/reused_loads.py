@@ -1,4 +1,4 @@
-"""Loads of cases, computed again only where something has changed on which they depend."""
+"""Loads of cases, computed again only if something has changed on which they depend."""
 
 from __future__ import annotations
 
@@ -16,18 +16,20 @@ from pinstress.study.schema.cases import GivenCase, MechanismCase
 from pinstress.study.schema.landing import GroundCase
 from pinstress.study.schema.mechanism import MechanismTable
 
-# Of a study with a mechanism: its loads are computed on points, the pins' joints, whose shapes and
-# materials count only where they give a joint its weight, and links their places along it.
+# Tables that the loads of a mechanism do not depend on. A pin is only a point there, its joint. Its
+# shape and material count only for the joint's weight and for the positions of links along the pin,
+# which `content_of_loads` adds.
 TABLES_WITHOUT_LOADS = "pin", "material", "analysis", "vary", "published", "report", "size"
-# Of a load in a case: what no other case depends on.
+# Keys of a load in a case that no other case depends on.
 AMOUNTS = "force", "impulse"
 
 
 def reused_loads(raw: Mapping[str, Any], memo: Memo) -> LoadsOf:
-    """Return what computes loads, or finds them in a memo by the content of all they depend on.
+    """Return a function that computes loads, or finds them in a memo under the content of all they
+    depend on.
 
     raw: the content of the study (pinstress.study.reading.file.raw_study).
-    Files that the study names are read once, when their case is first asked for.
+    Files that the study names are read once, when their case is first requested.
     """
 
     def loads_of(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
@@ -56,8 +58,8 @@ def reused_loads(raw: Mapping[str, Any], memo: Memo) -> LoadsOf:
 
 
 def _without_amounts(raw: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return the content of a study with the places of the loads of its cases alone, on which a
-    mechanism may depend.
+    """Return the content of a study with the positions of its cases' loads but not their amounts; a
+    mechanism may depend on the positions.
     """
     cases = {
         name: {
@@ -73,14 +75,14 @@ def _without_amounts(raw: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _reusable(study: Study, case: str) -> bool:
-    """Return whether the loads of a case take a mechanism: given ones take no time, and are checked
-    against the pins.
+    """Return whether the loads of a case follow from a mechanism. Given loads take no time, and are
+    checked against the pins.
     """
     return study.table.mechanism is not None and not isinstance(study.table.case[case], GivenCase)
 
 
 def content_of_loads(study: Study, raw: Mapping[str, Any]) -> bytes:
-    """Return a hash of all on which the loads of a mechanism depend; empty without one.
+    """Return a hash of all that the loads of a mechanism depend on; empty without a mechanism.
 
     raw: the content of the study.
     """
@@ -89,20 +91,20 @@ def content_of_loads(study: Study, raw: Mapping[str, Any]) -> bytes:
         return b""
     tables = {key: value for key, value in raw.items() if key not in TABLES_WITHOUT_LOADS}
     joints = [(name, study.connections(name)) for name in table.pin]
-    weighed = [  # by their shape
+    weighed = [  # joints whose weight follows from the shape of the pin
         name
         for name, joint in mechanism.joint.items()
         if joint.weight is None and joint.fixed_in is None and name in table.pin
     ]
     weights = [(raw["pin"][x], table.material[table.pin[x].material].density) for x in weighed]
-    along = [_places(raw["pin"][x]) for x in table.pin] if bands_count(study) else []
+    along = [_places(raw["pin"][x]) for x in table.pin] if depends_on_bands(study) else []
     depends = [tables, joints, weights, along]
     return hashlib.sha256(json.dumps(depends, default=str).encode()).digest()
 
 
-def bands_count(study: Study) -> bool:
-    """Return whether forces may depend on where along the pins links bear on them: in space, and
-    out of the plane of a planar linkage.
+def depends_on_bands(study: Study) -> bool:
+    """Return whether forces may depend on the positions of links along the pins: in space, and out
+    of the plane of a planar linkage.
     """
     mechanism, cases = study.table.mechanism, study.table.case.values()
     if not isinstance(mechanism, MechanismTable):
@@ -116,8 +118,8 @@ def bands_count(study: Study) -> bool:
 
 
 def _places(pin: Mapping[str, Any]) -> Any:
-    """Return what places the bands and clamps of a pin: the lengths and names of its profile, or
-    all of it.
+    """Return what determines the positions of a pin's bands and clamps: lengths and names of its
+    profile and its clamps, or the whole table of a pin without a profile.
     """
     keys = "length", "connection", "name", "ear_of"
     segments = [[segment.get(key) for key in keys] for segment in pin.get("profile", ())]

@@ -1,4 +1,4 @@
-"""A row of the results of `pinstress.run`, with what notebooks ask of it; pictures they show."""
+"""A row of the results of `pinstress.run`, and pictures, as notebooks show them."""
 
 from __future__ import annotations
 
@@ -60,7 +60,8 @@ class Row(PinResult):
     ) -> Row:
         """Return the row of a run.
 
-        results: to which it belongs. mesh: gives the field of a pin in a case.
+        results: the results to which it belongs. mesh: function that returns the field of a pin in
+        a case.
         """
         bound = cls(**{f.name: getattr(row, f.name) for f in fields(row)})
         object.__setattr__(bound, "_results", results)
@@ -84,9 +85,9 @@ class Row(PinResult):
         )
 
     def plot(self) -> Svg:
-        """Return a drawing of the pin, with its stress along it where it has a profile.
+        """Return a drawing of the pin, with the stress along it if it has a profile.
 
-        Raises: ValueError for a pin from a file, of which `to_pyvista` gives the field.
+        Raises: ValueError for a pin from a file, whose field `to_pyvista` returns.
         """
         from reports.page.row_drawing import draw_row
 
@@ -96,8 +97,9 @@ class Row(PinResult):
         return Svg(drawing)
 
     def to_pyvista(self) -> pyvista.UnstructuredGrid:
-        """Return the pin's mesh with its fields at the governing instant, as its VTU file has them.
+        """Return the pin's mesh with its fields at the governing instant, with the contents of its
+        VTU file.
 
-        Raises: ValueError where the row has no field.
+        Raises: ValueError if the row has no field.
         """
         return self._mesh(self.pin, self.case)

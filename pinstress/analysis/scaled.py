@@ -1,10 +1,10 @@
-"""Rows of a changed study, scaled from those of the study as it is.
+"""Rows of a changed study, scaled from the rows of the study as it is.
 
-Two further solutions, of the study as it is and as it is changed, on one coarse mesh and rough
-cells (fea.support.contact.unit_pressures), are off by much the same part: their ratio, place by
-place, times the row that was solved in full is the row of the changed study. Where the change only
-multiplies all loads of a joint without gaps, this is exact. Otherwise the coarse solutions may be
-off by different parts; a share of what the first one is off by covers that.
+Both studies, as it is and as changed, are solved once more on one coarse mesh with rough contact
+cells (fea.support.contact.unit_pressures). The two coarse solutions have nearly the same relative
+error. So their ratio, place by place, times the row that was solved in full gives the row of the
+changed study. This is exact where the change only multiplies all loads of a joint without gaps.
+Otherwise the two relative errors may differ; a share of the first one (BIAS_SHARE) covers that.
 """
 
 from __future__ import annotations
@@ -29,61 +29,66 @@ from pinstress.study.model.impulses import ImpulseLoads
 from pinstress.study.model.tasks import Task
 from reports.data.row import LandingRange, PinResult
 
-# Relative: ratios of places that differ by less are those of one factor on all loads.
+# Relative: if the ratios of all places agree to this, the change scales all loads by one factor.
 PROPORTIONAL_TOLERANCE = 1e-7
-# What the ratio of two coarse solutions may be off by: of what the first one is off by, and at
-# least. Tuned on `python -m benchmarks edits`.
+# The relative error of the ratio of two coarse solutions, as a share of the relative error of the
+# first one, and at least. Tuned on `python -m benchmarks edits`.
 BIAS_SHARE, MIN_RATIO_ERROR = 0.5, 0.02
-# Where gaps open or arcs narrow, the ratios of places spread: by 1 to 20 % where all are right to
-# 2 %, by 50 to 80 % where surfaces on rough cells are off by 3 to 50 %. Of the spread, what a ratio
-# may be off by; and the spread beyond which rows are solved in full. Tuned on pin P of
-# studies/clevis.toml and H of landing_gear.toml with clearances of 0 to 2 % and loads down to 1 %.
+# Where gaps open or arcs narrow, the ratios differ between places: by 1 to 20 % where all of them
+# are right within 2 %, by 50 to 80 % where surface stresses on rough cells are wrong by 3 to 50 %.
+# The error of a ratio as a share of this spread, and the spread beyond which rows are solved in
+# full. Tuned on pin P of studies/clevis.toml and H of landing_gear.toml with clearances of 0 to 2 %
+# and loads down to 1 %.
 SPREAD_SHARE, MAX_SPREAD = 0.15, 0.4
-# Half of an arc, degrees: more than one and a half of the rough cells
-# (fea.support.contact.resolution.ROUGH). On narrower arcs stress is off by up to 50 %, and on
-# larger cells, by which the error is found, as much.
+# Half of a contact arc, degrees: more than one and a half of the rough cells
+# (fea.support.contact.resolution.ROUGH). On narrower arcs stress is wrong by up to 50 %, and just
+# as wrong on the larger cells that serve to estimate the error.
 MIN_HALF_ARC = 25.0
-# Relative: a fall of stress that leaves arcs as wide as they are. Chosen by judgement.
+# Relative: a decrease of stress up to which contact arcs keep their width. Chosen by judgement.
 MIN_FALL = 0.01
-# The most by which the upper end of a scaled range is too low: 1.7 was measured, by halving a load
-# (tests/pinstress/analysis/test_scaled.py).
+# The factor by which the upper end of a scaled range may be too low: 1.7 was measured, by halving a
+# load (tests/pinstress/analysis/test_scaled.py).
 MAX_WIDENING = 2.0
-NOMINAL_STRENGTH = 1e9  # Pa: of what is solved for any strength
-CLEARANCE_DIGITS = 12  # of clearances in metres that are compared
+NOMINAL_STRENGTH = 1e9  # Pa: the yield strength in solutions that serve for any strength
+CLEARANCE_DIGITS = 12  # decimals to which clearances in metres are compared
 SCALED_CODE = "scaled"
 RANGE_REMARK = "the range is that of the joint as the study has it"
 
 
 def scalable(task: Task) -> bool:
-    """Return whether rows of a task may be scaled: those of a pin without cuts in its lugs."""
+    """Return whether rows of a task may be scaled: its pin is in lugs and has no cuts."""
     return bool(task.lugs) and isinstance(task.pin, Pin)
 
 
 def coarse(requirement: Requirement, lasting: bool, varied: bool) -> Requirement:
-    """Return the requirement on the solutions whose ratio is taken.
+    """Return the requirement on the coarse solutions whose ratio is taken.
 
     lasting: whether the shape is to be solved again under other loads.
-    varied: whether the range over the joint is wanted, too.
+    varied: whether the range over the joint is needed, too.
     """
     cells: Literal["unit", "alone"] = "unit" if lasting else "alone"
     return replace(requirement, cells=cells, meshes=1, goal="value", required=None, varied=varied)
 
 
 def same_shape(one: Task, other: Task) -> bool:
-    """Return whether two tasks differ by loads, clearances and tilts only."""
+    """Return whether two tasks differ at most in loads, clearances, tilts and ranges, and in
+    strengths and names of materials.
+    """
     return _shape(one) == _shape(other)
 
 
 def same_ranges(one: Task, other: Task) -> bool:
-    """Return whether two tasks leave the same open of their joints, so that the range of one may
-    be scaled with its row to that of the other.
+    """Return whether two tasks have the same uncertain parameters of their joints, so that the
+    range of one task may be scaled with its row to the other.
     """
-    return _open_of_joint(one) == _open_of_joint(other)
+    return _uncertain_parameters(one) == _uncertain_parameters(other)
 
 
 def range_may_widen(before: PinResult, row: PinResult) -> bool:
-    """Return whether a scaled row is safe over a range that may say too little: under smaller loads
-    lugs press on narrower arcs, over which stress changes more with a clearance.
+    """Return whether a scaled row is safe, but its true range over the joint might not be.
+
+    Under smaller loads lugs press on narrower arcs, over which stress changes more with the
+    clearance.
     """
     if row.joint is None or row.joint.range is None or row.outcome not in (SAFE, BELOW_YIELD):
         return False
@@ -93,9 +98,10 @@ def range_may_widen(before: PinResult, row: PinResult) -> bool:
     return highest * (row.required or 1.0) > (row.yield_strength or 0.0)
 
 
-def _open_of_joint(task: Task) -> object:
-    """Return the ranges and the friction of lugs, and the clearances as given and at the
-    temperature of the case, with which a range that is not stated moves.
+def _uncertain_parameters(task: Task) -> object:
+    """Return what the range over the joint follows from: the stated ranges and the friction of the
+    lugs, and the clearances as given and at the temperature of the case, from which a range that is
+    not stated is derived.
     """
 
     def rounded(lengths: tuple[float, ...] | None) -> tuple[float, ...] | None:
@@ -139,14 +145,16 @@ def scaled_row(
     requirement: Requirement,
     over: ImpulseLoads | None = None,
 ) -> PinResult | None:
-    """Return the row of a changed study, not yet assessed; None where it cannot be scaled.
+    """Return the row of a changed study, not yet assessed, or None if it cannot be scaled.
 
-    row: of the study as it is, solved in full; before, now: of it and of the changed study, coarse.
-    task, requirement: of the changed study. over: the ranges of its landing's impulse, if any.
+    row: of the study as it is, solved in full.
+    before, now: coarse rows, of the study as it is and of the changed study.
+    task, requirement: of the changed study.
+    over: the forces over the range of the landing's impulse in the changed study, if any.
     """
     parts = [_comparable(x) for x in (row, before, now)]
     first, coarse_first, coarse_now = parts
-    # The range over the stiffness of links is not in proportion.
+    # The range over the stiffness of links is not proportional to the stress.
     if first is None or coarse_first is None or coarse_now is None or task.shared:
         return None
     ratios = {name: coarse_now[name] / coarse_first[name] for name in coarse_now}
@@ -167,12 +175,14 @@ def scaled_row(
 
 
 def contact_changed(before: PinResult, now: PinResult) -> bool:
-    """Return whether contact is so different in two coarse rows that their ratio says little."""
+    """Return whether contact differs so much between two coarse rows that their ratio is
+    unreliable.
+    """
     parts = _comparable(before), _comparable(now)
     if parts[0] is None or parts[1] is None:
         return False
     spread = _spread({name: parts[1][name] / parts[0][name] for name in parts[0]})
-    # On narrow arcs both are wrong, by different parts unless the loads are in proportion.
+    # On narrow arcs both are wrong, and by different parts unless the loads are proportional.
     return spread > MAX_SPREAD or (spread > PROPORTIONAL_TOLERANCE and narrow_arcs(now))
 
 
@@ -187,8 +197,8 @@ def narrow_arcs(row: PinResult) -> bool:
 
 
 def too_rough(row: PinResult) -> bool:
-    """Return whether rough cells do not follow where lugs press in a row that was solved on them:
-    on narrow arcs, or at the edges of lugs in which the pin leans.
+    """Return whether rough cells cannot resolve the contact in a row that was solved on them: on
+    narrow arcs, or at the edges of lugs in which the pin tilts.
     """
     if row.joint is None or row.joint.model != "contact" or row.places is None:
         return False
@@ -198,12 +208,12 @@ def too_rough(row: PinResult) -> bool:
 
 
 def comparable(row: PinResult) -> bool:
-    """Return whether a row has bounded stresses of all places, as contact gives them."""
+    """Return whether a row has bounded stresses at all places, as contact gives them."""
     return _comparable(row) is not None
 
 
 def _comparable(row: PinResult) -> dict[str, float] | None:
-    """Return the stresses of a row's places, Pa; None where one is missing or has no bound."""
+    """Return the stresses of a row by place, Pa, or None if one is missing or unbounded."""
     places = row.places
     if places is None or places.section is None or places.contact is None:
         return None
@@ -224,35 +234,36 @@ def _places(
     task: Task,
     requirement: Requirement,
 ) -> Places:
-    """Return the places of a row, scaled; where and when the largest stress is comes from `now`.
+    """Return the places of a row, scaled; position and instant of the largest stress come from
+    `now`.
 
-    ratios, drift: by place, of the coarse solutions, and the relative error of these.
+    ratios, drift: by place, the ratio of the coarse solutions and the relative error of the ratio.
     """
     assert row.places is not None
     assert now.places is not None
-    of, at = row.places, now.places
-    assert of.section is not None
-    assert at.section is not None
-    assert of.contact is not None
-    assert at.contact is not None
+    full, rough = row.places, now.places
+    assert full.section is not None
+    assert rough.section is not None
+    assert full.contact is not None
+    assert rough.contact is not None
 
     def stress(name: str, value: float, error: float) -> tuple[float, float, str]:
         scaled, relative = value * ratios[name], error / value + drift[name]
         known = "converged" if relative <= requirement.tolerance else "unconverged"
         return scaled, relative * scaled, known
 
-    a = stress("surface", of.surface.max_von_mises, of.surface.error_estimate)
-    b = stress("section", of.section.max_von_mises, of.section.error_estimate)
-    beneath, beneath_error, _ = stress("beneath", of.contact.beneath, of.contact.beneath_error)
-    surface = replace(at.surface, max_von_mises=a[0], error_estimate=a[1], verdict=a[2])
-    section = replace(at.section, max_von_mises=b[0], error_estimate=b[1], verdict=b[2])
-    strength, used = task.material.yield_strength, at.section.plastic_utilisation
+    a = stress("surface", full.surface.max_von_mises, full.surface.error_estimate)
+    b = stress("section", full.section.max_von_mises, full.section.error_estimate)
+    beneath, beneath_error, _ = stress("beneath", full.contact.beneath, full.contact.beneath_error)
+    surface = replace(rough.surface, max_von_mises=a[0], error_estimate=a[1], verdict=a[2])
+    section = replace(rough.section, max_von_mises=b[0], error_estimate=b[1], verdict=b[2])
+    strength, used = task.material.yield_strength, rough.section.plastic_utilisation
     used = None if strength is None or used is None else used * NOMINAL_STRENGTH / strength
     section = replace(section, plastic_utilisation=used)
-    depths = tuple((x * ratios["beneath"], depth) for x, depth in of.contact.depths)
-    bands = tuple(_band(band, task) for band in at.contact.bands)
+    depths = tuple((x * ratios["beneath"], depth) for x, depth in full.contact.depths)
+    bands = tuple(_band(band, task) for band in rough.contact.bands)
     contact = replace(
-        at.contact, beneath=beneath, beneath_error=beneath_error, depths=depths, edges=(),
+        rough.contact, beneath=beneath, beneath_error=beneath_error, depths=depths, edges=(),
         bands=bands,
     )  # fmt: skip
     governs: Place = "section" if b[0] > a[0] else "surface"
@@ -260,7 +271,7 @@ def _places(
 
 
 def _band(band: BandPressure, task: Task) -> BandPressure:
-    """Return a band with its part of the bearing strengths of a task's materials."""
+    """Return a band with its utilisation of the bearing strengths of a task's materials."""
     made_of = [task.material, *(x.bearing for x in task.lugs if x.connection == band.name)]
     known = [x.bearing_strength for x in made_of if x.bearing_strength]
     return replace(band, bearing_share=band.mean_pressure / min(known) if known else None)
@@ -273,7 +284,9 @@ def _with_reach(contact: ContactPlace, task: Task, requirement: Requirement) -> 
 
 
 def _peak(full: Maximum, now: Maximum, places: Places, tolerance: float) -> Maximum:
-    """Return the maximum of the row: that of the larger place, as uncertain as both."""
+    """Return the maximum of the row: the larger of surface and section, with an error that covers
+    both.
+    """
     assert places.section is not None
     both = [(x.max_von_mises, x.error_estimate) for x in (places.surface, places.section)]
     value, own = max(both)
@@ -302,18 +315,18 @@ def has_own_range(row: PinResult) -> bool:
 
 
 def _joint(row: PinResult, now: PinResult, peak: Maximum, drift: float) -> JointResult:
-    """Return the joint of a coarse solution with its range scaled to the maximum; where it has
-    none, with that of the row of the study as it is.
+    """Return the joint of a coarse solution with its range scaled to the maximum.
 
-    drift: the relative error of the ratios to the coarse solution.
+    A coarse solution without a range takes the range of `row`, of the study as it is.
+    drift: the relative error of the ratios of the coarse solutions.
     """
-    joint, of = now.joint, now if has_own_range(now) else row
+    joint, source = now.joint, now if has_own_range(now) else row
     assert joint is not None
-    if of.joint is None or of.joint.range is None:
+    if source.joint is None or source.joint.range is None:
         return joint
     largest = peak.max_von_mises or 0.0
-    by, deep = largest / (of.max_von_mises or 1.0), _beneath(peak) / _beneath(of.maximum)
-    drift, error = (drift, _error_taking_over(peak)) if of is now else (0.0, 0.0)
+    by, deep = largest / (source.max_von_mises or 1.0), _beneath(peak) / _beneath(source.maximum)
+    drift, error = (drift, _error_taking_over(peak)) if source is now else (0.0, 0.0)
 
     def scaled(x: Variation) -> Variation:
         interval = x.interval
@@ -324,15 +337,18 @@ def _joint(row: PinResult, now: PinResult, peak: Maximum, drift: float) -> Joint
         beneath = None if x.beneath is None else x.beneath * deep * (1.0 + drift)
         return replace(x, max_von_mises=by * x.max_von_mises, interval=interval, beneath=beneath)
 
-    variations = tuple(map(scaled, of.joint.range.variations))
+    variations = tuple(map(scaled, source.joint.range.variations))
     ends = range_ends(largest, variations)
-    over = replace(of.joint.range, max_von_mises=ends, variations=variations)
-    return replace(joint, range=over, remark=joint.remark if of is now else RANGE_REMARK)
+    over = replace(source.joint.range, max_von_mises=ends, variations=variations)
+    return replace(joint, range=over, remark=joint.remark if source is now else RANGE_REMARK)
 
 
 def _error_taking_over(peak: Maximum) -> float:
-    """Return the relative error of a surface that may take over from the section that governs,
-    which has hardly any; 0 where the surface governs, whose row has it.
+    """Return the relative error of a surface stress that may exceed the governing section's over
+    the range.
+
+    The section itself has hardly any error. The value is 0 where the surface governs, whose row has
+    the error.
     """
     places = peak.places
     if places is None or places.governs != "section":
@@ -348,10 +364,11 @@ def _beneath(peak: Maximum) -> float:
 
 
 def _landing(full: LandingRange, over: ImpulseLoads, peak: Maximum, task: Task) -> LandingRange:
-    """Return the results over a landing's ranges: the stress over the force of the study as it is,
-    by the force, times a factor that gives the maximum at the nominal force.
+    """Return the results over a landing's ranges.
 
-    Without gaps stress over force does not change but for the weights.
+    The stress per force of the study as it is, interpolated over the force, is multiplied by a
+    factor that gives the maximum at the nominal force. Without gaps, stress per force depends on
+    the force through the weights only.
     """
     order = np.argsort(full.force)
     per_force = full.max_von_mises[order] / full.force[order]

@@ -1,4 +1,4 @@
-"""Solution of the tasks of a plan in parallel; only the small results of each are kept."""
+"""Parallel solution of the tasks of a plan; only the small results of each task are kept."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ from pinstress.study.reading.file import Study
 from reports.data.fields import Field
 from reports.data.row import PinResult
 
-if TYPE_CHECKING:  # what solves is imported where a task is not in the cache
+if TYPE_CHECKING:  # the solvers are imported only for tasks that are not in the cache
     from fea.support.support import PinProblem, Solution
 
-# Of a dimension, m, whose effect is found.
+# The change of a dimension, m, for which its effect on the stress is reported, by system of units.
 DIMENSION_STEPS = {"in-lbf-s": 0.1 * 0.0254, "mm-N-s": 1e-3, "m-N-s": 1e-3}
 NO_FRICTION = "not included: friction in lugs, which needs the pressures of contact"
 
@@ -60,11 +60,11 @@ def solve_tasks(
     `failed`; the others continue.
 
     keep: called with every field, in the study's units, as soon as it exists, in the task's
-    process; without it fields are not made.
+    process; without `keep` no fields are made.
     progress: called with the current step and the completed part of the work.
     ask: gives a second opinion on a task, in the task's process, and reports its progress.
-    cache: where earlier tasks are looked up, and new ones are stored.
-    memo: of flexibilities and meshes, for tasks that are solved in this process.
+    cache: where earlier tasks are looked up and new ones are stored.
+    memo: flexibilities and meshes that tasks share, if they are solved in this process.
     """
     show = None if keep is None else partial(_in_units, plan.study.system.factor, keep)
     order = sorted(range(len(plan.tasks)), key=lambda i: effort(plan, plan.tasks[i]), reverse=True)
@@ -87,7 +87,9 @@ def _in_units(unit: Unit, keep: Keep, field: Field) -> None:
 
 
 def _together(plan: Plan, jobs: int) -> int:
-    """Return the number of jobs that fit the memory, if all were solids of the largest size."""
+    """Return the number of jobs that fit into memory, as if every job were a solid of the largest
+    size.
+    """
     if not any(effort(plan, task)[0] for task in plan.tasks):
         return jobs
     from fea.solid.evaluate import SOLID_MESHES
@@ -97,7 +99,7 @@ def _together(plan: Plan, jobs: int) -> int:
 
 
 def effort(plan: Plan, task: Task) -> tuple[bool, int, int, int]:
-    """Return a sort key by effort: solid or not, lugs, cases, instants.
+    """Return a sort key by effort: whether the pin is a solid, numbers of lugs, cases and instants.
 
     Lugs at connections, which move more than those of the structure, count twice.
     """
@@ -132,13 +134,15 @@ def _attempt(
 def _solve_once(
     plan: Plan, task: Task, keep: Keep | None, cache: OutcomeStore, memo: Memo | None, tell: Tell
 ) -> PinOutcome:
-    """Return a task's outcome from the cache; else solve it, and store it there.
+    """Return a task's outcome from the cache, or solve the task and store its outcome there.
 
-    Rows alone are also those of an outcome with what explains them.
+    A plan that needs rows only also accepts an outcome that was stored with its explanations.
     """
     key, lacking = entry_keys(plan, task, cache)
-    more = () if plan.explained else entry_keys(replace(plan, explained=True), task, cache)
-    entries = (cache.read(x, Entry) for x in (key, lacking, *more) if x is not None)
+    explained_keys = (
+        () if plan.explained else entry_keys(replace(plan, explained=True), task, cache)
+    )
+    entries = (cache.read(x, Entry) for x in (key, lacking, *explained_keys) if x is not None)
     entry = next((x for x in entries if x is not None and x.answers(task)), None)
     if entry is not None:
         tell(f"pin {task.pin.name}, as solved before")
@@ -161,10 +165,10 @@ def _solve_once(
 
 
 def entry_keys(plan: Plan, task: Task, cache: OutcomeStore) -> tuple[str, str | None]:
-    """Return the names of a task's outcome in the cache: with all limit loads, and without one that
-    would take too long, None where all are requested.
+    """Return two names of a task's outcome in the cache: with all limit loads, and without a limit
+    load that would take too long. The second is None where all limit loads are requested.
 
-    The latter does not answer a task that requests that limit load.
+    An outcome of the second name does not answer a task that requests the missing limit load.
     """
     key, seconds = cache.key(cache_key(plan, task)), limit_seconds(plan)
     return key, None if seconds == inf else cache.key(cache_key(plan, task, seconds))
@@ -181,7 +185,7 @@ def solutions(
 ) -> tuple[Solution, ...]:
     """Return the solutions of a task's cases.
 
-    memo: of flexibilities, meshes and unit fields, shared with other tasks.
+    memo: flexibilities, meshes and unit fields, shared with other tasks.
 
     Raises: ArgumentError, MeshError, SolveError.
     """
@@ -191,7 +195,7 @@ def solutions(
 
 
 def problem_of(task: Task, memo: Memo | None = None) -> PinProblem:
-    """Return a task as it is solved; memo: as in `solutions`."""
+    """Return the problem that a task poses to the solvers; memo: as in `solutions`."""
     from fea.support.support import PinProblem
 
     return PinProblem(
@@ -239,10 +243,10 @@ def _rows(
     """Return the rows of a task with their joints, ranges and limit loads."""
     from pinstress.analysis.gather.gather_landing import landing_range, sharing_range
 
-    ratio = plan.requirement.for_ratio  # which serves for the whole range
+    ratio = plan.requirement.for_ratio  # one ratio serves for the whole range
     landing = [None if ratio else landing_range(plan.loads, task, s) for s in solved]
     sharing = [None if ratio else sharing_range(task, s) for s in solved]
-    joints = _in_lugs(task, solved, tell) if task.lugs else _around(plan, task, solved)
+    joints = _in_lugs(task, solved, tell) if task.lugs else _ranges_around(plan, task, solved)
     limits = limit_loads(plan, task, solved, tell)
     of_lugs = lug_collapses(plan, task, tell)
     parts = zip(solved, joints, limits, landing, sharing, strict=True)
@@ -258,7 +262,9 @@ def _rows(
 def _in_lugs(
     task: Task, solved: tuple[Solution, ...], tell: Tell
 ) -> tuple[JointResult | None, ...]:
-    """Return the joint of a pin in lugs by case, with the stress of lugs whose shank is known."""
+    """Return the joint of a pin in lugs for each case, with the stress of the lugs whose shank is
+    known.
+    """
     if not any(lug.shank for lug in task.lugs):
         return tuple(s.joint for s in solved)
     from fea.lug.in_joint import lug_stresses
@@ -274,7 +280,7 @@ def _in_lugs(
                 varied = joint.range is not None and bool(joint.range.variations)
                 stress = lug_stresses(s.held.contact, case, shanks, varied, memo)
                 joint = replace(joint, lugs=stress)
-            except ArithmeticError as error:  # the pin's stress stands without that of its lugs
+            except ArithmeticError as error:  # the pin's stress is valid without that of its lugs
                 remark = f"no stress of the lugs: {error}"
                 joint = replace(joint, remark=_joined(joint.remark, remark))
         out.append(joint)
@@ -282,7 +288,7 @@ def _in_lugs(
 
 
 def unjudged(plan: Plan, task: Task, memo: Memo) -> tuple[PinResult, ...]:
-    """Return the rows of a task before they are assessed.
+    """Return the rows of a task before their assessment.
 
     Raises: ArgumentError, MeshError, SolveError.
     """
@@ -294,7 +300,7 @@ def _silent(_: str) -> None:
 
 
 def judged(plan: Plan, task: Task, tell: Tell, memo: Memo | None = None) -> PinOutcome:
-    """Return the outcome of a task with all that its rows are judged by, and without what only
+    """Return the outcome of a task with everything that judges its rows, but without what only
     explains them: pictures, surfaces, remedies, sensitivities.
 
     Raises: ArgumentError, MeshError, SolveError.
@@ -304,7 +310,7 @@ def judged(plan: Plan, task: Task, tell: Tell, memo: Memo | None = None) -> PinO
 
 
 def _bare(plan: Plan, task: Task, solved: tuple[Solution, ...], tell: Tell) -> PinOutcome:
-    """Return the rows of a task, and histories where fatigue judges by them."""
+    """Return the rows of a task, and the stress histories if fatigue is to be judged."""
     rows = _rows(plan, task, solved, tell)
     if plan.study.table.fatigue is None:
         return PinOutcome(rows)
@@ -318,10 +324,9 @@ def _with_notes(task: Task, peak: Maximum) -> Maximum:
 
 
 def _histories(task: Task, solved: tuple[Solution, ...]) -> tuple[tuple[PointHistory, ...], str]:
-    """Return the histories of stress at the pin's critical points, and why there are none if that
-    fails.
+    """Return the histories of stress at the pin's critical points, and the reason if they fail.
 
-    Such a failure must not discard the pin's stress.
+    The failure is caught, so that the pin's stress is not lost.
     """
     from assess.fatigue.critical_points import stress_histories
 
@@ -335,8 +340,12 @@ def _joined(*remarks: str) -> str:
     return "; ".join(filter(None, remarks))
 
 
-def _around(plan: Plan, task: Task, solved: tuple[Solution, ...]) -> tuple[JointResult | None, ...]:
-    """Return the range over lugs around a pin with prescribed clamps and loads, by case."""
+def _ranges_around(
+    plan: Plan, task: Task, solved: tuple[Solution, ...]
+) -> tuple[JointResult | None, ...]:
+    """Return, for each case, the range over the lugs around a pin with prescribed clamps
+    and loads.
+    """
     around = task.surroundings
     loads = [None if s.peak.governing is None else s.loads for s in solved]
     if around is None:

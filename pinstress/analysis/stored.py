@@ -1,5 +1,5 @@
-"""Outcome of a solved pin, the inputs on which it depends, and whether it can be stored for other
-runs.
+"""The outcome of a solved pin, the inputs on which it depends, and whether it may be stored for
+other runs.
 """
 
 from __future__ import annotations
@@ -24,23 +24,23 @@ from reports.data.row import PinResult
 from reports.data.sensitivities import PinSensitivities
 from reports.data.surface import Surface
 
-# Whose keys sensitivities have, and whose defaults change with other dimensions.
+# Tables whose keys appear in sensitivities, and whose defaults change with other dimensions.
 DIMENSION_TABLES = "profile", "meridian", "bore_meridian", "band", "lug"
 
 
 @dataclass(frozen=True)
 class PinOutcome:
-    """The solution of a task: a row for each of its cases, and the results of all of them.
+    """The solution of a task: a row for each of its cases, and the results of all cases.
 
-    rows: in the order of the cases. Every run completes them, as that takes little time and depends
-    on more of the study (assessed.situations, gather).
+    rows: in the order of the cases. Every run completes them again, as that takes little time and
+    depends on more of the study (assessed.situations, gather).
     surfaces: the stress on the surface of the pin.
-    histories: of the stress at its critical points; no_histories: why there are none, if computing
-    them failed.
+    histories: of the stress at the pin's critical points; no_histories: why there are none, if
+    computing them failed.
     sensitivities: of the worst case, or of all.
     remedy: the change by which the pin reaches its factor, if it does not.
-    beam_check: the comparison with a beam, if the study asks for it of this pin.
-    cached: whether it comes from an earlier run.
+    beam_check: the comparison with a beam, if the study requests it for this pin.
+    cached: whether the outcome comes from an earlier run.
     """
 
     rows: tuple[PinResult, ...]
@@ -55,23 +55,23 @@ class PinOutcome:
 
 @dataclass(frozen=True)
 class Entry:
-    """The content of the cache for a task."""
+    """The cached content for a task."""
 
     solved: PinOutcome
     fields: tuple[Field, ...]
 
     def answers(self, task: Task) -> bool:
-        """Return whether the entry is of this pin in these cases, after which files are named."""
+        """Return whether the entry is of this pin and these cases, whose names the files get."""
         rows = [(task.pin.name, loads.case) for loads in task.loads]
         solved_rows = [(row.pin, row.case) for row in self.solved.rows]
         return solved_rows == rows and {(f.pin, f.case) for f in self.fields} <= set(rows)
 
 
 def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
-    """Return all that the answer to a task depends on, except versions and memory, as a value that
-    pinbase.records packs.
+    """Return everything that the outcome of a task depends on, except versions and memory, as a
+    value that pinbase.records packs.
 
-    seconds: the time limit of an answer that lacks a limit load because of it.
+    seconds: the time limit because of which the outcome lacks a limit load.
     """
     study, cases = plan.study, [plan.loads[loads.case] for loads in task.loads]
     check = study.table.beam_check if task is plan.checked else None
@@ -106,9 +106,7 @@ def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
 
 
 def shape_of(pin: PinLike) -> object:
-    """Return a pin's shape, with the content of its file, as a value that
-    pinbase.records packs.
-    """
+    """Return a pin's shape, with the content of its file, as a value that pinbase.records packs."""
     if isinstance(pin, Pin | CutPin):
         return pin
     from geometry.imported.imported_pin import SolidBody
@@ -119,14 +117,16 @@ def shape_of(pin: PinLike) -> object:
     file = pin.file
     content = hashlib.sha256(read_regular(file.path, MAX_BODY_SIZE)).hexdigest()
     mesh = None
-    if pin.meshed:  # some formats have other files beside them: what was read counts
+    if pin.meshed:  # some formats refer to other files, so the mesh that was read counts
         read = pin.mesh(MeshSize()).mesh
         mesh = read.doflocs, read.t, read.boundaries
     return file.name, file.path.suffix, file.unit, file.places, content, mesh
 
 
 def independent_of_memory(plan: Plan, task: Task, peaks: Iterable[Maximum]) -> bool:
-    """Return whether more memory would give the same answer (fea.solve.solve is limited by it)."""
+    """Return whether more memory would give the same outcome (memory limits the meshes of
+    fea.solve.solve).
+    """
     from fea.solve.refine import count_loads, sequence_of  # imports the models
 
     open_ = [

@@ -1,4 +1,4 @@
-"""Points of a pin's meridian, and unit loads, that suffice to draw its surface."""
+"""Reduction of a pin's surface to the meridian points and unit loads that suffice to draw it."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from fea.core.unit_surface import UnitSurface
 from geometry.shape.chords import needed
 from reports.data.surface import Mask, SurfaceCase
 
-# Of the stress at a point, or of MIN_STRESS_SHARE of the largest one at the instant
+# Relative to the stress at a point, at least to MIN_STRESS_SHARE of the largest at the instant
 STRESS_TOLERANCE = 8e-3
 MIN_STRESS_SHARE = 0.1
 SAMPLE_ANGLES = 16
-# Of the eight numbers of a surface
+# Rows of the eight components of a surface: five stresses, three displacements
 STRESS_COMPONENTS, DISPLACEMENT_COMPONENTS = slice(0, 5), slice(5, 8)
-SAMPLE_INSTANTS = 8  # of a motion, about, besides the governing one
-DISPLACEMENT_TOLERANCE = 5e-3  # of the largest displacement
-OUTLINE_TOLERANCE = 2e-4  # of the length
-# Of the largest stress of a case: what a unit load must add at some instant
+SAMPLE_INSTANTS = 8  # approximate number of instants of a motion, besides the governing one
+DISPLACEMENT_TOLERANCE = 5e-3  # relative to the largest displacement
+OUTLINE_TOLERANCE = 2e-4  # relative to the length
+# Relative to the largest stress of a case: the least contribution of a unit load that is kept
 MIN_UNIT_LOAD_SHARE = 1e-2
 GOVERNING_WEIGHT = 5.0
-MAX_CORNER_COSINE = 0.94  # cosine of the turn at a corner, at most
-COINCIDENCE_DISTANCE = 1e-9  # of the length: points that are one
+MAX_CORNER_COSINE = 0.94  # the largest cosine of the change of direction that counts as a corner
+COINCIDENCE_DISTANCE = 1e-9  # relative to the length: closer points coincide
 
 
 def meridian_points(surface: UnitSurface, cases: Sequence[SurfaceCase], required: Mask) -> Mask:
     """Return which points (P,) of a meridian to keep.
 
-    They preserve the shape, displacements and stresses in all cases, except stresses that every
-    case excludes.
+    The kept points preserve the shape, displacements and stresses in all cases, except stresses
+    that every case excludes.
 
     required: (P,) points that are kept in any case.
     """
@@ -55,7 +55,7 @@ def meridian_points(surface: UnitSurface, cases: Sequence[SurfaceCase], required
         values.append(moved)
         allowed.append(np.full(moved.shape, DISPLACEMENT_TOLERANCE * float(np.abs(moved).max())))
     keep = required | _corners(x, COINCIDENCE_DISTANCE * size) | _ends(excluded)
-    # What never acts allows nothing, and misses nothing.
+    # A case without stress has zero tolerance; a tiny one lets its zeros pass.
     within = np.concatenate(allowed, axis=1) + np.finfo(float).tiny
     return needed(along, np.concatenate(values, axis=1), within, keep)
 
@@ -65,7 +65,8 @@ def fewer_loads(
 ) -> tuple[UnitSurface, list[SurfaceCase]]:
     """Return the surface with as few unit loads as reproduce the fields of all cases.
 
-    Where many act, as under contact, the significant singular vectors of every harmonic are taken.
+    The significant singular vectors of each harmonic replace its unit loads, of which there are
+    many under contact.
     """
     fields = np.concatenate([surface.stress, surface.displacement * _scale(surface, cases)], axis=1)
     acting = [_weighed(c) for c in cases]
@@ -102,8 +103,8 @@ def fewer_loads(
 def by_instants(
     surface: UnitSurface, cases: Sequence[SurfaceCase]
 ) -> tuple[UnitSurface, list[SurfaceCase]]:
-    """Return the surface of a body that is not of revolution with the fields at all instants of its
-    cases instead of those of unit loads, where these are more.
+    """Return the surface of a body that is not of revolution, with the fields at all instants of
+    its cases in place of the fields of unit loads, if there are fewer instants than unit loads.
     """
     amounts = np.concatenate([case.amounts[:, :, 0] for case in cases])
     if len(amounts) >= len(surface.n):
@@ -121,14 +122,16 @@ def by_instants(
 
 
 def _weighed(case: SurfaceCase) -> Floats:
-    """Return amounts for a largest stress of one, the governing instant weighted more."""
+    """Return amounts for which the largest stress is one, with more weight on the governing
+    instant.
+    """
     weight = np.ones(len(case.amounts))
     weight[case.instant] = GOVERNING_WEIGHT
     return np.asarray(case.amounts * weight[:, None, None] / (case.maxima.max() or 1.0))
 
 
 def _scale(surface: UnitSurface, cases: Sequence[SurfaceCase]) -> float:
-    """Return stress over displacement, Pa/m, of the first case that moves the pin."""
+    """Return the ratio of stress to displacement, Pa/m, in the first case that moves the pin."""
     for case in cases:
         stress, moved = (
             float(np.abs(_around(surface, case.amounts[case.instant], x)).max())
@@ -144,7 +147,9 @@ def _step(case: SurfaceCase) -> int:
 
 
 def _around(surface: UnitSurface, amount: Floats, which: slice) -> Floats:
-    """Return those of the surface's eight numbers, (P, C, SAMPLE_ANGLES), under amounts (K, 2)."""
+    """Return some components of the surface (`which`), (P, C, SAMPLE_ANGLES), under amounts
+    (K, 2).
+    """
     turns = surface.n * np.linspace(0.0, 2.0 * np.pi, SAMPLE_ANGLES, endpoint=False)[:, None]
     c, s = np.cos(turns), np.sin(turns)
     first, second = amount.T
@@ -155,13 +160,16 @@ def _around(surface: UnitSurface, amount: Floats, which: slice) -> Floats:
 
 
 def _ends(mask: Mask) -> Mask:
-    """Return the points whose neighbour differs."""
+    """Return the points whose neighbour has the other value of the mask."""
     differs = mask[1:] != mask[:-1]
     return np.asarray(np.append(differs, False) | np.insert(differs, 0, False))
 
 
 def _corners(x: Floats, close: float) -> Mask:
-    """Return the points (P,) at which the meridian turns sharply; they come in pairs."""
+    """Return the points (P,) at which the meridian changes direction sharply.
+
+    A corner has two points of one position.
+    """
     step = np.diff(x, axis=0)
     length = np.linalg.norm(step, axis=1)
     corners = np.zeros(len(x), dtype=bool)

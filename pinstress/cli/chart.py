@@ -1,4 +1,4 @@
-"""The `chart` command: solve all meshes, write the output folder, print the table."""
+"""The `chart` command, which solves all meshes, writes the output folder and prints the table."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def chart_and_write(
 
 
 def _require_contact(plan: ChartPlan) -> None:
-    """Raise an InputError for a pin that is not in contact."""
+    """Raise InputError for a pin that is not in contact."""
     if plan.chosen is None:
         raise InputError(
             "--second-opinion ccx: charts include CalculiX only for pins in contact with their "

@@ -1,4 +1,4 @@
-"""Describe the analyses that a study asks for, without solving."""
+"""Description of the analyses that a study requests, without solving."""
 
 from __future__ import annotations
 
@@ -56,11 +56,11 @@ MAX_SHOWN_JUMPS = 6
 
 @dataclass(frozen=True)
 class Examination:
-    """Everything known of a valid study before anything is solved.
+    """Everything known of a valid study before it is solved.
 
     lines: of the summary.
-    unheld: why unconstrained pins would not be solved.
-    warnings: of loads left over at other pins, and of designs that cannot be built.
+    unheld: the unconstrained pins, and why they would not be solved.
+    warnings: about unbalanced loads at other pins, lost fits, and designs that cannot be built.
     """
 
     lines: list[str]
@@ -85,11 +85,11 @@ def examine(study: Study) -> Examination:
     if mechanism is not None:
         described = wrong.attempt(partial(_mechanism, study, mechanism))
         lines += described or []
-        mechanism = mechanism if described else None  # its cases would say the same again
+        mechanism = mechanism if described else None  # its cases would repeat the error
     loads: dict[str, CaseLoads] = {}
     for name, case in table.case.items():
         if mechanism is not None or isinstance(case, GivenCase):
-            # Without extremes: it is enough that the mechanism can follow.
+            # Without extremes: here the mechanism only has to be able to follow its drives.
             case_result = wrong.attempt(partial(case_loads, study, name, mechanism, extremes=False))
             loads |= {} if case_result is None else {name: case_result}
     lines += [
@@ -133,7 +133,7 @@ def _requirement(table: RequireTable) -> str:
 
 
 def _sampled(vary: VaryTable) -> bool:
-    """Return whether anything in [vary] describes the designs of a sweep; laws alone are for
+    """Return whether [vary] describes the designs of a sweep; distributions alone are for
     `reliability`.
     """
     return bool(vary.model_fields_set & {"sample", "count"}) or any(
@@ -142,7 +142,7 @@ def _sampled(vary: VaryTable) -> bool:
 
 
 def _varied(study: Study, todo: list[Task]) -> list[str]:
-    """Describe the tasks of `sweep` and `reliability`, as far as the study asks for them."""
+    """Describe what `sweep` and `reliability` would do, as far as the study requests them."""
     vary = study.table.vary
     sampled = vary is not None and _sampled(vary)
     parameters = parameters_of(study, sampled)
@@ -167,9 +167,9 @@ def _varied(study: Study, todo: list[Task]) -> list[str]:
 def _impossible(study: Study) -> list[str]:
     """Return warnings about designs that cannot be built.
 
-    Raises: InputError for given forces that vary one by one, out of equilibrium.
+    Raises: InputError for given forces that vary independently and so lose their equilibrium.
     """
-    from pinstress.explore.sweep.evaluate import Evaluator  # imports what solves
+    from pinstress.explore.sweep.evaluate import Evaluator  # imports the solvers
     from pinstress.explore.sweep.possible import drawn, impossible_designs
 
     vary = study.table.vary
@@ -209,7 +209,7 @@ def _size(pin: PinLike, system: UnitSystem) -> str:
 
 
 def support_of(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> str:
-    """Describe what holds a pin with these clamps."""
+    """Describe the support of a pin with these clamps."""
     if lugs(study, pin, clamps):
         beam = study.table.analysis.joints == "foundation"
         return f"{'on foundations in' if beam else 'in contact with'} its lugs"
@@ -277,7 +277,7 @@ def _teeth(mechanism: Linkage) -> str:
 
 
 def _nothing(reactions: Reactions) -> str:
-    """Return a note where a case loads no pin."""
+    """Return a note if a case loads no pin."""
     loaded = reactions.forces.any() or reactions.moments.any()
     return "" if loaded else "; every force and moment on the pins is zero"
 

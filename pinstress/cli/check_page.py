@@ -1,4 +1,4 @@
-"""The page of a checked study: what `check --open` draws."""
+"""The page that `check --open` draws of a checked study."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ HTML_HEAD = b"<!doctype html"
 
 
 def require_page(path: Path) -> None:
-    """Check that no other file than such a page is where one is to be written.
+    """Check that the path of a new page is free or has an earlier page.
 
     Raises: InputError.
     """
@@ -80,7 +80,7 @@ def write_check_page(study: Study, examination: Examination, path: Path) -> None
 
 
 def _by_run(study: Study, name: str) -> bool:
-    """Return whether only a run finds the forces of a case: a check does not follow a drop."""
+    """Return whether only a run computes the forces of a case: a check does not simulate a drop."""
     case = study.table.case[name]
     return isinstance(case, DropCase) or (isinstance(case, GroundCase) and case.drop is not None)
 

@@ -1,4 +1,4 @@
-"""Messages on stderr at the end of a run: loads left out, reused pins, unconverged rows, rows in
+"""Messages on stderr at the end of a run: ignored loads, reused pins, unconverged rows, rows in
 which CalculiX differs; and before the run, the rows that will take long.
 """
 
@@ -74,7 +74,7 @@ def report_disagreements(results: Results) -> int:
 
 def report_violations(results: Results) -> int:
     """Report the pins that miss their required factor, as described or within a range that the
-    study leaves open, or have a negative margin; return the exit status.
+    study leaves open, or have a negative margin. Return the exit status.
     """
     short = [p for p in results.pins if p.outcome in (FAILS, YIELDS)]
     if short:
@@ -95,7 +95,9 @@ def report_violations(results: Results) -> int:
 
 def report_unchecked(results: Results) -> int:
     """Report the stated requirements that were not checked, or not decided although the row of the
-    pin is; return the exit status. What the choice of pins and cases leaves out does not count.
+    pin is. Return the exit status.
+
+    Requirements that the choice of pins and cases leaves out do not count.
     """
     rows = [
         row
@@ -113,7 +115,7 @@ def report_unchecked(results: Results) -> int:
 
 
 def report_status_zero(results: Results) -> None:
-    """Explain the exit status 0 where a pin misses its requirements, or may miss them."""
+    """Explain the exit status 0 if a pin misses its requirements, or may miss them."""
     if any(check.outcome in (FAILS, YIELDS, DEPENDS) for check in judged_checks(results)):
         click.echo(
             "Exit status 0: the run is complete; --fail-on-miss makes it 4 where a pin misses its "
@@ -123,8 +125,8 @@ def report_status_zero(results: Results) -> None:
 
 
 def report_missed(results: Results, decide: bool) -> int:
-    """Report the rows without a converged maximum or without a decision, and those that failed;
-    return the exit status.
+    """Report the rows without a converged maximum or without a decision, and those that failed.
+    Return the exit status.
 
     decide: whether the study only requests a decision on the required factor.
     """
@@ -183,12 +185,14 @@ def _governing(pin: PinResult) -> SingularZone | None:
 
 
 def _between(rows: list[PinResult]) -> str:
-    """Name the surfaces that meet at the singularity, if it is the same in all rows."""
+    """Return the surfaces that meet at the singularity, in brackets, if they are the same in all
+    rows.
+    """
     pairs = {zone.between for pin in rows if (zone := _governing(pin))}
     return f" ({' / '.join(pairs.pop())})" if len(pairs) == 1 else ""
 
 
 def _listed(rows: list[PinResult]) -> str:
-    """List pins with their cases: A (retract, landing), B (landing)."""
+    """Return the pins with their cases: A (retract, landing), B (landing)."""
     cases = grouped((p.pin, p.case) for p in rows)
     return ", ".join(f"{pin} ({', '.join(names)})" for pin, names in cases.items())

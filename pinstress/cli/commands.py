@@ -1,4 +1,4 @@
-"""The command line. Data go to stdout, progress and messages to stderr.
+"""The command line. Data go to stdout; progress and messages go to stderr.
 
 Numeric libraries are imported inside the commands that need them, so that `check` starts fast.
 """
@@ -72,7 +72,7 @@ def run_command_line(arguments: list[str]) -> int:
         if ended is None:
             raise
         if ended == EXIT_INTERRUPTED:
-            why = error.__cause__ or error  # click raises its own
+            why = error.__cause__ or error  # click wraps the error in its own
             left = str(why) if isinstance(why, Unfinished) else interrupts.left()
             click.echo(f"Interrupted; {left}.", err=True)
         return ended
@@ -81,7 +81,9 @@ def run_command_line(arguments: list[str]) -> int:
 
 
 def _status(error: BaseException) -> int | None:
-    """Report the error that ended a command; return its exit status, or None for a bug."""
+    """Report the error that ended a command. Return its exit status, or None for a programming
+    error.
+    """
     match error:
         case click.exceptions.NoArgsIsHelpError():
             error.show()  # the help itself, whole
@@ -120,13 +122,13 @@ def commands() -> None:
 
 
 def _settle_environment() -> None:
-    """Set environment variables that libraries read so that they do not affect a run.
+    """Set environment variables so that the user's environment does not change how libraries run.
 
-    One thread per numeric library; plots without windows; no pydantic plugins, for which it
-    searches all installed packages. An invalid SOURCE_DATE_EPOCH is removed, because libraries fail
-    on it at import (our files contain no time), and so is a width of no columns, which terminals
-    of unknown size state, because rich prints no table in it. Matplotlib is imported for colours
-    alone: that it has no folder for its fonts concerns nobody.
+    Numeric libraries get one thread each, and plots no windows. Pydantic gets no plugins, for which
+    it would search all installed packages. An invalid SOURCE_DATE_EPOCH is removed, because
+    libraries fail on it at import (our files contain no time). A COLUMNS of zero, which terminals
+    of unknown size set, is removed, because rich prints no table in that width. Matplotlib is
+    imported for its colours only, so its warning that it has no folder for fonts is suppressed.
     """
     hold_threads()
     if not os.environ.get("COLUMNS", "").strip("0"):

@@ -1,4 +1,4 @@
-"""The `compare` command: two results folders side by side."""
+"""The `compare` command, which shows two results folders side by side."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ MAX_PICTURES = 6
 
 
 def compare(first: Path, second: Path, out: Path | None, pictures: bool) -> int:
-    """Print the differences between two results folders, and write them into a folder if one is
+    """Print the differences between two results folders, and write them into a folder `out`, if
     given.
 
     Returns the exit status: 4 if a requirement was lost, 1 if something could not be drawn.
@@ -76,7 +76,7 @@ def _report_lost(comparison: RunComparison) -> int:
 
 
 def _plot(comparison: RunComparison, failed: dict[str, Failed]) -> str:
-    """Return the plot of the page as SVG; empty where there is none."""
+    """Return the plot of the page as SVG; empty if there is none."""
     plot = comparison_plot(comparison)
     return "".join(image for _, image in images([plot] if plot else [], failed))
 
@@ -154,8 +154,8 @@ def _pictures(
 def _drawing(
     opened: Opened, pair: RowPair, unit: float, path: Path
 ) -> Callable[[], list[Path]] | None:
-    """Return the function that draws one of two pictures with a common colour scale; None for a row
-    that is not in this run.
+    """Return the function that draws one of two pictures with a common colour scale, or None for a
+    row that is not in this run.
 
     unit: unit of stress, relative to that of the pair.
     """

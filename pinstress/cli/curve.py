@@ -1,4 +1,4 @@
-"""The `curve` command: factors against one number, as a table and a picture."""
+"""The `curve` command, which plots factors of safety against one number and writes a table."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ def curve_and_write(
     jobs: int | None,
     quiet: bool,
 ) -> int:
-    """Write curve.csv, curve.svg and curve.png into a folder; return the exit status, 1 where no
-    value has a factor.
+    """Write curve.csv, curve.svg and curve.png into a folder. Return the exit status: 1 if no value
+    has a factor.
 
     Raises: InputError.
     """
@@ -55,7 +55,7 @@ def curve_and_write(
 
 
 def number_or_text(value: str | None) -> float | str | None:
-    """Return what an option gives: a number, in the study's units, or a text with a unit."""
+    """Return the value of an option: a number, in the study's units, or a text with a unit."""
     if value is None:
         return None
     match split(value):

@@ -40,11 +40,13 @@ from pinstress.cli.shared import (
 def sweep(study: Path, out: Path | None, **options: Any) -> int:
     connection = chosen_connection(options)
     loaded = read_chosen(study, options)
-    from pinstress.cli.sweep import Way, sweep_and_write
+    from pinstress.cli.sweep import SweepOptions, sweep_and_write
 
     directory = out or Path("out") / f"{loaded.name}-sweep"
     pins, cases = options.pop("pins"), options.pop("cases")
-    return sweep_and_write(loaded, directory, pins, cases, Way(connection=connection, **options))
+    return sweep_and_write(
+        loaded, directory, pins, cases, SweepOptions(connection=connection, **options)
+    )
 
 
 @click.command(

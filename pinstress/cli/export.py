@@ -1,4 +1,4 @@
-"""The command `export`: a reviewer's deck of one row."""
+"""The `export` command, which writes the input deck of one row for a reviewer."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def export(
 
     try:
         lines = review_deck(loaded, pin, case, deck, tell)
-    except ChoiceError as error:  # of --pins, say others; here it is an argument without a name
+    except ChoiceError as error:  # its text begins with an option, but here it is an argument
         raise InputError(str(error).partition(": ")[2], code=error.code) from None
     content = "".join(f"{line}\n" for line in lines).encode("ascii")
     if force and path.exists():
@@ -71,9 +71,9 @@ def export(
 
 
 def _require_writable(path: Path, force: bool, make_folder: bool) -> None:
-    """Check a file's place before the pin is solved.
+    """Check that a file can be written, before the pin is solved.
 
-    make_folder: whether to make its folder.
+    make_folder: whether to create its folder.
 
     Raises: InputError.
     """
@@ -95,7 +95,7 @@ def _require_writable(path: Path, force: bool, make_folder: bool) -> None:
 def _replace(path: Path, content: bytes) -> None:
     """Replace a file in one step.
 
-    Raises: InputError where it cannot be written.
+    Raises: InputError if the file cannot be written.
     """
     staging = path.with_name(f"{path.name}.part")
     write_new(staging, content, "remove it")

@@ -1,4 +1,6 @@
-"""`size --least-weight`: the lightest pins that reach a factor, run and written."""
+"""The command `size --least-weight`, which finds the lightest pins that reach a factor and writes
+the new study.
+"""
 
 from __future__ import annotations
 
@@ -38,11 +40,11 @@ from reports.format.numbers import DASH, short
 from reports.format.ranges import factor_range
 from reports.text.least_weight import ChangedDimension, LightRow, print_light
 
-MAX_NAMED_BINDING = 4  # of what binds, that is named
+MAX_NAMED_BINDING = 4  # number of active constraints that are named
 
 
 @dataclass(frozen=True)
-class Wishes:
+class LeastWeightOptions:
     """Options of the command line for the least weight.
 
     vary: kinds of dimensions.
@@ -62,14 +64,14 @@ class Wishes:
         return [f"--{name}" for name, value in vars(self).items() if value is not None]
 
 
-def require_aim(goal: SizingGoal, wishes: Wishes, step: float | None) -> WeightGoal:
+def weight_goal(goal: SizingGoal, options: LeastWeightOptions, step: float | None) -> WeightGoal:
     """Return the goal of the search that the options describe.
 
     goal: the factors to reach. step: step to which diameters are rounded up, m.
 
     Raises: InputError for options that are invalid or contradict each other.
     """
-    vary = tuple(dict.fromkeys(wishes.vary or DIMENSION_KINDS))
+    vary = tuple(dict.fromkeys(options.vary or DIMENSION_KINDS))
     unknown = [kind for kind in vary if kind not in DIMENSION_KINDS]
     if unknown:
         raise InputError(
@@ -80,7 +82,7 @@ def require_aim(goal: SizingGoal, wishes: Wishes, step: float | None) -> WeightG
             "--step rounds diameters, which --vary leaves as they are; leave out one of them",
             code="contradiction",
         )
-    stated = {key: value for key in ("wall", "shoulder") if (value := getattr(wishes, key))}
+    stated = {key: value for key in ("wall", "shoulder") if (value := getattr(options, key))}
     return WeightGoal(goal.required, vary, Proportions(**stated), step, goal.multiples)
 
 
@@ -101,7 +103,7 @@ def lighten_and_write(
     jobs: number of pins in parallel, by default the number of cores.
     probability: largest probability of missing the factor; without it, the factor is that of the
     study as it is.
-    resume: whether to begin with the searches that an interrupted command has kept.
+    resume: whether to begin with the searches that an interrupted command has finished.
 
     Raises: InputError.
     """
@@ -126,7 +128,7 @@ def lighten_and_write(
 
 
 def _kept(state: SizeState[FinishedSearch], log: SearchLog) -> int:
-    """Return the number of finished searches; where there are none, nothing is left."""
+    """Return the number of finished searches; without any, remove the saved state."""
     if not len(log):
         state.end()
     return len(log)
@@ -140,7 +142,7 @@ def _write(
     quiet: bool,
     probability: float | None,
 ) -> int:
-    """Write and print the new study, and return the exit status."""
+    """Write the new study, print the dimensions, and return the exit status."""
     heavy = all(study.material_of(lightest.pin).density for lightest in design.pins)
     rows = [_row(study, design, lightest, aim, heavy) for lightest in design.pins]
     if changed := design.study.text != study.text and any(x.values or x.scale for x in design.pins):
@@ -211,8 +213,8 @@ def _row(
 
 
 def _unlikely(design: LightStudy, pin: str, aim: WeightGoal) -> str:
-    """Explain why the factor is not reached at a probability; empty if it is, or none is
-    requested.
+    """Return why the factor is not reached at a probability; empty if it is, or if no probability
+    is requested.
     """
     factors = {case: x for (name, case), x in design.at.items() if name == pin}
     unknown = [case for case, x in factors.items() if math.isnan(x)]
@@ -227,7 +229,9 @@ def _unlikely(design: LightStudy, pin: str, aim: WeightGoal) -> str:
 
 
 def _amount(study: Study, name: str, volume: float, heavy: bool) -> float:
-    """Convert a volume, m^3, to a weight in the study's units, or to a volume in them."""
+    """Return the weight of a volume, m^3, in the study's units; the volume itself unless
+    `heavy`.
+    """
     if not heavy:
         return volume / study.system.factor("length") ** 3
     of_one = (
@@ -238,7 +242,7 @@ def _amount(study: Study, name: str, volume: float, heavy: bool) -> float:
 
 
 def _dimensions(study: Study, new: Study, lightest: Lightest) -> list[ChangedDimension]:
-    """List the dimensions that changed."""
+    """Return the dimensions that changed."""
     from pinstress.analysis.remedies.dimensions import dimensions_of
 
     unit, table = study.system.factor("length"), f"pin.{key_part(lightest.pin)}"
@@ -252,7 +256,7 @@ def _dimensions(study: Study, new: Study, lightest: Lightest) -> list[ChangedDim
 
 
 def _bands(study: Study, new: Study, name: str) -> list[str]:
-    """List the links that bear on another diameter, with that diameter."""
+    """Return the links that bear on another diameter than before, with the new diameter."""
     unit, out = study.system.factor("length"), []
     old, now = pin_of(study, name), pin_of(new, name)
     for connection in now.connections:

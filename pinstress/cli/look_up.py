@@ -1,4 +1,4 @@
-"""What `pinstress fits` and `pinstress materials` print: limits and clearance of a fit, and the
+"""The output of `pinstress fits` and `pinstress materials`: limits and clearance of a fit, and the
 materials that a study may name, each value with its source.
 """
 
@@ -23,7 +23,9 @@ MICROMETRE = 1e-6
 
 
 def fits(size: str, classes: str, as_json: bool) -> None:
-    """Print the limits of a fit in the unit of its nominal size, which is a text; mm by default.
+    """Print the limits of a fit in the unit of its nominal size.
+
+    size: the nominal size as a text, in mm by default.
 
     Raises: InputError.
     """
@@ -63,7 +65,7 @@ def _micrometres(lengths: Iterable[float]) -> list[float]:
 
 
 def materials(name: str | None, file: Path | None, as_json: bool) -> None:
-    """Print the materials of the library and of a file, or the values of one of them.
+    """Print the materials of the library and of a file, or the values of one material.
 
     Raises: InputError for a file that cannot be read or has values that no study can use, and for
     an unknown name.
@@ -90,7 +92,7 @@ def materials(name: str | None, file: Path | None, as_json: bool) -> None:
 
 
 def _list(stored: list[StoredMaterial]) -> list[str]:
-    """Return a line for every material, and one that explains the incomplete ones."""
+    """Return a line for every material, and a line that explains the incomplete ones."""
     rows = [["material", *COLUMNS.values(), "source"]]
     for x in stored:
         name = f"{x.name} *" if x.missing else x.name
@@ -120,5 +122,5 @@ def _values(stored: StoredMaterial) -> list[str]:
 
 
 def _line(text: str) -> str:
-    """Return a text in one line, as a comment has it."""
+    """Return a text in one line, as a comment needs it."""
     return " ".join(text.split())

@@ -1,4 +1,4 @@
-"""The list of our files in an output folder, `.pinstress.json`.
+"""The manifest of an output folder, `.pinstress.json`: the list of the files that pinstress wrote.
 
 Only listed files are ever removed. Links are not followed; a link counts as a file of its folder.
 """
@@ -17,29 +17,29 @@ from reports.folder.inside import PARTIAL_SUFFIX as SUFFIX
 from reports.folder.inside import read_inside, write_inside
 
 MANIFEST_FILE = ".pinstress.json"
-# Of the list itself; a process that is killed while it writes the list leaves the second
+# Files of the manifest itself; a process that is killed while writing it leaves the second
 OWN_FILES = frozenset({MANIFEST_FILE, f"{MANIFEST_FILE}{SUFFIX}"})
 MANIFEST_SCHEMA = "pinstress-output/1"
 MAX_MANIFEST_SIZE = 10_000_000  # bytes
 
 
 def begin(folder: Path) -> None:
-    """Mark a folder as being written: everything in it is ours."""
+    """Mark a folder as being written: everything in it is from this run."""
     _write(folder, set())
 
 
 def complete(folder: Path) -> None:
-    """Write the list of all files in a folder."""
+    """Write the manifest of all files in a folder."""
     _write(folder, entries(folder))
 
 
 def add(folder: Path, names: list[str]) -> None:
-    """Add entries, before they are written, to the list of a folder that has one."""
+    """Add entries to the manifest of a folder, before they are written."""
     _write(folder, (listed(folder) or set()) | set(names))
 
 
 def drop(folder: Path, names: list[str]) -> None:
-    """Take entries, which are gone, from the list of a folder that has one."""
+    """Remove entries that no longer exist from the manifest of a folder."""
     _write(folder, (listed(folder) or set()) - set(names))
 
 
@@ -49,8 +49,8 @@ def partial_names(names: Iterable[str]) -> list[str]:
 
 
 def ours(folder: Path) -> set[str] | None:
-    """Return the entries that we may remove from a folder: the listed files, or everything if its
-    writer was killed while writing; None if the folder is not empty and has no list of ours.
+    """Return the entries that may be removed from a folder: the listed files, or everything if its
+    writer was killed while writing. None if the folder is not empty and has no manifest.
     """
     contents, known = entries(folder), listed(folder)
     if (known and known <= OWN_FILES) or contents <= OWN_FILES - {MANIFEST_FILE}:
@@ -59,8 +59,8 @@ def ours(folder: Path) -> set[str] | None:
 
 
 def listed(folder: Path) -> set[str] | None:
-    """Return the files that we wrote into a folder, with those of the list itself; None without a
-    list of ours.
+    """Return the files that pinstress wrote into a folder, with those of the manifest itself; None
+    without a manifest.
     """
     try:
         content: Any = json.loads(read_inside(folder, MANIFEST_FILE, MAX_MANIFEST_SIZE))
@@ -74,7 +74,7 @@ def listed(folder: Path) -> set[str] | None:
 
 
 def _is_below(name: str) -> bool:
-    """Return whether a name is that of something inside the folder."""
+    """Return whether a name refers to something inside the folder."""
     try:
         os.fsencode(name)
     except UnicodeEncodeError:
@@ -83,8 +83,8 @@ def _is_below(name: str) -> bool:
 
 
 def entries(folder: Path) -> set[str]:
-    """Return all entries of a folder, relative to it; folders end with a slash, links count as
-    files.
+    """Return all entries of a folder, relative to it; names of folders end with a slash, and links
+    count as files.
     """
     names = set()
     for at, folders, files in os.walk(folder, onerror=_raise):
@@ -96,8 +96,8 @@ def entries(folder: Path) -> set[str]:
 
 
 def first_link(folder: Path) -> str | None:
-    """Return an entry that is neither a regular file nor a folder, through which other files would
-    be read or written; None where there is none.
+    """Return an entry that is neither a regular file nor a folder, through which other files could
+    be read or written; None if there is none.
     """
     for name in sorted(entries(folder)):
         mode = (folder / name).lstat().st_mode
@@ -111,8 +111,8 @@ def remove(folder: Path, names: set[str]) -> None:
     for name in sorted(names, key=len, reverse=True):  # contents before their folder
         path = folder / name
         if any(p.is_symlink() for p in path.parents if folder in p.parents):
-            continue  # it is outside this folder
-        with suppress(OSError):  # gone already, or not empty
+            continue  # the entry is outside this folder
+        with suppress(OSError):  # already removed, or a folder that is not empty
             path.rmdir() if name.endswith("/") else path.unlink()
 
 

@@ -32,7 +32,7 @@ from pinstress.cli.streams import unneeded
 from pinstress.study.reading.errors import InputError, cannot_write
 
 JSON_OPTION = click.option("--json", "as_json", is_flag=True, help="Print JSON instead of text.")
-NEW_STUDIES = "pin_in_lugs.toml", "one_pin.toml"  # that init writes, the first to begin with
+NEW_STUDIES = "pin_in_lugs.toml", "one_pin.toml"  # studies that init writes; the first runs first
 
 
 @click.command(
@@ -51,7 +51,7 @@ def init(directory: Path, opens: bool) -> int:
     from reports.data.changes import as_argument
 
     target, *_ = targets = [directory / name for name in NEW_STUDIES]
-    if directory.suffix == ".toml":  # somebody takes it for the study's name
+    if directory.suffix == ".toml":  # the user takes the argument for the name of the study
         raise InputError(
             f"{directory}: name a folder; the studies are called {' and '.join(NEW_STUDIES)}",
             code="not-a-folder",
@@ -293,18 +293,22 @@ def size(
         raise InputError(f"--step: {error}", code="not-a-length") from None
     if metres is not None and metres <= 0.0:
         raise InputError("--step: must be positive", code="not-positive")
-    from pinstress.cli.least_weight import Wishes, lighten_and_write, require_aim
-    from pinstress.cli.size import SizeOptions, require_wish, size_and_write
+    from pinstress.cli.least_weight import LeastWeightOptions, lighten_and_write, weight_goal
+    from pinstress.cli.size import SizeOptions, size_and_write, sizing_goal
 
-    wished = Wishes(**{field.name: options.pop(field.name) for field in fields(Wishes)})
-    if wished.given and not least_weight:
-        raise InputError(f"{wished.given[0]} needs --least-weight", code="needs-least-weight")
+    least_options = LeastWeightOptions(
+        **{field.name: options.pop(field.name) for field in fields(LeastWeightOptions)}
+    )
+    if least_options.given and not least_weight:
+        raise InputError(
+            f"{least_options.given[0]} needs --least-weight", code="needs-least-weight"
+        )
     if least_weight and connection is not None:
         raise InputError("--scheduler is not for --least-weight", code="contradiction")
-    goal = require_wish(loaded, fos, metres)
+    goal = sizing_goal(loaded, fos, metres)
     if least_weight:
-        aim = require_aim(goal, wished, metres)
-        return lighten_and_write(loaded, aim, probability=wished.probability, **options)
+        aim = weight_goal(goal, least_options, metres)
+        return lighten_and_write(loaded, aim, probability=least_options.probability, **options)
     return size_and_write(loaded, goal, SizeOptions(connection=connection, **options))
 
 

@@ -1,5 +1,5 @@
-"""Files named by the user: an existing one is never overwritten without permission, except a file
-of JUnit results.
+"""Files that the user names, none of which is overwritten without permission, except a file of
+JUnit results.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import BinaryIO
 
 from pinstress.study.reading.errors import InputError, cannot_write
 
-JUNIT_HEAD_SIZE = 4096  # bytes, in which JUnit results begin
+JUNIT_HEAD_SIZE = 4096  # bytes at the start of a file in which JUnit results are recognised
 
 
 def require_new(path: Path, remedy: str) -> None:
@@ -28,9 +28,9 @@ def require_new(path: Path, remedy: str) -> None:
 
 
 def write_new(path: Path, content: bytes, remedy: str) -> None:
-    """Create a file, whole or not at all.
+    """Create a file, complete or not at all.
 
-    Raises: InputError if it exists or cannot be written.
+    Raises: InputError if the file exists or cannot be written.
     """
     try:
         with _created(path) as file:
@@ -43,7 +43,7 @@ def write_new(path: Path, content: bytes, remedy: str) -> None:
 
 @contextmanager
 def _created(path: Path) -> Iterator[BinaryIO]:
-    """Create a file, which is removed where the block ends with an error.
+    """Create a file, and remove it if the block ends with an error.
 
     Raises: OSError.
     """
@@ -58,11 +58,11 @@ def _created(path: Path) -> Iterator[BinaryIO]:
 
 
 def file_start(path: Path, option: str, size: int) -> bytes:
-    """Return the first bytes, `size` at most, of the file that an option names; none where there is
+    """Return the first bytes, at most `size`, of the file that an option names; empty if there is
     no file.
 
-    Raises: InputError for all but a regular file: reading a pipe may never end, and a device would
-    be replaced by a file.
+    Raises: InputError for anything but a regular file: reading a pipe may never end, and a device
+    would be replaced by a file.
     """
     try:
         mode = path.stat().st_mode
@@ -78,9 +78,11 @@ def file_start(path: Path, option: str, size: int) -> bytes:
 
 
 def require_junit(path: Path, directory: Path) -> Path:
-    """Check that JUnit results can be written: into a folder that exists, over nothing but such
-    results, and not into the output folder, which has no files but its own; return their file, to
-    which `path` may be a link.
+    """Check that JUnit results can be written, and return their file, to which `path` may be a
+    link.
+
+    The folder must exist, an existing file must contain such results, and the file must not be in
+    the output folder, which contains only its own files.
 
     Raises: InputError.
     """

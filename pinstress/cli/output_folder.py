@@ -1,10 +1,10 @@
-"""Output folders that are either complete or absent: written next to the target, then exchanged,
-in one step where the system has one.
+"""Output folders that are either complete or absent: written next to the target, then exchanged, in
+one step where the system has one.
 
 The folder being written, `.NAME.partial`, is locked by its writer; the lock is released however the
-writer ends. An unlocked one was left by a killed run and is removed. Only files that we wrote are
-removed (pinstress.cli.manifest), and no link is followed except the one that the user names with
---out.
+writer ends. An unlocked `.partial` folder was left by a killed run and is removed. Only files that
+pinstress wrote are removed (pinstress.cli.manifest), and no link is followed except the one that
+the user names with --out.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pinbase.processes.folder_lock import Release, lock
 from pinstress.cli import manifest
 from pinstress.study.reading.errors import InputError, cannot_write_out
 
-RESULTS_JSON = "results.json"  # what a run and the loads alone write
+RESULTS_JSON = "results.json"  # written by `run` and by `loads`
 RENAME_EXCHANGE, AT_FDCWD = 2, -100  # of Linux's renameat2
 NO_EXCHANGE_ERRORS = (errno.EINVAL, errno.ENOSYS, errno.EOPNOTSUPP)  # some network file systems
 
@@ -31,10 +31,10 @@ def require_replaceable(
 ) -> None:
     """Check that `directory` can be replaced.
 
-    mark: file that results of this command have.
-    also: tells which entries are ours in addition to those that are listed.
+    mark: a file that every results folder of this command contains.
+    also: whether an entry is from pinstress although the manifest does not list it.
 
-    Raises: InputError if that would destroy files that are not ours, or results of another command.
+    Raises: InputError if replacing would destroy other files, or results of another command.
     """
     try:
         if directory.exists() and not directory.is_dir():
@@ -42,9 +42,9 @@ def require_replaceable(
         contents = manifest.entries(directory) if directory.exists() else set()
         known = manifest.listed(directory)
         ours = manifest.ours(directory) is not None if contents else True
-    except OSError as error:  # it cannot be read, or its name is too long
+    except OSError as error:  # the folder cannot be read, or its name is too long
         raise InputError(f"--out: {directory}: {error.strerror}", code="cannot-read") from None
-    if ours and contents <= manifest.OWN_FILES:  # all else was deleted, or not begun
+    if ours and contents <= manifest.OWN_FILES:  # the other files were deleted or never written
         return
     if contents and mark not in contents:
         raise InputError(
@@ -71,7 +71,7 @@ def require_replaceable(
 def replacing(directory: Path, mark: str = RESULTS_JSON) -> Iterator[Path]:
     """Yield a folder to write into that becomes `directory` when the block ends without an error.
 
-    An existing folder is replaced if it contains `mark` and only files of ours.
+    An existing folder is replaced if it contains `mark` and only files that pinstress wrote.
 
     Raises: InputError if the folder cannot be created or written, or another run is writing it.
     """
@@ -82,7 +82,7 @@ def replacing(directory: Path, mark: str = RESULTS_JSON) -> Iterator[Path]:
     try:
         try:
             directory.parent.mkdir(parents=True, exist_ok=True)
-            with interrupts.deferred():  # between creating the folder and knowing that it is ours
+            with interrupts.deferred():  # until the new folder is known to be ours
                 release = _claim(partial, directory)
             _recover(earlier, directory)
         except OSError as error:
@@ -96,9 +96,9 @@ def replacing(directory: Path, mark: str = RESULTS_JSON) -> Iterator[Path]:
             if not _is_inside(error, partial):
                 raise
             raise cannot_write_out(directory, error) from error
-        require_replaceable(directory, mark)  # a run takes minutes
+        require_replaceable(directory, mark)  # files may have been added during the run
         try:
-            with interrupts.deferred():  # between the two steps of systems that have no exchange
+            with interrupts.deferred():  # systems without an exchange need two steps
                 _replace(partial, directory, earlier)
                 interrupts.state_left(f"{directory} is written")
         except OSError as error:
@@ -112,7 +112,7 @@ def replacing(directory: Path, mark: str = RESULTS_JSON) -> Iterator[Path]:
             _clear(partial)
             release()
         for parent in new_parents:
-            with suppress(OSError):  # it holds the results
+            with suppress(OSError):  # the folder contains the results
                 parent.rmdir()
 
 
@@ -123,20 +123,20 @@ def resolved(directory: Path) -> Path:
     """
     try:
         return directory.resolve()
-    except FileNotFoundError:  # only the current folder is looked up
+    except FileNotFoundError:  # raised only if the current folder no longer exists
         raise InputError(
             f"--out: {directory} would lie in the current folder, which no longer exists; change "
             "to another folder",
             code="no-current-folder",
         ) from None
-    except (OSError, RuntimeError):  # the latter of Python up to 3.12
+    except (OSError, RuntimeError):  # RuntimeError in Python up to 3.12
         raise InputError(
             f"--out: {directory} is a link that leads back to itself", code="circular-link"
         ) from None
 
 
 def _some(names: set[str]) -> str:
-    """Name the first few entries, top level first."""
+    """Return the names of the first few entries, top level first."""
     names = names - {manifest.MANIFEST_FILE} or names
     first = sorted(names, key=lambda name: (name.count("/") - name.endswith("/"), name))
     more = f" and {len(first) - 3} more" if len(first) > 3 else ""
@@ -144,7 +144,7 @@ def _some(names: set[str]) -> str:
 
 
 def _claim(partial: Path, directory: Path) -> Release:
-    """Create and lock an empty folder `partial` until it is released."""
+    """Create and lock an empty folder `partial`, and return the function that releases it."""
     while True:
         with suppress(FileExistsError):
             partial.mkdir()
@@ -152,7 +152,7 @@ def _claim(partial: Path, directory: Path) -> Release:
             release = lock(partial)
         except FileNotFoundError:  # the other run has just ended
             continue
-        except NotADirectoryError:  # a link, wherever it leads
+        except NotADirectoryError:  # a file, or a link to anything
             raise _in_the_way(partial) from None
         except BlockingIOError:
             raise InputError(
@@ -160,10 +160,10 @@ def _claim(partial: Path, directory: Path) -> Release:
                 code="locked",
             ) from None
         try:
-            _empty(partial)  # by a run that was killed
+            _empty(partial)  # a run that was killed may have left files
             manifest.begin(partial)
         except BaseException:
-            with suppress(OSError):  # what is there is not ours
+            with suppress(OSError):  # the folder contains files of others
                 partial.rmdir()
             release()
             raise
@@ -181,9 +181,9 @@ def _empty(partial: Path) -> None:
 
 
 def _clear(folder: Path) -> None:
-    """Remove our files from a folder, and the folder if it is then empty."""
+    """Remove the files that pinstress wrote from a folder, and the folder if it is then empty."""
     if folder.is_dir() and not folder.is_symlink():
-        with suppress(OSError):  # it contains something else
+        with suppress(OSError):  # the folder contains other files
             manifest.remove(folder, manifest.ours(folder) or set())
             folder.rmdir()
 
@@ -244,7 +244,9 @@ def _replace(partial: Path, directory: Path, earlier: Path) -> None:
 
 
 def _is_inside(error: OSError, folder: Path) -> bool:
-    """Return whether the error is from writing into `folder`; an error of a full disk always is."""
+    """Return whether an error is from writing into `folder`; an error of a full disk always
+    counts.
+    """
     if error.errno in (errno.ENOSPC, errno.EFBIG, errno.EDQUOT):
         return True
     name = error.filename

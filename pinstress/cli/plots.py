@@ -1,7 +1,7 @@
 """The `plots` and `pdf` commands, which write the plots and pictures of a report as files.
 
-They are drawn elsewhere, by engines in processes of their own, and come into the folder one by one,
-each complete or not at all.
+Files are drawn in a temporary folder, by engines in processes of their own. They are added to the
+results folder one by one, each complete or not at all.
 """
 
 from __future__ import annotations
@@ -41,19 +41,19 @@ PLOTS_FOLDER, PDF_FILE = "plots", "report.pdf"
 PICTURE_MODULES = ("pyvista.plotting",)
 NO_PAGE_MESSAGE = "no report.html of this version of pinstress to print; run it again"
 MAX_NAMED_FILES = 3
-PICTURE_SECONDS, PDF_SECONDS = 120, 600  # of processor time; the largest take a tenth
+PICTURE_SECONDS, PDF_SECONDS = 120, 600  # limits of processor time; the largest take a tenth
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """Files that were drawn, and reasons why others were not, by their names in the folder."""
+    """Files that were drawn, and the failures of the others, by their names in the folder."""
 
     paths: tuple[Path, ...]
     failed: dict[str, Failed]
 
 
 def plots(directory: Path, quiet: bool = False) -> int:
-    """Draw the plots and the pins of a results folder into its folder `plots`.
+    """Draw the plots and the pins of a results folder into its subfolder `plots`.
 
     Returns the exit status: 1 if something could not be drawn.
 
@@ -86,7 +86,7 @@ def pdf(directory: Path) -> int:
 
 
 def draw_and_print(directory: Path, plots: bool, pdf: bool, quiet: bool = False) -> int:
-    """Add drawings and report.pdf to the results of a run that are in place.
+    """Add drawings and report.pdf to the complete results of a run.
 
     Returns the exit status: 1 if something could not be drawn, which affects nothing else.
     """
@@ -113,7 +113,9 @@ def _attempted(name: str, add: Callable[[], dict[str, Failed]]) -> dict[str, Fai
 
 
 def images(plots: Iterable[Plot], failed: dict[str, Failed]) -> Iterator[tuple[Plot, str]]:
-    """Yield plots with their drawings as SVG. failed: receives those that could not be drawn."""
+    """Yield plots with their drawings as SVG. failed: receives the failures of plots that could not
+    be drawn.
+    """
     shown = list(plots)
     work = [(p.name, partial(svg, {**p.spec, "config": on_paper()})) for p in shown]
     for plot, image in zip(shown, apart(work, PICTURE_SECONDS), strict=True):
@@ -130,7 +132,7 @@ def draw_into(folder: Path, plot: Plot) -> dict[str, Failed]:
 
 
 def report_missing(failed: dict[str, Failed]) -> int:
-    """Report what is missing in what was written, and return the exit status."""
+    """Report what is missing in a file that was written, and return the exit status."""
     if failed:
         said = "; ".join(f"{name}: {failure.reason}" for name, failure in failed.items())
         click.echo(f"Error: missing in it: {said}", err=True)
@@ -138,7 +140,7 @@ def report_missing(failed: dict[str, Failed]) -> int:
 
 
 def require_results(directory: Path) -> set[str]:
-    """Return the files of a results folder that are ours.
+    """Return the files of a results folder that pinstress wrote.
 
     Raises: InputError.
     """
@@ -153,7 +155,7 @@ def require_results(directory: Path) -> set[str]:
 
 
 def lacking(directory: Path, else_lacks: str = "contains no results.json") -> str:
-    """Return why a folder has no results."""
+    """Return the reason why a folder has no results."""
     if not os.path.lexists(directory):
         return "no such folder"
     return else_lacks if directory.is_dir() else "not a folder"
@@ -177,9 +179,10 @@ def report_failed(directory: Path, failed: dict[str, Failed]) -> int:
 
 
 def add_plots(directory: Path, quiet: bool = False) -> Drawn:
-    """Draw the plots of a folder's report, and its pins by their fields, into the folder.
+    """Draw the plots of a folder's report, and pictures of its pins from their fields, into the
+    folder.
 
-    Raises: InputError where the folder is damaged or cannot be written.
+    Raises: InputError if the folder is damaged or cannot be written.
     """
     with TemporaryDirectory(prefix="pinstress-") as folder:
         drawn = _drawn(directory, Path(folder), quiet)
@@ -193,12 +196,12 @@ def add_plots(directory: Path, quiet: bool = False) -> Drawn:
 def add_pdf(directory: Path) -> dict[str, Failed]:
     """Write report.pdf from the folder's report.html; return the failure if it could not be made.
 
-    Raises: InputError where the folder is damaged or cannot be written.
+    Raises: InputError if the folder is damaged or cannot be written.
     """
     try:
-        is_inside(directory, PDF_FILE)  # a link is refused before the work
+        is_inside(directory, PDF_FILE)  # refuse a link before the long work
         page = _page(directory)
-        open_results(directory)  # those of another version have other words
+        open_results(directory)  # refuses results of another version, whose texts differ
         content = document_of(page)
         shown = set() if content is None else set(shown_plots(content))
         drawings = {plot.name: plot for plot in plots_of(page) if plot.name in shown}
@@ -252,7 +255,7 @@ def _drawn(directory: Path, into: Path, quiet: bool) -> Drawn:
 
 
 def draw_pin(opened: Opened, path: Path, top: float | None = None) -> list[Path]:
-    """Draw a picture of the only row and return its path; a beam has no field and gets none.
+    """Draw a picture of the only row and return its path. A beam has no field and gets no picture.
 
     Raises: Damaged.
     """
@@ -285,9 +288,9 @@ def _page(directory: Path) -> str:
 
 
 def _add(directory: Path, files: dict[str, Path]) -> None:
-    """Add files to a folder and its list.
+    """Add files to a folder and its manifest.
 
-    They are listed first, so that a process that is killed leaves nothing that is not ours.
+    The manifest comes first, so that a killed process leaves no file that is not listed.
     """
     names = [*files, *({f"{PLOTS_FOLDER}/"} if any("/" in name for name in files) else ())]
     partial_names = manifest.partial_names(files)

@@ -1,4 +1,6 @@
-"""The `reliability` command: sample the designs, write the output folder, print the table."""
+"""The `reliability` command, which samples the designs, writes the output folder and prints the
+table.
+"""
 
 from __future__ import annotations
 
@@ -44,8 +46,9 @@ def reliability_and_write(
 ) -> int:
     """Assess a study into a folder and return the exit status.
 
-    The status is 1 if, for any row, it could not be determined whether its probability of failure
-    is within the allowed one, or where that holds only without the stress beneath contact.
+    The status is 1 if, for any row, it could not be determined whether the probability of failure
+    is within the allowed one, or if it is only without the stress beneath contact, what the study
+    leaves open, or a pin that comes loose.
 
     jobs: number of processes on this machine.
     connection: to a cluster that solves the samples instead; the study as it is, and the steps of
@@ -56,7 +59,7 @@ def reliability_and_write(
     require_replaceable(directory, RELIABILITY_JSON)
     most = processes(jobs)
     study = for_values(study)
-    random_numbers(study)  # mistakes there should not wait for the stresses, nor those of a cluster
+    random_numbers(study)  # report mistakes there, and of a cluster, before any stress is solved
     with replacing(directory, RELIABILITY_JSON) as staging:
         todo = prepare(study, pins=pins, cases=cases).tasks
         require_strengths(study, (task.pin.name for task in todo))

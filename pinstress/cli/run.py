@@ -1,4 +1,4 @@
-"""The `run` command: analyse, write the output folder, print the table."""
+"""The `run` command, which analyses a study, writes the output folder and prints the table."""
 
 from __future__ import annotations
 
@@ -61,8 +61,8 @@ if TYPE_CHECKING:
     from rich.progress import Progress as Bar
     from rich.progress import ProgressColumn
 
-FILE_COLUMNS = 120  # of output that is no terminal, unless the environment states COLUMNS
-# What solving a pin imports on demand: libraries of nearly all pins, and models
+FILE_COLUMNS = 120  # width of output that is not a terminal, unless the environment sets COLUMNS
+# Modules that solving a pin imports on demand: libraries that nearly all pins need, and models
 RUN_LIBRARIES = "gmsh", "pymetis", "cvxopt.cholmod", "vtkmodules.vtkIOXML"
 RUN_MODELS = (
     "assess.fatigue.critical_points",
@@ -79,19 +79,19 @@ RUN_MODELS = (
 class OutputOptions:
     """Options for the output of a run.
 
-    plots: plots and pictures as files.
-    pdf: report.pdf.
-    second: CalculiX's second opinion.
-    vtk: fields, as --vtk names them.
-    as_json: results.json on stdout instead of the table.
+    plots: whether to write plots and pictures as files.
+    pdf: whether to write report.pdf.
+    second: whether CalculiX gives a second opinion.
+    vtk: the fields, as --vtk names them.
+    as_json: print results.json on stdout instead of the table.
     quiet: no progress and no notes.
-    opens: whether the report is opened.
+    opens: whether to open the report.
     jobs: number of parallel processes, by default the number of cores.
     cached: whether results in the user's cache may be reused.
-    sensitive: whether sensitivities are found in all cases.
+    sensitive: whether to compute sensitivities in all cases.
     strict: whether a pin that misses its requirements changes the exit status.
     junit: the file for the requirements as JUnit XML, if any.
-    work: whether the work of every check is printed.
+    work: whether to print the work of every check.
     """
 
     plots: bool = False
@@ -126,7 +126,7 @@ def run_and_write(
     also: Any = wanted.vtk if wanted.vtk in ("motion", "solid") else None
     most = processes(wanted.jobs)
     cache = user_cache() if wanted.cached else None
-    with replacing(directory) as staging:  # from now on a second run into it is refused
+    with replacing(directory) as staging:  # from here on a second run into the folder is refused
         plan = replace(prepare(study, also=also, **chosen), sensitive=wanted.sensitive)
         tasks = plan.tasks
         warn(*other_warnings(study, tasks), *lost_fit_warnings(study, tasks), *fit_note(study))
@@ -168,7 +168,7 @@ def run_and_write(
 
 
 def _print_results(results: Results, directory: Path, study: Study, wanted: OutputOptions) -> None:
-    """Print results.json or the tables that the options ask for."""
+    """Print results.json or the tables that the options request."""
     if wanted.as_json:
         click.echo((directory / "results.json").read_bytes(), nl=False)  # bytes: any locale
         return
@@ -181,9 +181,10 @@ def _print_results(results: Results, directory: Path, study: Study, wanted: Outp
 
 
 def _preload_for(plan: Plan, cache: Cache | None) -> None:
-    """Import once, for all processes, what solves the pins that are not in the cache.
+    """Import once, for all processes, the modules that solve the pins that are not in the cache.
 
-    A single one imports the models that it needs itself.
+    With a single such pin, only the libraries are preloaded; it imports the models that it needs
+    itself.
     """
     unsolved = 0
     for task in plan.tasks:
@@ -196,7 +197,7 @@ def _preload_for(plan: Plan, cache: Cache | None) -> None:
 
 
 def _second_opinion(plan: Plan, quiet: bool) -> dict[str, Any]:
-    # It imports the solid model, which takes time.
+    # The import includes the solid model, which takes time.
     from pinstress.analysis.calculix import ask_calculix, slow_rows
 
     if not quiet:
@@ -205,8 +206,8 @@ def _second_opinion(plan: Plan, quiet: bool) -> dict[str, Any]:
 
 
 def _write(results: Results, staging: Path, most: int) -> None:
-    """Write tables and page, in parallel where processes are forked: others would be sent all the
-    results first.
+    """Write tables and page, in parallel if processes are forked; otherwise all results would first
+    have to be sent to the other processes.
     """
     if most == 1 or portable():
         write_reports(results, staging)
@@ -260,7 +261,7 @@ def loads_and_write(
     require_replaceable(directory)
     with replacing(directory) as staging:
         results = loads_only(study, cases)
-        warn(*fit_note(study))  # the forces are not those of the linkage as drawn
+        warn(*fit_note(study))  # the linkage was fitted, so it differs from the drawn one
         write_loads(results, staging)
     with unneeded(directory):
         print_loads(results, console())
@@ -281,20 +282,20 @@ def _large_tables(directory: Path) -> None:
 
 
 def console() -> Console:
-    """Return standard output as a console as wide as the terminal, or as COLUMNS says."""
+    """Return standard output as a console as wide as the terminal, or as COLUMNS states."""
     stated = os.environ.get("COLUMNS", "").isdecimal()  # as Console reads it
     return Console() if stated or sys.stdout.isatty() else Console(width=FILE_COLUMNS)
 
 
 @contextmanager
 def bar_on_stderr(*columns: ProgressColumn, alone: bool, quiet: bool) -> Iterator[Bar]:
-    """Show a progress bar of these columns on stderr if it is a terminal; alone: as of
+    """Show a progress bar of these columns on stderr if it is a terminal; alone: as in
     `progress_bar`.
     """
     from rich.progress import Progress as Bar
 
     stderr = Console(stderr=True)
-    silent = quiet or not stderr.file.isatty()  # Console believes FORCE_COLOR, too
+    silent = quiet or not stderr.file.isatty()  # Console would also accept FORCE_COLOR
     with Bar(*columns, console=stderr, transient=True, disable=silent, auto_refresh=alone) as bar:
         yield bar
 
@@ -304,7 +305,7 @@ def progress_bar(alone: bool = True, quiet: bool = False) -> Iterator[Progress]:
     """Show a progress bar on stderr if it is a terminal.
 
     alone: whether this process does the work itself, so that a thread must refresh the bar;
-    otherwise every call does.
+    otherwise every call refreshes it.
     """
     from rich import progress as rich
 

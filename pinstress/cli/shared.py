@@ -31,7 +31,7 @@ Command = TypeVar("Command", bound=Callable[..., object])
 
 
 def example(text: str) -> str:
-    """Return the first line of a help text: an example, not wrapped."""
+    """Return the first line of a help text: an example that click does not wrap."""
     return f"\b\nExample: {text}\n"
 
 
@@ -46,7 +46,9 @@ def names(_: click.Context, __: click.Parameter, value: str | None) -> list[str]
 
 
 class _InPlainDigits(_ParamType):
-    """A number as studies have it: in the digits 0 to 9 without marks between them, and finite."""
+    """A finite number as studies write it: in the digits 0 to 9, without separators between
+    them.
+    """
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         text = str(value).strip()
@@ -94,7 +96,7 @@ def output_folder(default: str) -> Callable[[Command], Command]:
 
 
 def cluster_choices(command: Command) -> Command:
-    """Add the options that say where a cluster is: --scheduler, --tls and --insecure."""
+    """Add the options for the connection to a cluster: --scheduler, --tls and --insecure."""
     scheduler = click.option(
         "--scheduler",
         metavar="ADDRESS",
@@ -118,9 +120,9 @@ def cluster_choices(command: Command) -> Command:
 
 
 def chosen_connection(options: dict[str, Any]) -> ClusterConnection | None:
-    """Return the connection to a cluster by the options of a command, None without one.
+    """Return the connection to a cluster that the options of a command describe, or None.
 
-    options: those of `cluster_choices` are taken out.
+    options: those of `cluster_choices` are removed from it.
 
     Raises: InputError.
     """
@@ -132,7 +134,7 @@ def chosen_connection(options: dict[str, Any]) -> ClusterConnection | None:
 
 @contextmanager
 def connected(connection: ClusterConnection | None) -> Iterator[Cluster | None]:
-    """Connect to a cluster, if there is to be one."""
+    """Connect to a cluster, if a connection is given."""
     if connection is None:
         yield None
         return
@@ -144,9 +146,9 @@ def connected(connection: ClusterConnection | None) -> Iterator[Cluster | None]:
 
 @contextmanager
 def resumable(kept: Callable[[], int], noun: str, plural: str = "") -> Iterator[None]:
-    """Say that a command can be resumed where an error or an interruption ends it.
+    """Tell the user that a command can be resumed, if an error or an interruption ends it.
 
-    kept: returns the number of things, called `noun`, that it has finished.
+    kept: returns the number of things, called `noun`, that the command has finished.
     """
     try:
         yield
@@ -163,7 +165,7 @@ def resumable(kept: Callable[[], int], noun: str, plural: str = "") -> Iterator[
 
 
 def read_study(path: Path) -> Study:
-    """Load a study, and warn of implausible or contradictory numbers.
+    """Load a study, and warn about implausible or contradictory numbers.
 
     Raises: InputError.
     """
@@ -179,9 +181,9 @@ def read_study(path: Path) -> Study:
 
 
 def read_chosen(path: Path, options: dict[str, Any]) -> Study:
-    """Load a study like `read_study`.
+    """Load a study as `read_study` does.
 
-    options: those of the command; the texts of --pins and --cases become lists of names.
+    options: those of the command; the texts of --pins and --cases are replaced by lists of names.
 
     Raises: InputError.
     """
@@ -196,9 +198,9 @@ def read_chosen(path: Path, options: dict[str, Any]) -> Study:
 def names_in(text: str, known: Container[str]) -> list[str]:
     """Return the names in the text A,B.
 
-    known: names that may have commas; other names with commas are in quotes.
+    known: names, which may contain commas; other names with commas are in quotes.
 
-    Raises: InputError where a text is the name of one and a list of several.
+    Raises: InputError if a text is both one name and a list of several.
     """
     parts, entries, begin = text.split(","), list[str](), 0
     while begin < len(parts):
@@ -221,7 +223,7 @@ def names_in(text: str, known: Container[str]) -> list[str]:
 
 
 def warn(*warnings: str) -> None:
-    """Print warnings, a line each."""
+    """Print warnings, one line each."""
     for warning in warnings:
         click.echo(f"Warning: {warning}", err=True)
 
@@ -234,7 +236,7 @@ def open_page(page: Path) -> None:
         click.echo(f"No browser found; open {page} yourself.", err=True)
 
 
-# Commands by what they are for.
+# Commands by purpose, as the help lists them.
 COMMAND_SECTIONS = {
     "Studies": ("init", "check", "import", "schema", "fits", "materials"),
     "Analysis": ("run", "loads", "chart", "export"),

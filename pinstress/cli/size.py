@@ -1,4 +1,6 @@
-"""The `size` command: size every pin and write the new study, each pin as soon as it is sized."""
+"""The `size` command, which sizes every pin and writes the new study, each pin as soon as it is
+sized.
+"""
 
 from __future__ import annotations
 
@@ -45,8 +47,8 @@ class SizeOptions:
     out: the new study, by default next to the study.
     pins: their names, by default all.
     jobs: number of pins sized in parallel, by default the number of cores.
-    connection: to a cluster that sizes them instead.
-    resume: whether a size that did not end is resumed.
+    connection: to a cluster that sizes the pins instead.
+    resume: whether to resume an interrupted size.
     """
 
     out: Path | None = None
@@ -58,7 +60,7 @@ class SizeOptions:
 
 
 def size_and_write(study: Study, goal: SizingGoal, options: SizeOptions) -> int:
-    """Size pins and write the new study, unless nothing in it is new.
+    """Size pins and write the new study, unless it would not differ from the old one.
 
     Returns the exit status: 1 if any pin is not shown to reach the factor.
 
@@ -84,7 +86,7 @@ def size_and_write(study: Study, goal: SizingGoal, options: SizeOptions) -> int:
 
 
 def _size(plan: Plan, sizing: _Sizing, options: SizeOptions) -> tuple[list[SizingResult], Study]:
-    """Return the sizes of the pins, and the new study that is written.
+    """Return the sizes of the pins, and the new study as it is written.
 
     Raises: InputError.
     """
@@ -106,7 +108,7 @@ def _size(plan: Plan, sizing: _Sizing, options: SizeOptions) -> tuple[list[Sizin
 
 
 class _Sizing:
-    """A size that is going on: finished pins in the new study and in its state."""
+    """A size in progress: the finished pins, in the new study and in the saved state."""
 
     def __init__(
         self, study: Study, goal: SizingGoal, target: Path, state: SizeState[SizingResult]
@@ -121,9 +123,9 @@ class _Sizing:
         return list(self._pins.values())
 
     def start(self, resume: bool) -> None:
-        """Begin, or read what an earlier size has finished.
+        """Begin, or read the pins that an earlier size has finished.
 
-        Raises: InputError, also where the new study is not the one that was written.
+        Raises: InputError, also if the new study has changed since it was written.
         """
         if not resume:
             if not self._state.exists:
@@ -142,14 +144,14 @@ class _Sizing:
         self.written = True
 
     def finish(self, result: SizingResult) -> None:
-        """Keep a pin that is sized."""
-        self._pins.pop(result.pin, None)  # the last one stays last
+        """Save a pin that is sized."""
+        self._pins.pop(result.pin, None)  # so that the pin becomes the last in the dictionary
         self._pins[result.pin] = result
         self._state.write(tuple(self.pins))
         self.write(self.pins)
 
     def write(self, sized: list[SizingResult]) -> Study:
-        """Write the new study, unless nothing in it is new, and return it."""
+        """Write the new study, unless it would not differ from the old one, and return it."""
         new = new_study(self._study, self.goal, sized)
         if self.written or (
             any(result.scale is not None for result in sized) and new.text != self._study.text
@@ -161,11 +163,11 @@ class _Sizing:
         return new
 
     def end(self) -> None:
-        """Remove what the new study has, too."""
+        """Remove the saved state, which the new study contains."""
         self._state.end()
 
     def stop(self) -> int:
-        """Return the number of finished pins; where there are none, nothing is left."""
+        """Return the number of finished pins; without any, remove the saved state."""
         if not self._pins:
             self._state.end()
         return len(self._pins)
@@ -175,8 +177,8 @@ class _Sizing:
         return moved(text, self._study.path.parent, self._target.parent).encode()
 
 
-def require_wish(study: Study, fos: float | None, step: float | None) -> SizingGoal:
-    """Return the factor to reach and the diameters to choose from.
+def sizing_goal(study: Study, fos: float | None, step: float | None) -> SizingGoal:
+    """Return the goal of sizing: the factor to reach and the diameters to choose from.
 
     fos: the factor, or None for that of the study.
     step: step of diameters, m, instead of the study's series.
@@ -196,8 +198,8 @@ def require_wish(study: Study, fos: float | None, step: float | None) -> SizingG
 
 
 def _stated_goal(study: Study) -> tuple[float | None, dict[tuple[str, str], float]]:
-    """Return the factor that a study requires, and where its requirements demand others, times the
-    factor by pin and case.
+    """Return the factor that a study requires, and the ratio of the factor of each pin and case to
+    it; empty if all ratios are 1.
     """
     table = study.table
     required = table.analysis.required_safety_factor
@@ -216,11 +218,11 @@ def _stated_goal(study: Study) -> tuple[float | None, dict[tuple[str, str], floa
 
 
 def target_of(study: Study, out: Path | None, new: bool = True) -> Path:
-    """Return the path of the file to be written.
+    """Return the path of the new study.
 
-    new: whether it must not exist.
+    new: whether the file must not exist.
 
-    Raises: InputError where it cannot be written.
+    Raises: InputError if the file cannot be written.
     """
     target = out or study.path.with_name(f"{study.name}_sized.toml")
     if new:
@@ -234,7 +236,7 @@ def target_of(study: Study, out: Path | None, new: bool = True) -> Path:
 
 
 def close(study: Study, new: Study, target: Path | None) -> None:
-    """Report other changes, and the file that was written."""
+    """Report changes of lugs, and the file that was written."""
     for name, table in new.table.pin.items():
         for at, lug in table.lug.items():
             old = study.table.pin[name].lug[at].outer_diameter

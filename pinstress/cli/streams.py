@@ -1,4 +1,4 @@
-"""Standard output and error that may fail.
+"""Standard output and error whose failure does not end a command.
 
 A full disk or a closed pipe must not turn finished work into a traceback, and a terminal without ±
 gets a substitute character.
@@ -41,14 +41,14 @@ ASCII_REPLACEMENTS = {
 }
 SUPERSCRIPTS = dict(zip("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789", strict=True))
 RETRY_INTERVAL = 0.005  # s
-# Errors of a pipe whose reader went away, on Windows the second.
+# Errors of a pipe whose reader has closed it; Windows may report EINVAL.
 BROKEN_PIPE_ERRORS = (errno.EPIPE, errno.EINVAL) if os.name == "nt" else (errno.EPIPE,)
 
 
 class Outlet(io.FileIO):
     """A descriptor that records write errors instead of raising them.
 
-    lost: whether anything was not written.
+    lost: whether any data were not written.
     why: the first error.
     """
 
@@ -74,8 +74,10 @@ class Outlet(io.FileIO):
 
 
 def guard() -> None:
-    """Replace standard output and error by outlets, also if they are closed: otherwise the next
-    file opened would get their descriptor, and with it everything that libraries print.
+    """Replace standard output and error by outlets.
+
+    Closed streams are replaced, too: otherwise the next file opened would get their descriptor, and
+    with it everything that libraries print.
     """
     codecs.register_error("plain", _plain)
     for descriptor, old in enumerate((None, sys.stdout, sys.stderr)):
@@ -99,7 +101,7 @@ def guard() -> None:
 
 
 def _is_console(old: TextIO | None) -> TypeGuard[io.TextIOWrapper]:
-    """Return whether Python itself is to write to a stream: a Windows terminal takes no UTF-8
+    """Return whether Python itself must write to a stream: a Windows terminal does not accept UTF-8
     bytes.
     """
     return portable() and isinstance(old, io.TextIOWrapper) and old.isatty()
@@ -119,7 +121,7 @@ def _plain(error: UnicodeError) -> tuple[str, int]:
 
 
 def _replacement(text: str, k: int) -> str:
-    """Return what stands for character number k of a text: of an exponent "^-6"."""
+    """Return the replacement of character number k of a text; an exponent becomes "^-6"."""
     if text[k] not in SUPERSCRIPTS:
         return ASCII_REPLACEMENTS.get(text[k], "?")
     begins = text[k - 1 : k] not in SUPERSCRIPTS
@@ -128,8 +130,8 @@ def _replacement(text: str, k: int) -> str:
 
 @contextmanager
 def unneeded(where: Path) -> Iterator[None]:
-    """Mark output printed inside the block as also in `where`: losing it is reported but changes no
-    status.
+    """Mark output inside the block as also stored in `where`: its loss is reported but does not
+    change the exit status.
     """
     yield
     if outlet := _failed():
@@ -139,8 +141,8 @@ def unneeded(where: Path) -> Iterator[None]:
 
 
 def lost() -> str | None:
-    """Explain why requested output did not reach standard output; "" if the reader closed the
-    pipe.
+    """Return why requested output did not reach standard output: empty if the reader closed the
+    pipe, None if nothing was lost.
     """
     outlet = _failed()
     return reason(outlet) if outlet else None
@@ -154,7 +156,7 @@ def reason(outlet: Outlet) -> str:
 
 
 def _failed() -> Outlet | None:
-    """Return the outlet of standard output, if anything printed was lost."""
+    """Return the outlet of standard output if any output was lost."""
     outlet = getattr(getattr(sys.stdout, "buffer", None), "raw", None)
     if not isinstance(outlet, Outlet):
         return None

@@ -1,4 +1,4 @@
-"""The `sweep` command, which solves designs into a folder that keeps every batch and prints a
+"""The `sweep` command, which solves designs into a folder, stores every batch there, and prints a
 summary.
 """
 
@@ -50,16 +50,16 @@ SWEEP_FILES = (
     f"{DESIGNS_FILE}.partial",
     f"{DESIGNS_PAGE}.partial",
 )
-# In the folder of a sweep that was killed before it stated what it is
+# Entries of a folder whose sweep was killed before it wrote its identity
 BEGINNINGS = manifest.OWN_FILES | {f"{PARTS_FOLDER}/", f"{PARTS_FOLDER}/{IDENTITY_FILE}.partial"}
 
 
 @dataclass(frozen=True)
-class Way:
+class SweepOptions:
     """Options for solving a sweep.
 
     jobs: number of processes on this machine, by default one for each core.
-    connection: to a cluster instead.
+    connection: to a cluster that solves the designs instead.
     resume: whether to resume the sweep in the folder.
     opens: whether to open the page.
     """
@@ -72,43 +72,47 @@ class Way:
 
 
 def sweep_and_write(
-    study: Study, directory: Path, pins: list[str] | None, cases: list[str] | None, way: Way
+    study: Study,
+    directory: Path,
+    pins: list[str] | None,
+    cases: list[str] | None,
+    options: SweepOptions,
 ) -> int:
     """Sweep a study into a folder and return the exit status: 1 if every design failed.
 
     Raises: InputError.
     """
     parts = BatchFolder(directory, identity(study, pins, cases))
-    _require_usable(directory, parts, way.resume)
+    _require_usable(directory, parts, options.resume)
     sweep = planned(study, pins, cases)
-    if way.resume and parts.finished:
-        if not way.quiet:
+    if options.resume and parts.finished:
+        if not options.quiet:
             click.echo(f"The sweep in {directory} is complete: nothing to do.", err=True)
-        return _told(directory, read_table(directory / DESIGNS_FILE), way)
+        return _report_designs(directory, read_table(directory / DESIGNS_FILE), options)
     kept = resumable(lambda: parts.count, "batch", "batches")
-    with _claimed(directory, parts, way.resume), kept, _writing(directory):
-        before = parts.count_before if way.resume else None
+    with _claimed(directory, parts, options.resume), kept, _writing(directory):
+        before = parts.count_before if options.resume else None
         if before is not None:
             parts.continue_with(table_of(study, sweep.parameters, []).schema)
-            if not way.quiet:
+            if not options.quiet:
                 count = len(sweep.values)
                 click.echo(f"Continued from {before:,} designs to {count:,}.", err=True)
-        alone = way.connection is not None or (way.jobs or cores()) == 1
-        with progress(way.quiet, alone) as report:
-            table = solved(sweep, parts, way.jobs, way.connection, report, warn)
+        alone = options.connection is not None or (options.jobs or cores()) == 1
+        with progress(options.quiet, alone) as report:
+            table = solved(sweep, parts, options.jobs, options.connection, report, warn)
         _write(directory, table)
         parts.finish()
-    return _told(directory, table, way)
+    return _report_designs(directory, table, options)
 
 
-def _told(directory: Path, table: pa.Table, way: Way) -> int:
+def _report_designs(directory: Path, table: pa.Table, options: SweepOptions) -> int:
     """Print a summary of a table and return the exit status."""
     with unneeded(directory):
         summary(table, console())
-    if not way.quiet:
+    if not options.quiet:
         click.echo(f"Table: {directory / DESIGNS_FILE}", err=True)
         click.echo(f"Page: {directory / DESIGNS_PAGE}", err=True)
-    if way.opens:
+    if options.opens:
         open_page(directory / DESIGNS_PAGE)
     verdicts = set(table["verdict"].unique().to_pylist())
     return int(verdicts <= {*UNSOLVED_VERDICTS})
@@ -122,7 +126,7 @@ def _write(directory: Path, table: pa.Table) -> None:
 
 @contextmanager
 def _writing(directory: Path) -> Iterator[None]:
-    """Name the folder where it cannot be written, as on a full disk.
+    """Turn an error of writing, as on a full disk, into one that names the folder.
 
     Raises: InputError.
     """
@@ -137,8 +141,8 @@ def _writing(directory: Path) -> Iterator[None]:
 def _require_usable(directory: Path, parts: BatchFolder, resume: bool) -> None:
     """Check that a sweep can be written into a folder.
 
-    Raises: InputError for a folder with other files than those of a sweep, with a sweep that did
-    not end and is not to be resumed, or with none to resume.
+    Raises: InputError for a folder that contains files other than those of a sweep, an unfinished
+    sweep that is not to be resumed, or no sweep to resume.
     """
     if os.path.isdir(directory) and (link := manifest.first_link(directory)):
         raise InputError(
@@ -160,7 +164,7 @@ def _require_usable(directory: Path, parts: BatchFolder, resume: bool) -> None:
 
 
 def _mark(directory: Path, parts: BatchFolder) -> str:
-    """Return the file that a folder must have to be that of a sweep."""
+    """Return the file that a folder must contain to be that of a sweep."""
     if (parts.folder / IDENTITY_FILE).is_file():
         return f"{PARTS_FOLDER}/{IDENTITY_FILE}"
     only_begun = directory.is_dir() and manifest.entries(directory) <= BEGINNINGS
@@ -183,9 +187,9 @@ def _locked(directory: Path) -> Release:
 
 @contextmanager
 def _claimed(directory: Path, parts: BatchFolder, resume: bool) -> Iterator[None]:
-    """Create the folder, list it as ours, and lock it inside the block.
+    """Create the folder, write its manifest, and lock it inside the block.
 
-    Where no batch was solved, nothing is left of a sweep that was begun.
+    If no batch was solved, everything that a new sweep wrote is removed.
     """
     release: Release | None = None
     existed = os.path.exists(directory)
@@ -218,7 +222,7 @@ def progress(quiet: bool, alone: bool = True) -> Iterator[Report]:
     """Show a progress bar on stderr if it is a terminal, otherwise a line at intervals.
 
     alone: whether no process is forked inside the block, so that a thread may refresh the bar;
-    otherwise every call does.
+    otherwise every call refreshes it.
     """
     from rich import progress as rich
 
@@ -242,7 +246,7 @@ def progress(quiet: bool, alone: bool = True) -> Iterator[Report]:
 
 
 class _Lines:
-    """Progress where there is no terminal: a line every EVERY seconds."""
+    """Progress for an output that is not a terminal: a line every EVERY seconds."""
 
     EVERY = 30.0
 

@@ -1,4 +1,4 @@
-"""The `view` command: show a pin of an earlier run in a window or write a picture."""
+"""The `view` command, which shows a pin of an earlier run in a window or writes a picture."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ def view(
 ) -> int:
     """Show a pin of a results folder, by default the one with the lowest factor.
 
-    Returns the exit status: 1 if it could not be drawn.
+    Returns the exit status: 1 if the pin could not be drawn.
 
     screenshot: a PNG file to write instead of opening a window.
-    force: whether to overwrite it.
+    force: whether to overwrite the file.
 
     Raises: InputError.
     """

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from assess.judgement import DEPENDS
-from fea.support.contact.variations import largest_of
+from fea.support.contact.joint_changes import largest_of
 from fea.support.records import FRICTION, JointRange, Variation
 from pinstress.analysis.results import RunResults
 from pinstress.study.reading.in_python import study_from

@@ -57,8 +57,10 @@ def cells_matter(solution: Solution, limit: float) -> bool:
     row, deep = peak.upper_end / (peak.max_von_mises or 1.0), 1.0
     if contact is not None and contact.beneath:
         deep = contact.upper_end / contact.beneath
-    tops = [(x.max_von_mises, row) for x in over] + [(x.beneath or 0.0, deep) for x in over]
-    return any(stress <= limit < stress * error for stress, error in tops)
+    tops = [(x.max_von_mises, x.max_von_mises * row) for x in over]
+    tops += [(x.max_von_mises, x.interval[1]) for x in over if x.interval]
+    tops += [(x.beneath or 0.0, (x.beneath or 0.0) * deep) for x in over]
+    return any(stress <= limit < top for stress, top in tops)
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache, partial
+from typing import Literal
 
 import numpy as np
 
@@ -25,6 +27,7 @@ from fea.section.section_stress import SectionField
 from fea.singular.singularities import singularities_of
 from fea.support.contact.bending import LoadedJoint, growth_across, growth_of_lugs
 from fea.support.contact.cell_error import (
+    MIN_HARMONICS_OF_ORDER,
     MIN_HARMONICS_PER_ARC,
     NOWHERE,
     AtPlaces,
@@ -50,6 +53,8 @@ from pinbase.arrays import Mask
 # judgement, coarser than MODE_TOLERANCE since only ratios of maxima follow from it.
 VARIATION_MODE_TOLERANCE = 1e-2
 
+Cells = Literal["own", "large"]  # those of the model, or twice as large
+
 
 @dataclass(frozen=True)
 class VariedPressures:
@@ -69,16 +74,24 @@ class PressedJoint:
 
     per_arc: harmonics that the cells follow, times the half angle of contact in rad.
     lugs: of a varied joint.
+    cells: on which it is solved.
+    large: the same contact on large cells, where the arcs are too narrow for these.
     """
 
     waves: Floats
     states: list[ContactState]
     per_arc: float = math.inf
     lugs: tuple[Lug, ...] = ()
+    cells: Cells = "own"
+    large: PressedJoint | None = None
 
     @property
     def with_rougher(self) -> tuple[PressedJoint, ...]:
-        """This joint, and on narrow arcs the one from which the error of the cells follows."""
+        """This joint, and on narrow arcs the one from which the error of the cells follows: on
+        large cells, if it is known on these, with half the harmonics.
+        """
+        if self.large is not None:
+            return self, in_half_the_harmonics(self.large)
         narrow = self.per_arc < MIN_HARMONICS_PER_ARC
         return (self, in_half_the_harmonics(self)) if narrow else (self,)
 
@@ -98,6 +111,9 @@ class ChangedContact:
 JointsUnderChanges = tuple[list[tuple[JointChange, PressedJoint]], list[str]]
 
 
+# By contact, cells and gaps: the cells in contact of a joint, from which others begin.
+Touching = dict[tuple[int, Cells, bytes], Mask]
+Problems = Callable[[Cells], tuple[ContactProblem, Floats]]
 # The joint as given on the cells of varied ones: its stress, the relative error, and the contact.
 LikeGiven = tuple[AtPlaces, AtPlaces, PressedJoint]
 
@@ -106,16 +122,16 @@ LikeGiven = tuple[AtPlaces, AtPlaces, PressedJoint]
 class JointChanges:
     """Contacts, each at one instant, whose joint is changed.
 
-    likes: the joints as given on the same cells, with their stress and its relative error from the
-    cells.
-    own_cells: whether to use the model's own cells, instead of cells twice as large.
+    likes: for each contact, the joint as given on these cells.
+    cells: on which joints are solved. The second, if there are two, follow where the arcs of
+    contact are too narrow for the first.
     """
 
     model: ContactModel
     at: Sequence[JointContact]
     requirement: Requirement
-    likes: Sequence[LikeGiven]
-    own_cells: bool
+    likes: Sequence[Mapping[Cells, LikeGiven]]
+    cells: tuple[Cells, ...]
 
     def by(
         self, changes: Sequence[Sequence[JointChange]], known: PressureModes
@@ -125,21 +141,19 @@ class JointChanges:
         """
         model = self.model
         every = self.joints(changes)
-        joints = [[joint for _, joint in solved] for solved, _ in every]
+        joints = [[x for _, one in solved for x in one.with_rougher] for solved, _ in every]
         parts = [(x.waves, VARIATION_MODE_TOLERANCE) for x in itertools.chain(*joints)]
         patterns = model.patterns(parts, known) if parts else known
         loads = [
-            [
-                loads_of(model, patterns, one, contact)
-                for one in itertools.chain(*(x.with_rougher for x in of_contact))
-            ]
+            [loads_of(model, patterns, one, contact) for one in of_contact]
             for contact, of_contact in zip(self.at, joints, strict=True)
         ]
         stress = iter(at_places(model, self.requirement, loads) if any(loads) else [])
         out = []
         for contact, like, (solved, missing) in zip(self.at, self.likes, every, strict=True):
-            over = [self._variation(contact, like, *one, stress) for one in solved]
-            out.append(ChangedContact(tuple(over), tuple(missing)))
+            over = [self._variation(contact, like[one.cells], change, one, stress)
+                    for change, one in solved]  # fmt: skip
+            out.append(ChangedContact(largest_of(over, low=min), tuple(missing)))
         return out, patterns
 
     def _variation(
@@ -175,31 +189,96 @@ class JointChanges:
         for k, of_contact in enumerate(changes):
             for change in of_contact:  # each is one joint for all contacts
                 wanted.setdefault(f"{change.what} {change.value}", []).append((k, change))
-        highest = self.model.cells.highest * (1.0 if self.own_cells else 0.5)
         # Joints of the same gaps touch nearly the same cells, from which the next of them begins.
         # For other gaps the usual first guess is nearer: it knows the width of contact.
         gaps = self.model.bands.gap.tobytes()
-        touching = {(k, gaps): self._given(k) for k in range(len(self.at))}
+        touching = {
+            (k, on, gaps): self._given(k, on) for k in range(len(self.at)) for on in self.cells
+        }
         for name, of_change in wanted.items():
             _, change = of_change[0]
             other = self.model.varied(change.lugs, change.softness)
-            cells = _own_cells(other) if self.own_cells else on_coarser_cells(other)
+            problems = cache(partial(_problem, other))
             for k, _ in of_change:
-                contact, (solved, missing) = self.at[k], out[k]
-                like = k, other.bands.gap.tobytes()
+                solved, missing = out[k]
                 try:
-                    joint = on_cells(other, contact.loads.links, *cells, touching.get(like))
-                    touching.setdefault(like, joint.states[0].active)
-                    per_arc = highest * contact.half_angle(other.bands, other.tail)
-                    solved.append((change, replace(joint, per_arc=per_arc, lugs=other.lugs)))
+                    joints = self._on_cells_that_follow(k, other, problems, touching)
+                    solved += [(change, joint) for joint in joints]
                 except SolveError as error:
                     missing.append(f"{name} ({error})")
         return out
 
-    def _given(self, k: int) -> Mask:
+    def _on_cells_that_follow(
+        self, k: int, other: ContactModel, problems: Problems, touching: Touching
+    ) -> list[PressedJoint]:
+        """A contact in another joint, on the first cells if they follow the arcs of contact, else
+        on the model's own. Where these do not follow either, both count, since either error may be
+        too small. The arguments are as of `_joint`.
+        """
+        first, *more = self.cells
+        joint = self._joint(k, other, first, problems, touching)
+        if joint.per_arc >= MIN_HARMONICS_PER_ARC or not more:
+            return [joint]
+        second = self._joint(k, other, more[0], problems, touching)
+        own, large = (joint, second) if first == "own" else (second, joint)
+        own = replace(own, large=large)
+        return [large, own] if own.per_arc < MIN_HARMONICS_OF_ORDER else [own]
+
+    def _joint(
+        self, k: int, other: ContactModel, cells: Cells, problems: Problems, touching: Touching
+    ) -> PressedJoint:
+        """A contact in another joint on some cells.
+
+        problems: gives the contact problem of the other joint on cells, as `on_coarser_cells`.
+        touching: the cells in contact from which the search begins; the first result of other gaps
+        is added.
+        """
+        contact, like = self.at[k], (k, cells, other.bands.gap.tobytes())
+        joint = on_cells(other, contact.loads.links, *problems(cells), touching.get(like))
+        touching.setdefault(like, joint.states[0].active)
+        highest = self.model.cells.highest * (1.0 if cells == "own" else 0.5)
+        per_arc = highest * contact.half_angle(other.bands, other.tail)
+        return replace(joint, per_arc=per_arc, lugs=other.lugs, cells=cells)
+
+    def _given(self, k: int, cells: Cells) -> Mask:
         """The cells in contact in the joint as given."""
-        states = self.at[k].contact if self.own_cells else self.likes[k][2].states
+        states = self.at[k].contact if cells == "own" else self.likes[k][cells][2].states
         return states[0].active
+
+
+def largest_of(
+    every: Iterable[Variation], low: Callable[[Iterable[float]], float] = max
+) -> tuple[Variation, ...]:
+    """The variations of a case whose joint is varied more than once: of each change the largest
+    stress and forces.
+
+    every: relative to the same stress.
+    low: the low end of an interval from those of all: at several instants the largest of these is
+    at least `max`, on several sets of cells at one instant `min`.
+    """
+    of = dict[tuple[str, str], list[Variation]]()
+    for x in every:
+        of.setdefault((x.what, x.value), []).append(x)
+    return tuple(_largest(alike, low) for alike in of.values())
+
+
+def _largest(alike: Sequence[Variation], low: Callable[[Iterable[float]], float]) -> Variation:
+    ends = [x.interval or (x.max_von_mises, x.max_von_mises) for x in alike]
+    least, most = low(end for end, _ in ends), max(end for _, end in ends)
+    # Without an interval of its own the largest has the error of the row.
+    plain = max((x.max_von_mises for x in alike if x.interval is None), default=0.0)
+    lugs = dict[str, float]()
+    for name, ratio in (pair for x in alike for pair in x.lugs):
+        lugs[name] = max(ratio, lugs.get(name, ratio))
+    return replace(
+        alike[0],
+        max_von_mises=max(x.max_von_mises for x in alike),
+        interval=(least, most) if most > plain else None,
+        beneath=max(x.beneath or 0.0 for x in alike),
+        across=max(x.across for x in alike),
+        surface=max(x.surface for x in alike),
+        lugs=tuple(lugs.items()),
+    )
 
 
 def loaded(model: ContactModel, joint: PressedJoint, contact: JointContact) -> LoadedJoint:
@@ -292,5 +371,5 @@ def in_half_the_harmonics(joint: PressedJoint) -> PressedJoint:
     return replace(joint, waves=waves)
 
 
-def _own_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
-    return model.contact, np.eye(len(model.rings))
+def _problem(model: ContactModel, cells: Cells) -> tuple[ContactProblem, Floats]:
+    return (model.contact, np.eye(len(model.rings))) if cells == "own" else on_coarser_cells(model)

@@ -23,6 +23,7 @@ from fea.section.section_stress import SectionField
 from fea.singular.singularities import singularities_of
 from fea.support.contact.cell_error import CELL_ERROR_SHARE, AtPlaces
 from fea.support.contact.contact_state import ContactState
+from fea.support.contact.joint_changes import largest_of
 from fea.support.contact.joint_contact import JointContact
 from fea.support.contact.pressure_loads import (
     MODE_TOLERANCE,
@@ -36,7 +37,6 @@ from fea.support.contact.variations import (
     ResolutionComparison,
     compare,
     joint_range,
-    largest_of,
     uncompared,
 )
 from fea.support.records import JointRange

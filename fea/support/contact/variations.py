@@ -8,7 +8,7 @@ act on one mesh, the first: its error is in all maxima alike, so that their rati
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -24,6 +24,7 @@ from fea.support.contact.cell_error import (
 from fea.support.contact.coarser_cells import on_coarser_cells
 from fea.support.contact.friction import friction_variations, rubbed, rubbed_across, rubs
 from fea.support.contact.joint_changes import (
+    Cells,
     JointChanges,
     LikeGiven,
     PressedJoint,
@@ -92,37 +93,6 @@ def scaled(x: Variation, row: float, below: float) -> Variation:
     return replace(x, max_von_mises=row * x.max_von_mises, interval=interval, beneath=deep)
 
 
-def largest_of(every: Iterable[Variation]) -> tuple[Variation, ...]:
-    """The variations of a case whose joint is varied at several instants: of each change the
-    largest stress and forces at any of them.
-
-    every: relative to the same stress.
-    """
-    of = dict[tuple[str, str], list[Variation]]()
-    for x in every:
-        of.setdefault((x.what, x.value), []).append(x)
-    return tuple(_largest(at) for at in of.values())
-
-
-def _largest(at: Sequence[Variation]) -> Variation:
-    ends = [x.interval or (x.max_von_mises, x.max_von_mises) for x in at]
-    low, high = max(low for low, _ in ends), max(high for _, high in ends)
-    # Without an interval of its own the largest has the error of the row.
-    plain = max((x.max_von_mises for x in at if x.interval is None), default=0.0)
-    lugs = dict[str, float]()
-    for name, ratio in (pair for x in at for pair in x.lugs):
-        lugs[name] = max(ratio, lugs.get(name, ratio))
-    return replace(
-        at[0],
-        max_von_mises=max(x.max_von_mises for x in at),
-        interval=(low, high) if high > plain else None,
-        beneath=max(x.beneath or 0.0 for x in at),
-        across=max(x.across for x in at),
-        surface=max(x.surface for x in at),
-        lugs=tuple(lugs.items()),
-    )
-
-
 def joint_range(over: Sequence[Variation], largest: float, below: float = 0.0) -> JointRange:
     """The range over the joint of a maximum and of the stress beneath contact, Pa.
 
@@ -164,15 +134,15 @@ def compare(
         [loads_of(model, patterns, x, contact) for x in (*both, in_half_the_harmonics(both[1]))]
         for contact, both in zip(at, exact, strict=True)
     ]
-    stress, out, likes = at_places(model, requirement, every), [], []
+    likes: list[Mapping[Cells, LikeGiven]] = []
+    stress, out = at_places(model, requirement, every), []
     for contact, both in zip(at, exact, strict=True):
         first, twice, roughest = (stress.pop(0) for _ in range(3))
         arc = contact.half_angle(model.bands, model.tail)
         cells = by_cells(first, roughest, model.cells.rings, arc * model.cells.highest)
         out.append(ResolutionComparison(first, cells, contact.loads.links, (), half_angle=arc))
-        # The joint as given on the cells of varied joints.
-        stress_like, like = (first, both[0]) if _large_cells(model) else (twice, both[1])
-        likes.append((stress_like, cells, like))
+        own, large = both
+        likes.append({"own": (first, cells, own), "large": (twice, cells, large)})
     which = (True,) * len(at) if vary is None else vary(out)
     if any(which):
         ratios = _over_joint(model, at, requirement, patterns, likes, which)
@@ -180,29 +150,25 @@ def compare(
     return tuple(out)
 
 
-def _large_cells(model: ContactModel) -> bool:
-    """Whether the model's own cells are so large that varied joints are solved on them.
-
-    Otherwise they are solved on cells twice as large, which cost less.
-    """
-    return model.cells.rings < USUAL_RING_COUNT
-
-
 def _over_joint(
     model: ContactModel,
     at: Sequence[JointContact],
     requirement: Requirement,
     known: PressureModes,
-    likes: Sequence[LikeGiven],
+    likes: Sequence[Mapping[Cells, LikeGiven]],
     vary: Sequence[bool],
 ) -> list[tuple[tuple[Variation, ...], str]]:
     """The variations of each contact, and what is not included in them.
 
-    likes: the joints as given on the same cells.
+    likes: the joints as given, on the cells on which they are known.
     vary: the contacts whose joint is varied.
     """
     changes = tuple(joint_variations(model.whole, model.lugs)) if any(vary) else ()
-    joints = JointChanges(model, at, requirement, likes, _large_cells(model))
+    tried: tuple[Cells, ...] = ("large", "own")
+    if model.cells.rings < USUAL_RING_COUNT:  # so large that larger ones tell the error alone
+        tried = "own", "large"
+    known_on = likes[0] if likes else {}
+    joints = JointChanges(model, at, requirement, likes, tuple(x for x in tried if x in known_on))
     changed, known = joints.by([changes if so else () for so in vary], known)
     by_friction = _by_friction(model, requirement, known, at, vary)
     out = []
@@ -216,7 +182,7 @@ def varied_pressures(model: ContactModel, contact: JointContact) -> tuple[Varied
     """The pressures of a contact at one instant, and under each change of the joint but friction
     that can be solved, all on the model's own cells.
     """
-    joints = JointChanges(model, [contact], Requirement(), (), own_cells=True)
+    joints = JointChanges(model, [contact], Requirement(), (), ("own",))
     ((solved, _),) = joints.joints([tuple(joint_variations(model.whole, model.lugs))])
     varied = (VariedPressures(x.lugs, x.waves) for _, x in solved)
     return (VariedPressures(model.lugs, model.waves(contact.contact)), *varied)
@@ -268,7 +234,8 @@ def uncompared(
     own = [PressedJoint(model.waves(x.contact), list(x.contact)) for x in at]
     loads = [[loads_of(model, known, *both)] for both in zip(own, at, strict=True)]
     stress = at_places(model, requirement, loads)
-    likes = [(x, NOWHERE, joint) for x, joint in zip(stress, own, strict=True)]
+    likes: list[Mapping[Cells, LikeGiven]]
+    likes = [{"own": (x, NOWHERE, joint)} for x, joint in zip(stress, own, strict=True)]
     over = _over_joint(model, at, requirement, known, likes, (True,) * len(at))
     return tuple(
         ResolutionComparison(like, NOWHERE, x.loads.links, *varied)

@@ -1,10 +1,11 @@
 """Limit loads of the rows of a task that the study or `--limit-load` requests.
 
-Those of its lugs are computed where they are requested by more than "auto".
+Limit loads of lugs are computed only if the study or the run requests more than "auto".
 
-A requirement on it is a request, too, unless the elastic stress meets that already. The limit load
-of a row that yields is also computed without a request if that takes seconds of processor time.
-Whether it is computed may depend on the computer; its value never does.
+A factor that [[require]] states for the limit load counts as a request, unless the study excludes
+the pin or the elastic stress already meets the factor. Without a request, the limit load of a row
+that yields is computed if it takes at most UNASKED_LIMIT_LOAD_SECONDS of processor time. So the
+computer may decide whether a limit load is computed, but never its value.
 """
 
 from __future__ import annotations
@@ -42,13 +43,13 @@ if TYPE_CHECKING:
 NOT_HARDENED_NOTE = "not for a pin with a hardened surface, which has two yield strengths"
 NOT_ON_FOUNDATIONS_NOTE = 'not for a pin on elastic foundations: use joints = "contact"'
 
-BOUNDS_BATCH = 64  # instants whose bounds as a beam are found at once: limits memory
-SAME_BOUND = 0.01  # relative: the instant of the largest stress is kept where it is as near
-UNASKED_LIMIT_LOAD_SECONDS = 20.0  # s of processor time of a limit load that was not asked for
+BOUNDS_BATCH = 64  # instants whose bounds as a beam are computed at once: limits memory
+SAME_BOUND = 0.01  # relative: up to this difference of bounds the instant of largest stress is kept
+UNASKED_LIMIT_LOAD_SECONDS = 20.0  # s of processor time of a limit load that was not requested
 
 
 def limit_rung(study: Study, pin: str) -> Rung | None:
-    """Return the model for the limit loads of a pin, None where they are not requested."""
+    """Return the model for the limit loads of a pin, or None if they are not requested."""
     requested = study.table.analysis.limit_load
     if isinstance(requested, list):
         return "solid" if pin in requested else None
@@ -57,8 +58,10 @@ def limit_rung(study: Study, pin: str) -> Rung | None:
 
 
 def rung_of(plan: Plan, pin: str) -> Rung | None:
-    """Return `limit_rung` for a run, which may request more than the study; of a coarse solution,
-    which only serves for ratios, no limit load is wanted.
+    """Return the model for the limit loads of a pin in a run, which may request more than the
+    study.
+
+    Coarse solutions, of which only ratios are taken, need no limit load.
     """
     if plan.requirement.for_ratio:
         return None
@@ -66,7 +69,7 @@ def rung_of(plan: Plan, pin: str) -> Rung | None:
 
 
 def limit_seconds(plan: Plan) -> float:
-    """Return the processor time that a limit load may take, s; infinite where it was requested."""
+    """Return the processor time, s, that a limit load may take; infinite if it was requested."""
     requested = plan.limit_load or plan.study.table.analysis.limit_load != "auto"
     return inf if requested else UNASKED_LIMIT_LOAD_SECONDS
 
@@ -80,7 +83,7 @@ def limit_loads(
 
 
 def collapse_factors(study: Study, task: Task) -> dict[str, float]:
-    """Return the largest factor on collapse that [[require]] states, by case."""
+    """Return for each case the largest factor against collapse that [[require]] states."""
     factors = {}
     for loads in task.loads:
         stated = (
@@ -99,7 +102,7 @@ def _limit_load(
     required = collapse_factors(plan.study, task).get(peak.case)
     strength = peak.yield_strength(task.material.yield_strength)
     if rung and required and strength and not meets_limit(peak, strength / required):
-        rung, seconds = "solid", inf  # it decides, and is required
+        rung, seconds = "solid", inf  # the limit load decides whether the requirement is met
     if rung is None or not limit_asked(peak, task, rung):
         return None
     if task.material.hardened:
@@ -118,7 +121,7 @@ def _limit_load(
         loads = solved.pressed(links) if in_lugs else links
         memory = plan.requirement.memory
         limit = limit_load(pin, task.material, clamps, loads, rung, memory, seconds)
-    except ArithmeticError as error:  # the elastic answer stands
+    except ArithmeticError as error:  # the elastic result is still valid
         return LimitLoad("none", note=str(error))
     return replace(limit, time=links.time())
 
@@ -126,10 +129,11 @@ def _limit_load(
 def nearest_to_collapse(
     solved: Solution, pin: PinLike, material: Material, clamps: tuple[str, ...]
 ) -> PinLoads:
-    """Return the loads of the links at the instant at which the pin, as a beam, collapses at the
-    least factor: that of the largest stress need not be it, as a notch raises stress alone.
+    """Return the loads of the links at the instant at which the pin, as a beam, has the lowest
+    factor against collapse.
 
-    pin: on which the loads act.
+    This need not be the instant of the largest stress, since a notch raises stress but not the risk
+    of collapse. pin: the pin on which the loads act.
     """
     from assess.plastic.hinge import beam_bounds  # imports a model
 
@@ -164,8 +168,8 @@ def lugs_asked(plan: Plan, task: Task) -> bool:
 
 
 def lug_collapses(plan: Plan, task: Task, tell: Tell) -> tuple[LugCollapse, ...]:
-    """Return the limit loads of the lugs that the study gives for a pin, along their shanks, where
-    the study or the run requests limit loads of more than the rows that yield.
+    """Return the limit loads of the lugs that the study gives for a pin, pulled along their shanks;
+    empty unless the study or the run requests them (`lugs_asked`).
     """
     profile = task.pin.profile
     if profile is None or not lugs_asked(plan, task):
@@ -176,9 +180,9 @@ def lug_collapses(plan: Plan, task: Task, tell: Tell) -> tuple[LugCollapse, ...]
 
 
 def _lug_collapse(pin: Pin, lug: Lug, same: Memo) -> LugCollapse:
-    """Return the limit load of a lug as thick as its band of the pin is long.
+    """Return the limit load of a lug, whose thickness is the length of its band of the pin.
 
-    same: the limit loads of outlines that were solved already.
+    same: the limit loads of outlines that were solved before.
     """
     strength = lug.material.yield_strength
     if lug.shank is None:
@@ -204,8 +208,9 @@ def _lug_collapse(pin: Pin, lug: Lug, same: Memo) -> LugCollapse:
 def _lug_ultimate(
     outline: LugOutline, thickness: float, metal: Material, same: Memo
 ) -> tuple[float | None, str]:
-    """Return the load at which a lug of some thickness, m, breaks, N, and what ends it; None and
-    what is missing. Nothing is done for a material without a failure strain.
+    """Return the load, N, at which a lug breaks, and what ends it; or None and what is missing.
+
+    thickness: of the lug, m. A material without a failure strain gives None and an empty text.
     """
     if metal.failure_strain is None:
         return None, ""

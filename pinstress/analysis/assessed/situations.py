@@ -45,7 +45,7 @@ FORMULA_KINDS = "hand", "clause"
 RANGE_BASES = tuple(
     f"with the {end} end of the range of the yield strength" for end in ("lower", "upper")
 )
-# What checks by formula take as the yield strength of a pin with a hardened surface.
+# The yield strength of a pin with a hardened surface that checks by formula use.
 CORE_BASIS, CASED_BASIS = "with the core's yield strength", "with the strengths of case and core"
 CASED_METHODS = BENDING_METHODS | {PLASTIC_METHOD}
 FORCE_OF_CLAMP = (
@@ -55,7 +55,7 @@ LOAD_FACTOR_KEYS = ("limit_factor", "ultimate_factor", "fitting_factor")
 
 
 def assessed(study: Study, task: Task, row: PinResult) -> PinResult:
-    """Return a row with its judgement, and its margins by formula and by the model.
+    """Return a row with its judgement against yield and its margins by formula and by the model.
 
     A pin with cuts is checked as if it had none, and its margins say so.
     """
@@ -78,18 +78,18 @@ def assessed(study: Study, task: Task, row: PinResult) -> PinResult:
         judgement=against_yield(row.maximum, task.material.yield_strength, required),
         strength_range=task.material.strength_range,
         margins=tuple(margins),
-        worst=tuple(worst_places([*counted, *_not_made(s, why)])),
+        worst=tuple(worst_places([*counted, *_skipped_checks(s, why)])),
         arms=None if why else _arms(s, task, row),
         lost_fits=lost_fits(study, task, row.case),
     )
 
 
 def _with_ranges(s: Situation, margins: Sequence[Margin]) -> list[Margin]:
-    """Return margins that hold over the ranges of yield strengths: each at its worse end, which is
-    the upper one where a check takes F_u / F_y (the width of a net section that carries).
+    """Return margins that hold over the ranges of yield strengths: each margin at its worse end.
 
-    The margin of the model against yield stays as it is, since the range is part of the outcome of
-    its row (reports.data.dependence).
+    The worse end is the upper one where a check uses F_u / F_y (the effective width of a net
+    section). The margin of the model against yield stays as it is, since the range is part of the
+    outcome of its row (reports.data.dependence).
     """
     made_of = [s.material, *(m for x in s.lugs for m in x.materials)]
     if all(m.strength_range is None for m in made_of):
@@ -106,15 +106,17 @@ def _with_ranges(s: Situation, margins: Sequence[Margin]) -> list[Margin]:
 
 
 def _worse(ends: tuple[Margin, ...]) -> tuple[Margin, ...]:
-    """Return the worse of one margin at both ends, or both where one could not be made: it may have
-    been the worse one.
+    """Return the worse of one margin at both ends of a range, or both if only one could be made:
+    the missing one may have been the worse.
     """
     made = [not m.needs for m in ends]
     return (max(ends, key=lambda m: m.used),) if all(made) or not any(made) else ends
 
 
 def _at_end(s: Situation, end: int) -> Situation:
-    """Return a situation at the lower (0) or upper (1) ends of the ranges of yield strengths."""
+    """Return a situation with yield strengths at the lower (0) or upper (1) ends of their
+    ranges.
+    """
     lugs, sized = (
         tuple(x.with_materials(lambda m: m.at_end(end)) for x in some) for some in (s.lugs, s.sized)
     )
@@ -130,8 +132,9 @@ def _at_end(s: Situation, end: int) -> Situation:
 
 
 def _limit_at_end(limit: L, material: Material, end: int) -> L:
-    """Return a limit load at an end of the yield strength, to which it is in proportion, as is the
-    hardening of the material.
+    """Return a limit load at an end of the range of the yield strength.
+
+    The limit load is proportional to the yield strength; the hardening of the material is, too.
     """
     if limit is None or material.strength_range is None:
         return limit
@@ -141,7 +144,9 @@ def _limit_at_end(limit: L, material: Material, end: int) -> L:
 
 
 def _ultimate_at_end(limit: LugCollapse, end: int) -> LugCollapse:
-    """Return the limit load of a lug with its ultimate load at an end of the yield strength."""
+    """Return the limit load of a lug with its ultimate load at an end of the range of the yield
+    strength.
+    """
     if not limit.ultimate_ends:
         return limit
     ultimate, breaks_by = limit.ultimate_ends[end]
@@ -153,7 +158,9 @@ def _joined(*texts: str) -> str:
 
 
 def _of_core(s: Situation, margin: Margin) -> Margin:
-    """Return a margin by formula with what it takes as the yield strength of a hardened pin."""
+    """Return a margin by formula with a remark on the yield strength that it uses for a hardened
+    pin.
+    """
     made_of_pin = margin.material in ("", s.material.name)
     if not s.material.hardened or margin.kind not in FORMULA_KINDS or not made_of_pin:
         return margin
@@ -163,9 +170,11 @@ def _of_core(s: Situation, margin: Margin) -> Margin:
 
 
 def _without_cuts(pin: PinLike, margins: Sequence[Margin]) -> list[Margin]:
-    """Return margins with the cuts of the pin among what those by formula omit, where they may
-    matter: to the pressure on bands, of which the worst is reported, those that open into any; to
-    what is along the pin, all.
+    """Return margins in which those by formula state that they omit the cuts of the pin, where the
+    cuts may matter.
+
+    Any cut matters to checks along the pin. To the pressure on bands, of which only the worst is
+    reported, cuts matter that open into any of the bands.
     """
     if not pin.cuts:
         return list(margins)
@@ -186,14 +195,14 @@ def _without_cuts(pin: PinLike, margins: Sequence[Margin]) -> list[Margin]:
 
 
 def _on_bands(margin: Margin) -> bool:
-    """Return whether a margin is of the pressure on a band."""
+    """Return whether a margin concerns the pressure on a band."""
     method = margin.method.removesuffix(f", {COMPARISON_SUFFIX}")
     return method in BEARING_METHODS or lug_mode(method) == BEARING
 
 
 def load_factors(study: Study) -> LoadFactors:
     """Return the load factors of a study; assess.checks adds the fitting factor that a code demands
-    where the study states none.
+    if the study states none.
     """
     a = study.table.analysis
     stated = "fitting_factor" in a.model_fields_set
@@ -218,8 +227,8 @@ def _situation(
 ) -> tuple[Situation, str]:
     """Return the situation of a row and the reason why it is incomplete.
 
-    The reason says why there is no profile, that a clamp is in a cut, or that neither the joint nor
-    equilibrium gives all forces; it is empty for a complete situation.
+    The reason states that the pin has no profile, that a clamp is in a cut, or that neither the
+    joint nor equilibrium gives all forces. It is empty for a complete situation.
     """
     table = study.table.pin[task.pin.name]
     sized = tuple(x for x in task.given if table.lug[x.connection].outer_diameter)
@@ -238,7 +247,7 @@ def _situation(
         lug_stresses=joint.lugs if joint else (), shank_angles=task.shanks.get(loads.case, {}),
     )  # fmt: skip
     in_cuts = [name for name in task.clamps if name in task.pin.cuts]
-    if in_cuts:  # of which the profile knows nothing
+    if in_cuts:  # the profile has no cuts
         on_profile = tuple(name for name in task.clamps if name not in in_cuts)
         why = f"the force that the clamp takes in {', '.join(in_cuts)}, which no formula gives"
         return replace(s, clamps=on_profile, complete=False), why
@@ -262,11 +271,12 @@ def _situation(
     return replace(s, over_joint=joint.range.across, lug_growth=shared), ""
 
 
-def _not_made(s: Situation, why: str) -> Iterable[Margin]:
-    """Yield the checks that a situation does not allow, those of lugs at clamps, whose force no
-    formula gives, and clauses of chosen codes and what is required of lugs whose size is not given.
+def _skipped_checks(s: Situation, why: str) -> Iterable[Margin]:
+    """Return, as skipped margins, the checks that a situation does not allow.
 
-    why: what the checks by formula need.
+    These are the checks by formula if they lack something (`why`); checks of lugs at clamps, whose
+    force no formula gives; checks that are required of lugs of unknown size; and clauses of chosen
+    codes for such lugs.
     """
     lacking = {FORMULA_CHECKS: why} if why else {}
     if s.profile is not None:
@@ -296,7 +306,9 @@ def _not_made(s: Situation, why: str) -> Iterable[Margin]:
 
 
 def _arms(s: Situation, task: Task, row: PinResult) -> BendingArms:
-    """Return the arms of the bending moment at the governing instant, one of the joint's."""
+    """Return the arms of the bending moment at the governing instant, including the arm from the
+    joint's solution.
+    """
     peak, joint = row.maximum, row.joint
     now = s.by_formula.at(np.array([0]))
     if peak.time is not None and s.joint is None and peak.case in task.between:

@@ -1,4 +1,4 @@
-"""Results for reports, gathered in SI from the solutions and assessments of a run."""
+"""Results for reports, gathered in SI units from the solutions and assessments of a run."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def materials_assumption(study: Study) -> tuple[str, ...]:
 
 
 def shanks_assumption(rows: Iterable[PinResult]) -> tuple[str, ...]:
-    """Return a sentence for each way in which directions of shanks are assumed."""
+    """Return a sentence for each way in which the directions of shanks were assumed."""
     lugs: dict[str, dict[str, None]] = {}
     for row in rows:
         for lug in row.joint.lugs if row.joint else ():
@@ -121,7 +121,7 @@ def results_of(plan: Plan, outcomes: list[PinOutcome]) -> Results:
 
 
 def rows_of(plan: Plan, outcomes: list[PinOutcome]) -> dict[tuple[str, str], PinResult]:
-    """Return the rows of a plan, as `results_of` has them, by pin and case."""
+    """Return the rows of a plan by pin and case, as `results_of` has them."""
     study, factor, units = plan.study, plan.study.system.factor, units_of(plan.study)
     rows = (
         _completed(study, plan.loads[row.case], task, row, plan.published)
@@ -132,7 +132,7 @@ def rows_of(plan: Plan, outcomes: list[PinOutcome]) -> dict[tuple[str, str], Pin
 
 
 def _worst_changes(outcomes: list[PinOutcome]) -> tuple[Remedy, ...]:
-    """Return one remedy for each pin, for the worst of its cases; the pin with the worst comes
+    """Return one remedy for each pin, for its worst case; the pin with the lowest factor comes
     first.
     """
     remedies = sorted((x.remedy for x in outcomes if x.remedy), key=lambda x: x.load_factor)
@@ -144,7 +144,7 @@ def _in_order(
 ) -> tuple[PinSensitivities, ...]:
     """Return the sensitivities in the order of the rows.
 
-    every: whether of all cases; otherwise of each pin's worst case only.
+    every: whether to keep all cases; otherwise only the worst case of each pin is kept.
     """
     rows = [row for outcome in outcomes for row in outcome.sensitivities]
     if not every:
@@ -180,7 +180,7 @@ def _results(
     published: Published,
     tolerance: float,
 ) -> Results:
-    """Return the results of a run that follow from its loads and rows, in SI.
+    """Return the results of a run that follow from its loads and rows, in SI units.
 
     rows: each with its task, in the order of the table.
     """
@@ -229,7 +229,7 @@ def _title_block(given: ReportTable) -> TitleBlock:
 def _completed(
     study: Study, case: CaseLoads, task: Task, row: PinResult, published: Published
 ) -> PinResult:
-    """Return a row with what the study says of its case."""
+    """Return a row with its support, loads, position of the drive and published values."""
     time = row.maximum.time
     here = case if time is None else at_time(case, time)
     assert here is not None
@@ -251,7 +251,7 @@ def _completed(
 
 
 def _shank_angles(task: Task, case: str, time: float | None) -> Iterator[tuple[str, float]]:
-    """Yield the directions of the shanks that are known, degrees."""
+    """Yield the known directions of the shanks, degrees, each with the name of its lug."""
     now = None if time is None else np.array([time])
     turning = task.shanks.get(case, {})
     for lug in task.lugs:
@@ -270,8 +270,9 @@ def _held(task: Task, joint: JointResult | None) -> str:
 def _governing_loads(
     task: Task, case: CaseLoads, here: CaseLoads, time: float | None
 ) -> tuple[GoverningLoad, ...]:
-    """Return the loads of which stress and checks are, also where forces jump; none of a motion
-    without a solution, of which no instant governs.
+    """Return the loads at the instant that governs, also where forces jump.
+
+    A motion without a solution has no governing instant, and no loads.
     """
     r = here.reactions
     if time is not None and case.moving is not None:
@@ -286,9 +287,9 @@ def _governing_loads(
 
 
 def shape_of_task(task: Task, peaks: Sequence[Maximum]) -> PinShape:
-    """Return the pin of a task as it is drawn, SI.
+    """Return the pin of a task as it is drawn, in SI units.
 
-    peaks: its maxima, of which local solids are drawn.
+    peaks: the maxima of the pin; the local solids on which they were solved are drawn.
     """
     pin, density = task.pin, task.material.density
     held = {pin.surface(c) for c in task.clamps}
@@ -349,7 +350,7 @@ def _cut_ends(cut: Cut) -> tuple[float, float]:
 
 
 def _cut_sizes(cut: Cut) -> tuple[float, float, float | None]:
-    """Return the diameter, width or distance of a cut, its offset and its depth."""
+    """Return the diameter, width or distance of a cut, its offset and its depth (None: through)."""
     if isinstance(cut, Flat):
         return cut.distance, 0.0, None
     if isinstance(cut, Slot):

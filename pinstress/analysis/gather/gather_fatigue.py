@@ -1,4 +1,4 @@
-"""Damage under the study's spectrum, from histories of stress."""
+"""Fatigue damage under the study's spectrum, computed from histories of stress."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ class _Open:
 
 
 def fatigue_of(plan: Plan, outcomes: list[PinOutcome]) -> tuple[Fatigue | None, list[PinMargin]]:
-    """Return the fatigue of all critical points, the worst first, and the margins; None and no
-    margins without a spectrum.
+    """Return the fatigue of all critical points, the worst first, and its margins; without a
+    spectrum, None and no margins.
 
-    A failure here leaves the fatigue of its pin open; other results are unaffected.
+    A failure here leaves the fatigue of its pin undetermined; other results are unaffected.
     """
     table = plan.study.table.fatigue
     if table is None:
@@ -66,7 +66,7 @@ def fatigue_of(plan: Plan, outcomes: list[PinOutcome]) -> tuple[Fatigue | None, 
         if (missing := _missing(plan, outcomes, pin, table) or failed) is not None:
             opens[pin] = missing
     points.sort(key=lambda p: (-p.damage, -float(p.amplitudes.max(initial=0.0))))
-    # More damage cannot help a pin that has too much already.
+    # Missing damage could only be added: a pin that fails without it fails all the same.
     failing = {p.pin for p in points if (p.utilisation or 0.0) > 1.0}
     short = [
         f"Damage of pin {pin} is too low: {opens[pin].reason}." for pin in opens if pin in failing
@@ -90,7 +90,7 @@ def fatigue_of(plan: Plan, outcomes: list[PinOutcome]) -> tuple[Fatigue | None, 
 def _margins(plan: Plan, result: Fatigue, needs: dict[str, str]) -> list[PinMargin]:
     """Return the margins of checks over all cases of a pin, the worst pin first.
 
-    needs: by pin whose damage is not decided, what is missing.
+    needs: what is missing, for each pin whose damage is not decided.
     """
     tasks = {task.pin.name: task for task in plan.tasks}
     damaged = dict.fromkeys(p.pin for p in result.points if p.pin not in needs)
@@ -121,9 +121,10 @@ def _without_data(plan: Plan, table: FatigueTable) -> list[str]:
 
 
 def _growth(plan: Plan, rows: Iterable[PinResult]) -> Growth:
-    """Return what the stress of one pin may grow by, in cases and in sequences of cases.
+    """Return the factors by which the stress of one pin may exceed that of its rows, by cause, then
+    by case or sequence of cases.
 
-    A sequence grows by the most that any of its cases does.
+    The factor of a sequence is the largest of its cases. Causes without effect are left out.
     """
     growth: dict[str, dict[str, float]] = {}
     for row in rows:
@@ -136,9 +137,10 @@ def _growth(plan: Plan, rows: Iterable[PinResult]) -> Growth:
 
 
 def _growth_of(row: PinResult) -> dict[str, float]:
-    """Return the largest stress over that of a row, by what is open of it.
+    """Return the factors by which the stress of a row may be exceeded, by cause.
 
-    The error is that of the surface, on which the critical points are; a section has none.
+    The error is that of the surface, on which the critical points are; the error of a section does
+    not matter here.
     """
     at = row if row.places is None else row.places.surface
     if not row.max_von_mises or not at.max_von_mises:
@@ -150,7 +152,9 @@ def _growth_of(row: PinResult) -> dict[str, float]:
 def _points(
     plan: Plan, histories: list[PointHistory], table: FatigueTable, growth: Growth
 ) -> tuple[list[PointFatigue], _Open | None]:
-    """Return the fatigue of the points of one pin, and what is not decided at any of them."""
+    """Return the fatigue of the points of one pin, and the first reason why a point is not
+    decided.
+    """
     points, failed = [], None
     spectrum = _spectrum(table)
     for history in histories:
@@ -161,7 +165,7 @@ def _points(
             failed = failed or _Open(
                 f"{at}, {error}", 'fatigue.method = "critical-plane" with its data'
             )
-        except Exception as error:  # of pyLife or ours: none may take other results with it
+        except Exception as error:  # a fault in pyLife or here must not lose the other results
             reason = f"{at}, {table.method} failed ({type(error).__name__}: {error})"
             failed = failed or _Open(reason, f"a method other than {table.method}, which failed")
         else:
@@ -170,8 +174,10 @@ def _points(
 
 
 def _missing(plan: Plan, outcomes: list[PinOutcome], pin: str, table: FatigueTable) -> _Open | None:
-    """Return the part of the spectrum for which no stress of the pin, no error, or no maximum is
-    known.
+    """Return why the damage of a pin is not decided by its results; None if it is.
+
+    Reasons, in this order: a case of the spectrum was not run or not solved, has no history of
+    stress, an unknown error or a singular maximum, or clamps or fits differ between cases.
     """
     sequences = plan.study.table.sequence
     cases: dict[str, None] = {}

@@ -20,7 +20,7 @@ from pinstress.study.model.impulses import ImpulseLoads
 from pinstress.study.model.tasks import Task
 from reports.data.row import LandingRange, SharingRange
 
-# Of the largest force on a pin: one that is neglected where ratios of forces count.
+# Relative to the largest force on a pin: smaller forces are left out of ratios of forces.
 NEGLIGIBLE_LOAD = 0.01
 
 
@@ -38,10 +38,13 @@ def landing_range(
 
 
 def _largest_load(task: Task, peak: Maximum, ranged: PinLoads, maxima: Floats) -> float:
-    """Return the most by which a demand grows over ranges: as the force on a band, or as the
-    stress, which forces that nearly cancel raise more, and moments, of which bands have many.
+    """Return the largest ratio by which a demand on the pin grows over ranges of its loads.
 
-    Bands with next to no load are left out: a check of theirs governs nothing.
+    It is the largest ratio of the forces on a band, or that of the stress. The stress grows more
+    than the forces where forces nearly cancel, and with the moments on bands. Bands with next to no
+    load are left out, since their checks never govern.
+
+    ranged: the loads over the ranges. maxima: the stress under each, Pa.
     """
     grown = max(float(maxima.max()) / peak.max_von_mises if peak.max_von_mises else 1.0, 1.0)
     nominal = next(x for x in task.loads if x.case == peak.case)
@@ -56,7 +59,7 @@ def _largest_load(task: Task, peak: Maximum, ranged: PinLoads, maxima: Floats) -
 
 def sharing_range(task: Task, solution: Solution) -> SharingRange | None:
     """Return the range of a pin's maximum over the stiffness of the links that share its loads out
-    of the plane, by superposition; each is taken at its worst instants.
+    of the plane, by superposition. For each stiffness, the worst instant counts.
     """
     over, peak = task.shared.get(solution.peak.case), solution.peak.max_von_mises
     if over is None or solution.answer is None or peak is None:
@@ -76,9 +79,12 @@ def sharing_range(task: Task, solution: Solution) -> SharingRange | None:
 def range_of(
     task: Task, peak: Maximum, over: ImpulseLoads, maxima: Floats, strength: float | None
 ) -> LandingRange:
-    """Return the results over a landing's ranges, without a spread of the joint.
+    """Return the results over a landing's ranges, without the spread over the joint.
 
-    peak: the maximum under the nominal force. maxima: Pa, under each force of `over`.
+    peak: the maximum under the nominal force.
+    over: the forces over the ranges.
+    maxima: the stress under each force of `over`, Pa.
+    strength: the yield strength, Pa.
     """
     return LandingRange(
         pin=peak.pin,
@@ -118,8 +124,9 @@ def _maxima(task: Task, solution: Solution, loads: PinLoads) -> Floats:
 
 
 def _as_of_row(task: Task, solution: Solution, acting: PinLoads, sections: SectionField) -> Floats:
-    """Return the largest stress, Pa, of a hardened pin at each instant, of all of its parts as if
-    they had the strength of the row.
+    """Return the largest stress of a hardened pin at each instant, Pa.
+
+    The stress of each part is scaled as if the part had the strength of the row.
     """
     strength, answer = solution.peak.strength, solution.answer
     assert strength is not None

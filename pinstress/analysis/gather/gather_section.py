@@ -11,12 +11,12 @@ from fea.core.unit_surface import SectionPlane
 from geometry.shape.chords import needed
 from reports.data.surface import HalfSection, Mask
 
-# At most 2.5 times as many stations, of which few are needed
+# There are up to 2.5 times as many stations, of which few are kept.
 SECTION_STATIONS, SECTION_ROWS = 200, 33
-# Of the length: how close to a shoulder, on both sides of it, stress is read
+# Relative to the length: distance from a shoulder, on both sides, at which stress is read
 SHOULDER_OFFSET = 1e-6
-SECTION_STRESS_TOLERANCE = 7e-3  # of the maximum
-RADIUS_TOLERANCE = 2e-3  # of the radius
+SECTION_STRESS_TOLERANCE = 7e-3  # relative to the maximum
+RADIUS_TOLERANCE = 2e-3  # relative to the largest radius
 
 
 def half_section(
@@ -24,7 +24,7 @@ def half_section(
 ) -> HalfSection:
     """Return the half section through the surface's maximum, which lies outside the excluded zones.
 
-    Stress that exceeds the maximum is limited to it, except beneath lugs.
+    Stress above the maximum is limited to it, except beneath lugs.
 
     at: the point of the maximum (x, y, z), m.
     """
@@ -53,7 +53,7 @@ def half_section(
 
 
 def _stations(plane: SectionPlane) -> Floats:
-    """Return stations along z, close together where the mesh is fine, double at shoulders."""
+    """Return stations along z, close together where the mesh is fine, and in pairs at shoulders."""
     r, z = plane.skin.T
     low, high = float(z.min()), float(z.max())
     near = SHOULDER_OFFSET * (high - low)
@@ -66,7 +66,9 @@ def _stations(plane: SectionPlane) -> Floats:
 
 
 def _grid(z: Floats, inner: Floats, outer: Floats, part: Floats) -> Floats:
-    """Return points (Z, R, 2) r and z, none of them outside the pin by round-off."""
+    """Return points (Z, R, 2), r and z, slightly inside the pin, so that round-off puts none
+    outside.
+    """
     safe = 1.0 - SHOULDER_OFFSET
     r = inner[:, None] + (outer - inner)[:, None] * (0.5 + safe * (part - 0.5))
     near = SHOULDER_OFFSET * (z[-1] - z[0])
@@ -77,11 +79,11 @@ def _grid(z: Floats, inner: Floats, outer: Floats, part: Floats) -> Floats:
 def _needed(
     at: Floats, stress: Floats, allowed: Floats, peak: int, radii: Floats | None = None
 ) -> Mask:
-    """Return which of N places to keep.
+    """Return which of N positions to keep.
 
-    stress: (2, N, ..).
-    peak: index of a place that is kept in any case.
-    radii: (N, 2) inner and outer.
+    stress, allowed: (2, N, ..), the stress and its tolerance.
+    peak: index of a position that is kept in any case.
+    radii: (N, 2), inner and outer radius.
     """
     values, within = (np.moveaxis(x, 1, 0).reshape(len(at), -1) for x in (stress, allowed))
     if radii is not None:
@@ -89,5 +91,5 @@ def _needed(
         within = np.concatenate(
             [within, np.full(radii.shape, RADIUS_TOLERANCE * radii.max())], axis=1
         )
-    # A pin without any stress allows nothing, and misses nothing.
+    # A pin without any stress has zero tolerance; a tiny one lets its zeros pass.
     return needed(at, values, within + np.finfo(float).tiny, np.arange(len(at)) == peak)

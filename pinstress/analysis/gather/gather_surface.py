@@ -1,4 +1,4 @@
-"""Surfaces of a pin as reports show them, from its solutions."""
+"""Surfaces of a pin, as reports show them, from its solutions."""
 
 from __future__ import annotations
 
@@ -27,9 +27,10 @@ def surfaces_of(
     solutions: Sequence[Solution],
     pressures: Sequence[CellPressure | None],
 ) -> tuple[Surface, ...]:
-    """Return a pin's surfaces, one for each mesh, with all cases that a model with fields solved.
+    """Return a pin's surfaces, one for each mesh, with all cases that were solved on it by a model
+    with fields.
 
-    pressures: contact pressure of the lugs, by solution.
+    pressures: contact pressure of the lugs, for each solution.
     """
     together: dict[int, list[_Shown]] = {}
     for solution, pressure in zip(solutions, pressures, strict=True):
@@ -42,7 +43,10 @@ def surfaces_of(
 
 @dataclass(frozen=True)
 class _Shown:
-    """A case on its surface; solution: at its samples. pressure: contact pressure of its lugs."""
+    """A case on its surface.
+
+    solution: with loads at the samples. pressure: contact pressure of the lugs.
+    """
 
     solution: Solution
     field: SurfaceField
@@ -78,7 +82,7 @@ def _surface(task: Task, solved: Sequence[_Shown]) -> Surface:
 
 
 def _case(task: Task, of: _Shown, plane: SectionPlane | None) -> SurfaceCase:
-    """Return a case's fields at its samples and the governing instant."""
+    """Return a case's fields at its samples and at the governing instant."""
     loads, instant, field = of.solution.loads, of.solution.instant, of.field
     assert of.solution.answer is not None
     maxima = of.solution.answer.maxima(loads)
@@ -99,8 +103,9 @@ def _case(task: Task, of: _Shown, plane: SectionPlane | None) -> SurfaceCase:
 
 
 def _unread(of: _Shown, points: Ints, at: tuple[float, ...] | None) -> Mask | None:
-    """Return where points (J,) of a meridian are not read, by instant and by angle from a
-    location.
+    """Return where the stress at points (J,) of a meridian is not read, by instant and by angle.
+
+    at: the point from whose angle the angles count; from 0 without one.
     """
     start = 0.0 if at is None else atan2(at[1], at[0])
     turns = start + 2.0 * np.pi * np.arange(SURFACE_SECTORS) / SURFACE_SECTORS
@@ -130,8 +135,8 @@ def _pressed(case: SurfaceCase, points: Floats, pressure: CellPressure | None) -
 def _own(case: SurfaceCase, points: Floats) -> Mask:
     """Return the points (P,) of a meridian that the case needs.
 
-    These are the point of its maximum, if that is on the surface, and those where contact pressure
-    jumps.
+    These are the point of the case's maximum, if that is on the surface, and points where the
+    contact pressure jumps.
     """
     required = np.zeros(len(points), dtype=bool)
     if case.rings is not None:

@@ -1,4 +1,4 @@
-"""Records of drops for the results, in SI."""
+"""Records of drops for the results, in SI units."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pinstress.study.reading.file import Study
 from pinstress.study.schema.landing import DropCase
 from reports.data.drop import PEAK_QUANTITIES, DropPeak, DropRecord
 
-STROKE_SAMPLES = 101  # at which force over stroke is drawn
+STROKE_SAMPLES = 101  # number of strokes at which the force is drawn
 
 
 def drop_record(study: Study, name: str, loads: CaseLoads) -> DropRecord:
@@ -64,7 +64,8 @@ def _spin_up(landing: Landing) -> float | None:
 
 
 def _over_stroke(landing: Landing) -> tuple[Floats, Floats, Floats]:
-    """Return strokes (P,) m with the vertical force while the strut first closes and then opens.
+    """Return strokes (P,) m and the vertical forces (P,) N while the strut first closes and then
+    opens.
 
     The force is NaN at strokes that the strut does not reach.
     """

@@ -1,4 +1,4 @@
-"""Results of the mechanics for reports, gathered in SI from the dynamics."""
+"""Results of the mechanics for reports, gathered in SI units from the dynamics."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from reports.data.mechanics import DriveTable, PeakReaction, ReactionTable, Whee
 
 
 def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -> dict[str, Any]:
-    """Return the parts of Results that need no stresses."""
+    """Return the parts of Results that follow without stresses."""
     dynamics = {n: c.dynamics for n, c in loads.items() if c.dynamics is not None}
     parts = {
         "reactions": tuple(_reactions(study, n, c, published) for n, c in loads.items()),
@@ -64,12 +64,14 @@ def _actuators(dynamics: Dynamics) -> list[tuple[str, bool]]:
 
 
 def _drive_positions(study: Study, dynamics: Dynamics) -> Floats:
-    """Return the displayed positions (T, A)."""
+    """Return the displayed positions (T, A) of the actuators."""
     return shown_positions(study, dynamics.course[0], _actuators(dynamics))
 
 
 def drive_position(study: Study, case: CaseLoads) -> Floats | None:
-    """Return the position (T,) of the only drive along a motion; None unless there is one."""
+    """Return the position (T,) of the drive along a motion; None unless there is exactly
+    one drive.
+    """
     dynamics = case.dynamics
     if case.space is not None and case.reactions.times is not None:
         shown = positions_in_space(study, case.space)
@@ -116,7 +118,9 @@ def _reactions(study: Study, name: str, case: CaseLoads, published: Published) -
 
 
 def _wheel_loads(study: Study, name: str, case: CaseLoads) -> tuple[WheelLoad, ...]:
-    """Return the sums behind the forces of the ground, at the axle as it is in the case."""
+    """Return the factors and references that the ground forces are products of, each at its point
+    of application, found from the position of the axle in the case.
+    """
     of = study.table.case[name]
     if case.ground is None or not isinstance(of, GroundCase):
         return ()
@@ -163,7 +167,7 @@ def _peaks(study: Study, case: CaseLoads) -> tuple[PeakReaction, ...]:
 
 
 def _positions_at(study: Study, case: CaseLoads, times: list[float]) -> list[float | None]:
-    """Return the position of the only drive at each time (s); None unless there is one."""
+    """Return the position of the drive at each time (s); None unless there is exactly one drive."""
     if drive_position(study, case) is None:
         return [None] * len(times)
     if case.solve_space is not None:

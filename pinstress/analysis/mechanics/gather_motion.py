@@ -1,4 +1,4 @@
-"""The motion of a planar linkage for reports, gathered in SI from its dynamics."""
+"""The motion of a planar linkage for reports, gathered in SI units from its dynamics."""
 
 from __future__ import annotations
 
@@ -40,12 +40,13 @@ def _extremes(over: OverTime) -> Extremes:
 
 
 def linkage_motion(study: Study, name: str, case: CaseLoads) -> LinkageMotion:
-    """Return the motion of the linkage in a case, SI."""
+    """Return the motion of the linkage in a case, in SI units."""
     dynamics, over = case.dynamics, case.over
     assert dynamics is not None
     motion, linkage = dynamics.motion, dynamics.motion.linkage
     timed = dynamics.reactions.times is not None
-    held = getattr(study.table.case[name], "hold", None)  # its drives carry nothing, as in space
+    # In a case that is held, the drives carry no load, so there is nothing to transmit.
+    held = getattr(study.table.case[name], "hold", None)
     bodies = [b.name for b in linkage.bodies]
     centre, velocity, acceleration = (pairs(z[:, : len(bodies)]) for z in motion.centres)
     joints = list(motion.joints())
@@ -115,7 +116,7 @@ def _springs(dynamics: Dynamics) -> dict[str, Floats]:
 
 
 def _applied(dynamics: Dynamics) -> tuple[AppliedForce, ...]:
-    """Return the forces that the case applies, without springs and loads that are couples alone."""
+    """Return the forces that the case applies, without springs and without pure couples."""
     loads = [load for load in dynamics.applied if isinstance(load, Applied)]
     forces = (
         AppliedForce(
@@ -170,7 +171,9 @@ def _slider_forces(dynamics: Dynamics) -> dict[str, GuideForces]:
 
 
 def _joints_to_draw(linkage: Linkage, body: str) -> tuple[str, ...]:
-    """Return the joints on a body, around their middle so that lines between them do not cross."""
+    """Return the joints on a body, in order around their centroid, so that lines between them do
+    not cross.
+    """
     joints = linkage.joints_on(body)
     at = np.array([complex(*j.at) for j in joints])
     if len(joints) < 4:
@@ -218,7 +221,7 @@ def _moving_points(motion: Motion, side: Gear | Rack, first: Point, second: Poin
 
 
 def _pitch_line(motion: Motion, teeth: Teeth, rack: Rack) -> PitchCurve:
-    """Return the part of the pitch line that meets the gear, extended by its radius at both
+    """Return the part of the pitch line that meets the gear, extended by the gear's radius at both
     ends.
     """
     slider = next(s for s in motion.linkage.sliders if s.name == rack.slider)

@@ -1,5 +1,5 @@
-"""Sequences: cases one after the other on one time axis, joined from their results without solving
-again.
+"""Sequences of load cases on one time axis, joined from the results of the cases without a new
+solution.
 """
 
 from __future__ import annotations
@@ -21,15 +21,16 @@ from reports.data.motion import AppliedForce, Extremes, LinkageMotion
 from reports.format.numbers import engineering
 
 T = TypeVar("T")
-# Of the linkage's size: a joint that is so far off where the next case begins
+# Relative to the linkage's size: the distance from which a joint counts as displaced between the
+# end of a case and the beginning of the next.
 JUMP_TOLERANCE = 1e-6
 
 
 def _joined(parts: Sequence[Any]) -> Any:
     """Return parts joined one after the other.
 
-    Arrays are concatenated, also those in dataclasses, tuples and dictionaries. The result is None
-    where any part has none; of other values the first is taken.
+    Arrays are concatenated, also inside dataclasses, tuples and dictionaries. The result is None if
+    any part is None. Of other values the first is taken.
     """
     first: Any = parts[0]
     if any(part is None for part in parts):
@@ -49,8 +50,8 @@ def _joined(parts: Sequence[Any]) -> Any:
 def _course(
     parts: Mapping[str, T], times: Mapping[str, Floats | None], order: list[Occurrence]
 ) -> T:
-    """Return the joined parts of every step's case; one at rest is taken at its beginning and its
-    end.
+    """Return the joined results of every step's case; those of a case at rest are taken twice, at
+    the beginning and at the end of the step.
     """
     every = [parts[s.case] for s in order for _ in range(2 if times[s.case] is None else 1)]
     joined: T = _joined(every)
@@ -58,7 +59,7 @@ def _course(
 
 
 def _axis(times: Mapping[str, Floats | None], order: list[Occurrence]) -> Floats:
-    """Return the times (T,) s that belong to `_course`."""
+    """Return the times (T,) s of the results of `_course`."""
     out = []
     for step in order:
         case_times = times[step.case]
@@ -70,8 +71,8 @@ def _axis(times: Mapping[str, Floats | None], order: list[Occurrence]) -> Floats
 
 
 def sequence_tables(study: Study, parts: dict[str, Any]) -> dict[str, Any]:
-    """Return the reactions, drives and motions of the sequences whose cases are all among the
-    parts.
+    """Return the parts with the reactions, drives and motions of all sequences whose cases are
+    among them.
     """
     reactions = {t.case: t for t in parts["reactions"]}
     motions = {m.case: m for m in parts["motion"]}
@@ -127,12 +128,14 @@ def _first(times: Floats | None) -> float:
 def _with_all(
     table: ReactionTable, names: list[str], of: Mapping[str, ReactionTable]
 ) -> ReactionTable:
-    """Return a table with all connections in one order, without force where the case has none."""
+    """Return a table with all connections of the sequence in one order; a connection that the case
+    does not have has zero force.
+    """
     have = {c: k for k, c in enumerate(table.connections)}
     owner = {c: t for t in of.values() for c in t.connections}
     at = [have.get(c, -1) for c in names]
     present = np.array([k >= 0 for k in at])
-    turn = None if table.turn is None else _where(present, table.turn[:, at])
+    turn = None if table.turn is None else _turn_where_present(present, table.turn[:, at])
     of_name = {peak.connection: peak for peak in table.largest}
     return replace(
         table,
@@ -146,15 +149,18 @@ def _with_all(
     )
 
 
-def _where(present: Floats, turn: Floats) -> Floats:
-    """Return the turn where the case has the connection, and none elsewhere."""
+def _turn_where_present(present: Floats, turn: Floats) -> Floats:
+    """Return the rotation where the case has the connection, and no rotation elsewhere.
+
+    turn: angles (T, C) in a plane or matrices (T, C, 3, 3) in space.
+    """
     if turn.ndim == 2:
         return np.where(present, turn, 0.0)
     return np.where(present[:, None, None], turn, np.eye(3))
 
 
 def _peak(c: int, tables: Mapping[str, ReactionTable], order: list[Occurrence]) -> PeakReaction:
-    """Return the peak of connection number c, at its first occurrence."""
+    """Return the peak of connection number c over the sequence, at its first occurrence."""
     peaks = [(s, tables[s.case].peaks[c]) for s in order]
     step, peak = max(peaks, key=lambda pair: pair[1].force)
     case_time = 0.0 if peak.time is None else peak.time - _first(tables[step.case].times)
@@ -167,10 +173,10 @@ def _peak(c: int, tables: Mapping[str, ReactionTable], order: list[Occurrence]) 
 
 
 def _frictionless(largest: Iterable[tuple[float, float | None]]) -> float | None:
-    """Return the largest value without friction, None where no step has friction.
+    """Return the largest value without friction, or None if no step has friction.
 
-    largest: of every step, the largest value and that without friction; None where nothing rubs, as
-    at rest, so that both are the same.
+    largest: for every step, the largest value and the largest value without friction. The latter is
+    None where nothing rubs, as at rest; both are then the same.
     """
     every = list(largest)
     if all(smooth is None for _, smooth in every):
@@ -228,9 +234,10 @@ def _motion(
 
 
 def _carried(load: AppliedForce, own: LinkageMotion, whole: LinkageMotion) -> Floats:
-    """Return the positions (T, 2) of the point of a load, which its body carries through all steps.
+    """Return the positions (T, 2) of the point at which a load acts; its body carries the point
+    through all steps.
 
-    own: motion of the case with the load. whole: of the sequence.
+    own: motion of the case with the load. whole: motion of the sequence.
     """
     if load.body not in whole.bodies:  # on the ground
         return np.repeat(load.position[:1], len(whole.centre), axis=0)
@@ -243,8 +250,8 @@ def _carried(load: AppliedForce, own: LinkageMotion, whole: LinkageMotion) -> Fl
 
 
 def _jumps(motions: Mapping[str, LinkageMotion], order: list[Occurrence]) -> str:
-    """Return a sentence on the cases that do not begin where those before them end; empty without
-    any.
+    """Return a sentence that names the cases that do not begin where the case before them ends;
+    empty if there are none.
     """
     jumps: dict[str, None] = {}
     for one, two in pairwise(order):
@@ -263,11 +270,12 @@ def _drive(
 ) -> DriveTable:
     """Return a drive's table over a sequence.
 
-    tables: of the drive by case; None where something else holds, so that its force is zero.
+    tables: of the drive, for each case; None where something else holds the linkage, so that the
+    drive's force is zero.
     """
-    like = next(t for t in tables.values() if t is not None)
+    known = next(t for t in tables.values() if t is not None)
     whole = {
-        case: t or _idle(like, 1 if (course := times[case]) is None else len(course))
+        case: t or _idle(known, 1 if (course := times[case]) is None else len(course))
         for case, t in tables.items()
     }
     joined, axis = _course(whole, times, order), _axis(times, order)
@@ -287,15 +295,15 @@ def _work(study: Study, drives: list[DriveTable]) -> str:
     return f"Work per cycle: {', '.join(drive_texts)}."
 
 
-def _idle(like: DriveTable, count: int) -> DriveTable:
+def _idle(drive: DriveTable, count: int) -> DriveTable:
     unknown, zero = np.full(count, np.nan), np.zeros(count)
     return DriveTable(
-        *("", None, unknown, unknown, unknown, zero, zero, zero, zero, zero), like.name, like.kind
+        *("", None, unknown, unknown, unknown, zero, zero, zero, zero, zero), drive.name, drive.kind
     )
 
 
 def _effort(table: DriveTable) -> DriveEffort:
-    """Return a drive's effort over the case's own time, which begins at zero."""
+    """Return a drive's effort with times counted from the beginning of the case."""
     if table.effort is not None:
         begin, e = _first(table.time), table.effort
         return replace(e, time=e.time - begin, power_time=e.power_time - begin)
@@ -344,6 +352,6 @@ def _sequences(history: PointHistory, orders: dict[str, list[Occurrence]]) -> It
             yield replace(_course(used, times, order), case=name, times=_axis(times, order))
 
 
-def _unloaded(like: PointHistory) -> CaseHistory:
+def _unloaded(history: PointHistory) -> CaseHistory:
     zero = np.zeros(1)
-    return CaseHistory("", None, np.zeros((1, like.cases[0].stress.shape[1])), zero, zero)
+    return CaseHistory("", None, np.zeros((1, history.cases[0].stress.shape[1])), zero, zero)

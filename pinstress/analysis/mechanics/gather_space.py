@@ -1,4 +1,4 @@
-"""Results of a linkage in space for reports, gathered in SI from its dynamics."""
+"""Results of a linkage in space for reports, gathered in SI units from its dynamics."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from reports.data.motion import BodyMotion, Extremes, SpacePosture
 from reports.data.skeleton import Skeleton
 
 NEGLIGIBLE_RANGE = 1e-3  # of the largest force of the case: a smaller range is not reported
-ROUND_OFF = 1e-12  # of the largest of all drives
-NO_ANGLE = 1e-12  # rad: a smaller one is zero but for round-off
-MAX_BODY_LINES = 200_000  # of the table of bodies, 50 MB; a longer one is not written
+ROUND_OFF = 1e-12  # relative to the largest force or power of all drives
+NO_ANGLE = 1e-12  # rad: a smaller angle is round-off of zero
+MAX_BODY_LINES = 200_000  # of the table of bodies, 50 MB; a longer table is not written
 NO_TABLES = "In space: no table of sliding on pins is written."
 
 
 def shown_positions(study: Study, positions: Floats, moved: Sequence[tuple[str, bool]]) -> Floats:
-    """Return the displayed positions (T, D): lengths less their offsets, angles in degrees.
+    """Return the displayed positions (T, D): lengths minus their offsets, and angles in degrees.
 
     positions: (T, D) m or rad. moved: the name of every drive, and whether it slides.
     """
@@ -54,7 +54,7 @@ def drives(
     """Return the table of every drive of a case.
 
     moved: the name of every drive, and whether it slides.
-    course: displayed positions, and speeds and accelerations in SI, (T, D) each.
+    course: displayed positions, and speeds and accelerations in SI units, (T, D) each.
     exerted: forces or torques, and powers, (T, D) each.
     energies: kinetic and potential energy of the linkage, (T,) J each.
     efforts: of every drive over a whole motion. frictionless: the same without friction.
@@ -88,19 +88,23 @@ def drives(
 
 
 def _without_round_off(values: Floats) -> Floats:
-    """Return values of all drives at one instant, with zero where one is round-off of another."""
+    """Return the values of all drives at one instant, with zero for those that are round-off of the
+    largest.
+    """
     least = ROUND_OFF * np.abs(values).max(initial=0.0)
     return np.where(np.abs(values) > least, values, 0.0)
 
 
 def _names(solved: InSpace) -> list[tuple[str, bool]]:
-    """Return the name of all that drives or holds the linkage, and whether it slides."""
+    """Return the name of every actuator, which drives or holds the linkage, and whether it
+    slides.
+    """
     equations = solved.dynamics.motion.equations
     return [(name, equations.slides(name)) for name in equations.actuators]
 
 
 def positions_in_space(study: Study, solved: InSpace) -> Floats:
-    """Return the displayed positions (T, D)."""
+    """Return the displayed positions (T, D) of the actuators."""
     return shown_positions(study, solved.dynamics.motion.actuated[0], _names(solved))
 
 
@@ -115,7 +119,7 @@ def drives_in_space(study: Study, case: str, solved: InSpace) -> list[DriveTable
 
 
 def bodies_in_space(study: Study, case: str, solved: InSpace) -> list[BodyMotion]:
-    """Return the motion and momenta of every body of the study; none of very long motions."""
+    """Return the motion and momenta of every body of the study; empty for very long motions."""
     if _body_lines(study, solved) > MAX_BODY_LINES:
         return []
     names = {b.name: k for k, b in enumerate(solved.dynamics.motion.linkage.bodies)}
@@ -138,7 +142,7 @@ def _body_lines(study: Study, solved: InSpace) -> int:
 
 
 def _no_bodies(study: Study, solved: InSpace) -> str:
-    """Return a sentence on a case that is too long for the table of bodies; empty for others."""
+    """Return a sentence that a case is too long for the table of bodies; empty for other cases."""
     lines = _body_lines(study, solved)
     if lines <= MAX_BODY_LINES:
         return ""
@@ -149,7 +153,7 @@ def _no_bodies(study: Study, solved: InSpace) -> str:
 
 
 def skeleton_in_space(study: Study, case: str, solved: InSpace) -> Skeleton:
-    """Return what is drawn of a linkage."""
+    """Return the skeleton of a linkage, as it is drawn."""
     joints = space_mechanism(study).joint
     pins = {connection: name for name, joint in joints.items() for connection in joint.connections}
     axes = {
@@ -161,13 +165,15 @@ def skeleton_in_space(study: Study, case: str, solved: InSpace) -> Skeleton:
 
 
 def note_in_space(study: Study, solved: InSpace) -> str:
-    """Return the note of a case: its impulses, what its forces depend on, and what is left out."""
+    """Return the note of a case: its impulses, the range of its forces over the stiffness of links,
+    and what is left out.
+    """
     told = solved.note, _range(study, solved), NO_TABLES, _no_angles(solved)
     return " ".join(filter(None, (*told, _no_bodies(study, solved))))
 
 
 def _no_angles(solved: InSpace) -> str:
-    """Return a sentence on a case that is too long for transmission angles; empty for others."""
+    """Return a sentence that a case is too long for transmission angles; empty for other cases."""
     motion = solved.dynamics.motion
     if solved.held is not None or postures_of(motion.linkage, len(motion)) <= MAX_POSTURES:
         return ""
@@ -175,7 +181,9 @@ def _no_angles(solved: InSpace) -> str:
 
 
 def posture_in_space(study: Study, case: str, solved: InSpace) -> SpacePosture:
-    """Return how well the links of a case transmit; of very long motions no angles."""
+    """Return the transmission angles and the condition of a case; no angles for very long
+    motions.
+    """
     joints = space_mechanism(study).joint
     pins = {connection: name for name, joint in joints.items() for connection in joint.connections}
     motion, times = solved.dynamics.motion, solved.dynamics.reactions.times
@@ -200,13 +208,13 @@ def posture_in_space(study: Study, case: str, solved: InSpace) -> SpacePosture:
 
 
 def _link(pins: Mapping[str, str], key: tuple[str, str]) -> str:
-    """Return the name of a link at a joint. pins: joints of the study by connection."""
+    """Return the name of a link at a joint. pins: the joint of the study for each connection."""
     link, joint = key
     return f"{link} at {pins.get(joint, joint)}"
 
 
 def _range(study: Study, solved: InSpace) -> str:
-    """Return sentences on the forces that the unknown stiffness of links decides."""
+    """Return sentences on the forces that depend on the unknown stiffness of links."""
     r, variants = solved.reactions, solved.dynamics.range
     if not variants:
         return ""
@@ -228,7 +236,7 @@ def _range(study: Study, solved: InSpace) -> str:
 
 
 def _drive_effort(effort: Effort, slides: bool, frictionless: float | None) -> DriveEffort:
-    """Return the effort of a drive over its motion, angles in degrees."""
+    """Return the effort of a drive over its motion, with angles in degrees."""
     return DriveEffort(
         effort.largest.value,
         effort.largest.time,

@@ -1,4 +1,6 @@
-"""Sliding of links on their pins, pressure, and their product over a motion, in SI."""
+"""Sliding of links on their pins, the pressure between them, and the product of both over a motion,
+in SI units.
+"""
 
 from __future__ import annotations
 
@@ -18,16 +20,16 @@ from reports.data.wear import BandWear
 
 
 def wear(study: Study, loads: dict[str, CaseLoads]) -> tuple[BandWear, ...]:
-    """Return the sliding of every band of the turned pins in every case that is a motion.
+    """Return the sliding on every band of the pins with a profile, in every case that is a motion.
 
-    It is that of the instants between which the loads are polynomials, and of the samples.
+    It is evaluated at the instants between which the loads are polynomials, and at the samples.
     """
     moving = {n: c for n, c in loads.items() if c.moving is not None and c.solve is not None}
     return tuple(row for n, c in moving.items() for row in _of_case(n, c, _bands(study)))
 
 
 def _bands(study: Study) -> dict[str, tuple[str, dict[str, Band]]]:
-    """Return the pin of every connection of a pin with a profile, and the connection's bands."""
+    """Return for every connection of a pin with a profile the pin and the connection's bands."""
     out = {}
     for name, table in study.table.pin.items():
         if table.geometry is not None:
@@ -64,7 +66,9 @@ def _of_case(
 
 
 def _forces(reactions: Reactions, k: int, on: dict[str, Band]) -> dict[str, Floats]:
-    """Return the sizes (T,) N of the force across the pin on each band of the k-th connection."""
+    """Return the magnitudes (T,) N of the force across the pin on each band of the k-th
+    connection.
+    """
     first, last = next(iter(on)), next(reversed(on))
     ears = {first: Ears(last, on[first].middle, on[last].middle)} if len(on) > 1 else {}
     link = reactions.forces[:, [k]], reactions.moments[:, [k]]
@@ -73,8 +77,8 @@ def _forces(reactions: Reactions, k: int, on: dict[str, Band]) -> dict[str, Floa
 
 
 def sliding(dynamics: Dynamics, body: str, against: str, radius: float) -> tuple[float, Floats]:
-    """Return the path (m) of a body on a pin that turns with another body, and its velocity (T,)
-    m/s.
+    """Return the path (m) over which a body slides on a pin that turns with another body, and the
+    velocity (T,) m/s.
 
     radius: of the pin, m.
     """
@@ -85,8 +89,8 @@ def sliding(dynamics: Dynamics, body: str, against: str, radius: float) -> tuple
 
 
 def _references(dynamics: Dynamics, joint: Joint, body: str) -> list[str]:
-    """Return the bodies with which a pin may turn: the one that carries it, or any other link on a
-    floating one. There are none where a rotation is not known.
+    """Return the bodies with which a pin may turn: the body in which it is fixed, or, for a
+    floating pin, any other link on it. Empty if a rotation is unknown.
     """
     linkage = dynamics.motion.linkage
     particles = {b.name for b in linkage.bodies if is_particle(linkage, b.name)}
@@ -101,7 +105,7 @@ def _references(dynamics: Dynamics, joint: Joint, body: str) -> list[str]:
 def _with_sliding(
     row: BandWear, slides: list[tuple[str, float, Floats]], pressure: Floats, times: Floats
 ) -> BandWear:
-    """Return a row with the largest sliding of those that are possible."""
+    """Return a row with the largest of the possible slidings."""
     if not slides:
         return row
     against, distance, _ = max(slides, key=lambda slide: slide[1])

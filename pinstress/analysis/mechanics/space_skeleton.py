@@ -1,4 +1,6 @@
-"""What drawings and animations show of a linkage in space, gathered in SI from its dynamics."""
+"""Skeleton of a linkage in space for drawings and animations, gathered in SI units from its
+dynamics.
+"""
 
 from __future__ import annotations
 
@@ -20,9 +22,11 @@ from pinbase.grouped import grouped
 from reports.data.motion import AppliedForce, PitchCurve
 from reports.data.skeleton import AppliedCouple, Skeleton, Vector
 
-CHORDS = 24  # of a pitch circle
+CHORDS = 24  # number of chords that draw a pitch circle
 MIN_SINE = 1e-6  # of the angle between a gear's axis and the normal of its pitch cone
-MIN_STEM = 1e-6  # of the linkage's size: from the only joint of a body to its centre of mass
+# Relative to the linkage's size: distance from the only joint of a body to its centre of mass from
+# which a line between them is drawn.
+MIN_STEM = 1e-6
 
 
 def space_skeleton(
@@ -30,9 +34,10 @@ def space_skeleton(
 ) -> Skeleton:
     """Return the skeleton of a linkage in space along its motion.
 
-    pins: the pin on which each joint of the linkage is, by the joint's name; joints of other names
-    (welds, say) are not drawn, and neither are bodies that are pins alone or fixed to the ground.
-    axes: directions (3,) as drawn of the pins that have one.
+    pins: the pin of each joint of the linkage, by the joint's name. Joints that are not in it
+    (welds, say) are not drawn, and neither are bodies that only represent a pin or are fixed to the
+    ground.
+    axes: directions (3,), as drawn, of the pins that have one.
     """
     motion = dynamics.motion
     drawn = [joint for joint in motion.linkage.joints if joint.name in pins]
@@ -94,7 +99,7 @@ def space_skeleton(
 
 
 def _pitch_lines(motion: SpaceMotion) -> Iterator[PitchCurve]:
-    """Yield the pitch circles of gears as chords with a radius, which turn with them."""
+    """Yield the pitch circles of gears as chords and one radius, which turn with the gears."""
     linkage = motion.linkage
     angles = {m.name: m for m in linkage.measured if isinstance(m, BodyAngle)}
     for _, ratio, teeth in linkage.teeth:
@@ -120,21 +125,25 @@ def _pitch_lines(motion: SpaceMotion) -> Iterator[PitchCurve]:
 
 
 def _ends(motion: SpaceMotion, between: PointDistance) -> Floats:
-    """Return the places (T, 2, 3) of two points, m."""
+    """Return the positions (T, 2, 3) of two points, m."""
     both = zip(between.bodies, between.ends, strict=True)
     return np.stack([motion.place(body, end) for body, end in both], axis=1)
 
 
 def _axis(motion: SpaceMotion, body: str, axis: Floats | None) -> Floats:
-    """Return the unit vectors (T, 3) of an axis (3,) that turns with a body; zero for none."""
+    """Return the unit vectors (T, 3) of an axis (3,) that turns with a body; zeros without
+    an axis.
+    """
     if axis is None:
         return np.zeros((len(motion), 3))
     return np.asarray(motion.rotation(body) @ axis / np.linalg.norm(axis))
 
 
 def _links(drawn: list[SpaceJoint], pins: Mapping[str, str]) -> dict[str, tuple[str, ...]]:
-    """Return the pins on each body and on the ground, without bodies that are a pin alone: bases
-    of joints on one pin that move relative to nothing else.
+    """Return the pins on each body and on the ground.
+
+    Bodies that only represent a pin are left out: those with one pin that are never the moving body
+    of a joint.
     """
     on: dict[str, dict[str, None]] = {}
     moving = {joint.moving for joint in drawn}
@@ -149,22 +158,24 @@ def _links(drawn: list[SpaceJoint], pins: Mapping[str, str]) -> dict[str, tuple[
 
 
 def _place(motion: SpaceMotion, joint: SpaceJoint) -> Floats:
-    """Return the place (T, 3) of a joint: where it slides, that of its moving body."""
+    """Return the position (T, 3) of a joint, m; of one that slides, that of the point on its moving
+    body.
+    """
     body = joint.base if KINDS[joint.kind].meets else joint.moving
     return motion.place(body, joint.at)
 
 
 def _grounded(linkage: SpaceLinkage) -> set[str]:
-    """Return the ground and the bodies that are fixed to it, directly or by others."""
+    """Return the ground and the bodies that are fixed to it, directly or through other bodies."""
     fixed = [{j.base, j.moving} for j in linkage.joints if j.kind == "fixed"]
     still = {GROUND}
-    while more := {body for pair in fixed if pair & still for body in pair} - still:
-        still |= more
+    while newly_fixed := {body for pair in fixed if pair & still for body in pair} - still:
+        still |= newly_fixed
     return still
 
 
 def _applied(dynamics: SpaceDynamics, bodies: tuple[str, ...]) -> dict[str, Any]:
-    """Return the forces and the couples on bodies that are drawn."""
+    """Return the forces and the couples on the bodies that are drawn."""
     motion = dynamics.motion
     pushes = [
         (push, motion.place(push.body, push.at))
@@ -179,7 +190,9 @@ def _applied(dynamics: SpaceDynamics, bodies: tuple[str, ...]) -> dict[str, Any]
 
 
 def _up(gravity: Vector) -> Vector:
-    """Return the axis that is nearest to the vertical; z without gravity."""
+    """Return the unit vector of the coordinate axis that is nearest to the upward vertical; z
+    without gravity.
+    """
     steepest = int(np.argmax(np.abs(gravity))) if any(gravity) else 2
     up = [0.0, 0.0, 0.0]
     up[steepest] = -1.0 if gravity[steepest] > 0.0 else 1.0

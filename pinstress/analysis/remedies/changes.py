@@ -1,10 +1,10 @@
-"""Changes by which a pin reaches its factor of safety: stronger, larger, or loaded less.
+"""Changes by which a pin reaches its factor of safety, in strength, diameters or loads.
 
 Stress is proportional to the loads and, in a linear-elastic pin, does not depend on the strength.
-An impulse acts with the other loads, so its permissible time is computed by superposing the unit
-loads that are solved. Larger pins are solved again at the governing instant on the first mesh only,
-and the ratio of two such maxima is taken, in which most of the error of the mesh cancels: a few per
-cent remain (`pinstress size` solves them as a run does).
+An impulse acts together with the other loads, so its permissible time is found by superposing the
+unit loads that are solved. Larger pins are solved again at the governing instant on the first mesh
+only. The ratio of two such maxima is used, in which most of the error of the mesh cancels: a few
+per cent remain (`pinstress size` solves them as a run does).
 """
 
 from __future__ import annotations
@@ -25,8 +25,9 @@ from pinstress.study.model.tasks import Task
 from reports.data.changes import Remedy
 
 FIRST_RUNG = ModelMesh("harmonic")
-FIRST_MESH_TOLERANCE = 0.04  # of the factor: what the first mesh is worth
-# Of an impulse tried at a time, each time between the last two
+FIRST_MESH_TOLERANCE = 0.04  # relative accuracy of a factor from the first mesh
+# Shares of an impulse that are tried in each round, and rounds; each round refines the interval in
+# which the limit lies.
 IMPULSE_SHARES, SEARCH_ROUNDS = 17, 3
 SIZED_BY_COMMAND = "diameters are found by pinstress size"
 FROM_FILE = "its shape comes from a file, which has no diameters to change"
@@ -34,35 +35,36 @@ FROM_FILE = "its shape comes from a file, which has no diameters to change"
 
 @dataclass(frozen=True)
 class FailingCase:
-    """A case whose factor is too small: its solution, and the permissible share of all loads.
+    """A case whose factor is too small: its solution, and the permissible share of all loads
+    (`permissible_share`).
 
-    The share follows from the upper end of the stress where that is a range, and from the stress
-    beneath contact.
+    The share is for the stress at the upper end of its error, and for the stress beneath contact.
     """
 
     task: Task
     solution: Solution
-    part: float
+    permissible_share: float
 
 
 def change(requirement: Requirement, task: Task, solutions: tuple[Solution, ...]) -> Remedy | None:
     """Return the change that a pin needs in the worst of its cases.
 
-    None where no case is below the required factor (yield where none is required), with its error
-    and beneath contact; and for a hardened surface, whose case and core would change differently.
+    None if no case is below the required factor (yield if none is required), counting the error and
+    the stress beneath contact; and for a hardened surface, whose case and core would change
+    differently.
     """
     strength = None if task.material.hardened else task.material.yield_strength
 
     def required_of(solution: Solution) -> float:
         return requirement.of_case(solution.peak.case).required or 1.0
 
-    worst = max(solutions, key=lambda s: _counted(s) * required_of(s))
+    worst = max(solutions, key=lambda s: _deciding_stress(s) * required_of(s))
     peak, required = worst.peak, required_of(worst)
     if strength is None or not peak.max_von_mises:
         return None
-    if _counted(worst) <= strength / required:
+    if _deciding_stress(worst) <= strength / required:
         return None
-    # An error that is not known says nothing of what would suffice.
+    # With an unknown error, the stress itself is the best estimate of what would suffice.
     high = max(peak.upper_end if peak.bounded else peak.max_von_mises, _beneath(worst))
     failing = FailingCase(task, worst, strength / required / high)
     impulse = task.impulses.get(peak.case)
@@ -74,7 +76,7 @@ def change(requirement: Requirement, task: Task, solutions: tuple[Solution, ...]
         case=peak.case,
         required=required,
         yield_strength=required * high,
-        load_factor=failing.part,
+        load_factor=failing.permissible_share,
         proportional=not task.lugs,
         diameter_factor=times,
         diameter_note=why,
@@ -84,9 +86,11 @@ def change(requirement: Requirement, task: Task, solutions: tuple[Solution, ...]
     )
 
 
-def _counted(solution: Solution) -> float:
-    """Return the stress that decides whether a case fails, Pa: with its error, unless that is
-    singular or not known, or that beneath contact.
+def _deciding_stress(solution: Solution) -> float:
+    """Return the stress that decides whether a case fails, Pa: the larger of the maximum and the
+    stress beneath contact.
+
+    The maximum counts with its error unless it is singular or the error is unknown.
     """
     peak = solution.peak
     alone = peak.verdict == "singular" or not peak.bounded
@@ -101,19 +105,20 @@ def _beneath(solution: Solution) -> float:
 
 
 def _share(failing: FailingCase, loads: PinLoads) -> float | None:
-    """Return the share of an impulse's force that is permissible with the other loads.
+    """Return the share of an impulse's force that is permissible with the other loads; None if
+    there is none.
 
-    loads: without and with the impulse.
+    loads: two instants, without and with the impulse.
     """
     answer, whole = failing.solution.answer, failing.solution.peak.max_von_mises
     if answer is None or whole is None:
         return None
     if failing.task.lugs:
-        return failing.part
+        return failing.permissible_share
     low, high = 0.0, 1.0
     for _ in range(SEARCH_ROUNDS):
         shares = np.linspace(low, high, IMPULSE_SHARES)
-        bad = _maxima(answer, loads, shares) > failing.part * whole
+        bad = _maxima(answer, loads, shares) > failing.permissible_share * whole
         first = int(bad.argmax()) if bad.any() else IMPULSE_SHARES - 1
         if not first:
             return None
@@ -129,7 +134,9 @@ def _maxima(answer: StressField, loads: PinLoads, shares: Floats) -> Floats:
 
 
 def _problem(requirement: Requirement, failing: FailingCase) -> Problem | None:
-    """Return the governing instant on one mesh; None where that would take too long."""
+    """Return the governing instant as a problem for one mesh; None for pins in lugs or with cuts,
+    which would take too long.
+    """
     task, loads = failing.task, failing.solution.peak.governing
     if task.lugs or not task.pin.revolved or loads is None:
         return None
@@ -139,7 +146,7 @@ def _problem(requirement: Requirement, failing: FailingCase) -> Problem | None:
 def _diameters(
     problem: Problem | None, failing: FailingCase, required: float
 ) -> tuple[float | None, str]:
-    """Return the factor on all diameters that suffices, or why none does.
+    """Return the factor on all diameters that suffices, or None and the reason.
 
     A pin must stay longer than wide.
     """
@@ -149,7 +156,7 @@ def _diameters(
     if problem is None or pin is None:
         return None, SIZED_BY_COMMAND
     try:
-        return _widening(problem, pin, required * failing.part, required), ""
+        return _widening(problem, pin, required * failing.permissible_share, required), ""
     except NoSizeError as error:
         return None, str(error)
     except (GeometryError, ArithmeticError) as error:

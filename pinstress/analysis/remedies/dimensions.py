@@ -1,4 +1,4 @@
-"""The dimensions of a pin by the keys of its table in the study."""
+"""The dimensions of a pin, by the keys of its table in the study."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from pinstress.study.schema.pins import PinTable
 
 TableChange = Callable[[PinTable, float], PinTable]
 MERIDIAN_KEYS = "meridian", "bore_meridian"
-Z_INDEX, R_INDEX, RADIUS_INDEX = range(3)  # of a corner
+Z_INDEX, R_INDEX, RADIUS_INDEX = range(3)  # positions of the numbers of a corner
 
 
 def dimensions_of(study: Study, pin: PinLike) -> Iterator[Dimension]:
-    """Yield the non-zero dimensions of a body of revolution, m; none of any other pin or of one
-    from a file.
+    """Yield the non-zero dimensions of a body of revolution, m; none of other pins or of a pin from
+    a file.
 
-    They are those of its profile (geometry.shape.dimensions), or of its outline by corners, where
-    "meridian[3][2]" is the radius of the third corner.
+    The dimensions are those of the profile (geometry.shape.dimensions) or of the outline's corners,
+    where "meridian[3][2]" is the radius of the third corner.
     """
     table = study.table.pin[pin.name]
     profile = body_of_revolution(pin)

@@ -1,4 +1,4 @@
-"""Parameters of a pin in contact with its lugs, by the keys of the study: the dimensions and
+"""Parameters of a pin in contact with its lugs, by their keys in the study: dimensions and
 materials of pin and lugs.
 """
 
@@ -20,7 +20,7 @@ from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.lugs import LugTable
 
-# Of the pin's radius: what steps of a clearance are parts of, as it may be none
+# Relative to the pin's radius: the scale for steps of a clearance, which may itself be zero
 CLEARANCE_SCALE = 1e-3
 
 
@@ -35,7 +35,7 @@ class StudyParameter:
 def joint_parameters(study: Study, task: Task) -> Iterator[StudyParameter]:
     """Yield the non-zero parameters of a pin in lugs, and its clearances.
 
-    Those of a lug that both ears of a link have are of both.
+    A parameter of a lug that both ears of a link share belongs to both.
     """
     pin = body_of_revolution(task.pin)
     assert pin is not None
@@ -45,7 +45,7 @@ def joint_parameters(study: Study, task: Task) -> Iterator[StudyParameter]:
     table = study.table.pin[pin.name]
     for lug in task.lugs:
         name = lug.connection
-        if name in table.like_the_other:
+        if name in table.shared_lugs:
             continue
         given = table.lug.get(name)
         bushing = given and given.bushing
@@ -78,7 +78,7 @@ def joint_parameters(study: Study, task: Task) -> Iterator[StudyParameter]:
 def _with_dimension(study: Study, task: Task, dimension: Dimension, value: float) -> Joint:
     pin = dimension.changed(value)
     old = {lug.connection: lug for lug in task.lugs}
-    # A fit has another clearance in the next step of sizes; the derivative is within one.
+    # The clearance of a fit jumps between ranges of nominal size; the derivative is within a range.
     lugs = tuple(
         replace(lug, clearance=was.clearance - was.growth + lug.growth, range=was.range)
         for lug in known_lugs(study, pin, task.rise)
@@ -89,7 +89,7 @@ def _with_dimension(study: Study, task: Task, dimension: Dimension, value: float
 
 def _with_lug(study: Study, task: Task, name: str, key: str, value: float) -> Joint:
     table = study.table.pin[task.pin.name]
-    ears = (ear for ear, link in table.like_the_other.items() if link == name)
+    ears = (ear for ear, link in table.shared_lugs.items() if link == name)
     for one in (name, *ears):
         lug_path = "pin", task.pin.name, "lug", one
         if one not in table.lug:
@@ -114,7 +114,7 @@ def _changed(study: Study, path: tuple[str, ...], value: Any) -> Study:
 
 
 def _set(table: Any, path: tuple[str, ...], value: Any) -> Any:
-    """Return a table with another value at a path of names."""
+    """Return a table with another value at a path of keys."""
     first, *rest = path
     named = isinstance(table, dict)
     if rest:

@@ -8,17 +8,17 @@ from dataclasses import dataclass
 
 from assess.diameter_law import BENDING_EXPONENT
 
-MIN_SLOPE, MAX_SLOPE = 0.5, 6.0  # slopes that are believed
-MIN_SCALE_RATIO = 1.2  # ratio of scales from which a slope says that larger pins hardly help
-MAX_SCALE_STEP = 3.0  # from one trial to the next at most
-FACTOR_TOLERANCE = 0.01  # how much more than the required factor is close enough
-BRACKET_TOLERANCE = 0.001  # a bracket of scales that is not looked into
+MIN_SLOPE, MAX_SLOPE = 0.5, 6.0  # limits of the slope of a secant
+MIN_SCALE_RATIO = 1.2  # ratio of scales from which a low slope shows that larger pins hardly help
+MAX_SCALE_STEP = 3.0  # the largest ratio of the scales of successive trials
+FACTOR_TOLERANCE = 0.01  # relative excess over the required factor that is close enough
+BRACKET_TOLERANCE = 0.001  # relative width of a bracket of scales that is not divided further
 MIN_SCALE, MAX_SCALE = 0.02, 50.0
 MAX_TRIALS = 14
 
 
 class NoSizeError(Exception):
-    """No scale reaches the factor; the message says why."""
+    """No scale reaches the required factor; the message says why."""
 
 
 @dataclass(frozen=True)
@@ -38,8 +38,9 @@ def smallest(
     """Return the smallest scale whose factor is at least `required`, and at most `close` (relative)
     more.
 
-    The factor grows with the scale. Its logarithm is nearly linear in that of the scale, so secants
-    converge fast; trials on both sides bound them. The returned scale was itself tried.
+    The factor grows with the scale. The logarithm of the factor is nearly linear in the logarithm
+    of the scale, so secants converge fast; trials on both sides bracket the scale. The returned
+    scale is one of the trials.
 
     start: the smallest scale allowed.
 
@@ -69,7 +70,7 @@ def smallest(
                 )
             slope = min(max(rise, MIN_SLOPE), MAX_SLOPE)
         before = now
-        # Aimed a little high, for only what is not below will do.
+        # The aim is a little high, because only a factor that is not below the required one counts.
         aim = required * (1.0 + 0.4 * close)
         scale = min(now.scale * (aim / now.factor) ** (1.0 / slope), MAX_SCALE_STEP * now.scale)
         if above and below and not below.scale < scale < above.scale:

@@ -1,9 +1,9 @@
-"""Sensitivities of a pin's factor of safety: derivatives with respect to dimensions, loads and
-material.
+"""Sensitivities of a pin's factor of safety, i.e. its derivatives with respect to dimensions, loads
+and material.
 
-They are derivatives of the row's number: of the stress of a section where that governs, otherwise
-of the surface's on its own mesh (fea.derivatives). Where a beam answers, those of the harmonic
-model's first mesh are taken, relative to its own maximum.
+They are derivatives of the stress that the row reports: of the section's where it governs,
+otherwise of the surface's on its own mesh (assess.derivatives). For a beam, the derivatives on the
+first mesh of the harmonic model are scaled to the beam's maximum.
 """
 
 from __future__ import annotations
@@ -43,10 +43,10 @@ if TYPE_CHECKING:
     from assess.derivatives.in_lugs import JointDerivatives, JointParameter
     from pinstress.analysis.remedies.joint_parameters import StudyParameter
 
-MAX_STEP_FRACTION = 0.1  # of a dimension that its step is at most
-STEP_FRACTION = 0.01  # step of any other parameter, of its value; of a force, of the largest
+MAX_STEP_FRACTION = 0.1  # the largest step of a dimension over the dimension
+STEP_FRACTION = 0.01  # step of any other parameter over its value; of a force, over the largest one
 POISSON_RATIO_STEP = 0.01
-CLEARANCE_STEP = 0.01  # of the step of a dimension: that of a clearance
+CLEARANCE_STEP = 0.01  # step of a clearance over the step of a dimension
 IN_LUGS_NOTE = (
     "held by lugs in contact; derivatives, which take about as long as the solution, "
     "by --sensitivities"
@@ -66,8 +66,9 @@ def sensitivities(
 ) -> tuple[PinSensitivities, ...]:
     """Return the sensitivities of a task's worst case, or of every case.
 
-    step: the change of a dimension (m) whose effect is shown; a tenth of it, or a hundredth, where
-    it is not small relative to the dimension.
+    step: the change of a dimension (m) whose effect is shown. It is divided by powers of ten until
+    it is at most MAX_STEP_FRACTION of the dimension.
+    every: whether to return every case, and the derivatives of pins in lugs, which take long.
     """
     ranked = sorted((s for s in solutions if _largest(s)), key=lambda s: _largest(s), reverse=True)
     dimensions = tuple(dimensions_of(study, task.pin))
@@ -91,10 +92,11 @@ def differentiated_in_lugs(
     alone: bool = False,
     place: Place | None = None,
 ) -> JointDerivatives | None:
-    """Return the derivatives of the maximum of a pin in contact, or of the stress at a place at the
-    row's instant; None where there is none.
+    """Return the derivatives of the maximum of a pin in contact, or of the stress at a place, at
+    the row's governing instant; None if the row has no maximum or no harmonic model.
 
-    alone: differentiate by the parameters only, not by loads.
+    alone: differentiate with respect to the parameters only, not the loads.
+    place: where the stress is differentiated; by default where it governs.
 
     Raises: MeshError, SolveError.
     """
@@ -125,14 +127,14 @@ def differentiated_in_lugs(
 
 
 def governing_place(peak: Maximum) -> Place:
-    """Return the place whose stress is the maximum."""
+    """Return the place that has the maximum stress."""
     return "surface" if peak.places is None else peak.places.governs
 
 
 def differentiated(
     requirement: Requirement, task: Task, solution: Solution, dimensions: tuple[Dimension, ...]
 ) -> Derivatives | None:
-    """Return the derivatives of a solution's maximum; None where it has none.
+    """Return the derivatives of a solution's maximum, or None if it has none.
 
     Raises: MeshError, SolveError.
     """
@@ -159,7 +161,7 @@ def differentiated(
 
 
 def scaled(gradient: Derivatives, maximum: float) -> Derivatives:
-    """Return derivatives of another maximum, Pa, with the same relative derivatives."""
+    """Return derivatives with the same relative values for another maximum, Pa."""
     times = maximum / gradient.maximum
     if times == 1.0:
         return gradient
@@ -216,13 +218,15 @@ def _with_rows(
 
 
 def _study_key(pin: str, key: str) -> str:
-    """Return the key in the study of a parameter that may be of the pin's own table."""
+    """Return the key of a parameter in the study; keys of dimensions lack the pin's table."""
     others = "force ", "moment ", "material."
     return key if key.startswith(others) else f"pin.{key_part(pin)}.{key}"
 
 
 def _of_lugs(study: Study, task: Task, joined: Solution, step: float | None) -> PinSensitivities:
-    """Return the sensitivities of a pin in contact; without a step, why there are none."""
+    """Return the sensitivities of a pin in contact. step: None to return only the note on how to
+    get them.
+    """
     from pinstress.analysis.remedies.joint_parameters import joint_parameters
 
     peak = joined.peak
@@ -249,8 +253,8 @@ def _of_lugs(study: Study, task: Task, joined: Solution, step: float | None) -> 
     ]
     if strength is not None:
         key = f"material.{key_part(task.material.name)}.yield_strength"
-        more = STEP_FRACTION * strength
-        rows.append(_Parameter(key, "stress", strength, more, 0.0, 1.0 / strength))
+        change = STEP_FRACTION * strength
+        rows.append(_Parameter(key, "stress", strength, change, 0.0, 1.0 / strength))
     return _with_rows(replace(out, changing=gradient.changing), gradient, rows)
 
 
@@ -262,18 +266,18 @@ def _of_joint(
         if one.key not in by:
             continue
         if one.key.endswith(".clearance"):
-            more = CLEARANCE_STEP * step
+            change = CLEARANCE_STEP * step
         elif kind == "length":
-            more = _little(step, one.value)
+            change = _small_step(step, one.value)
         else:
-            more = POISSON_RATIO_STEP if kind == "1" else STEP_FRACTION * one.value
+            change = POISSON_RATIO_STEP if kind == "1" else STEP_FRACTION * one.value
         stress = by[one.key]
-        yield _Parameter(one.key, kind, one.value, more, stress, -stress / maximum)
+        yield _Parameter(one.key, kind, one.value, change, stress, -stress / maximum)
 
 
-def _little(step: float, value: float) -> float:
-    """Return a step (m) of a dimension, reduced by powers of ten where it is not small relative to
-    it.
+def _small_step(step: float, value: float) -> float:
+    """Return a step (m) of a dimension, reduced by powers of ten until it is small relative to the
+    dimension.
     """
     while step > MAX_STEP_FRACTION * value:
         step /= 10.0
@@ -282,7 +286,9 @@ def _little(step: float, value: float) -> float:
 
 @dataclass(frozen=True)
 class _Parameter:
-    """A parameter as in Sensitivity; relative: derivative of the factor over the factor."""
+    """A parameter as in Sensitivity. relative: the derivative of the factor divided by the
+    factor.
+    """
 
     key: str
     kind: str
@@ -310,10 +316,10 @@ def _of_dimensions(
 ) -> Iterator[_Parameter]:
     for dimension in dimensions:
         if dimension.key in gradient.by_dimension:
-            more = _little(step, dimension.value)
+            change = _small_step(step, dimension.value)
             stress = gradient.by_dimension[dimension.key]
             relative = -stress / gradient.maximum
-            yield _Parameter(dimension.key, "length", dimension.value, more, stress, relative)
+            yield _Parameter(dimension.key, "length", dimension.value, change, stress, relative)
 
 
 def _sorted(rows: Iterable[_Parameter], factor: float | None) -> tuple[Sensitivity, ...]:
@@ -354,7 +360,7 @@ def _of_material(gradient: Derivatives, material: Material) -> Iterator[_Paramet
     ):
         if value is not None:
             relative = 1.0 / value if name == "yield_strength" else 0.0 - stress / gradient.maximum
-            more = STEP_FRACTION * value if step is None else step
+            change = STEP_FRACTION * value if step is None else step
             yield _Parameter(
-                f"material.{key_part(material.name)}.{name}", kind, value, more, stress, relative
+                f"material.{key_part(material.name)}.{name}", kind, value, change, stress, relative
             )

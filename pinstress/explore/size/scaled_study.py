@@ -225,7 +225,7 @@ def wider_eyes(old: Study, new: Study, name: str) -> dict[str, float]:
         before, after = (hole_in_eye(x, name, at) for x in (old, new))
         least = min(allowed.eye_ratio, lug.outer_diameter / before) * after
         if lug.outer_diameter < least * (1.0 - 1e-9):
-            stated = table.like_the_other.get(at, at)  # the ear that states the size of both
+            stated = table.shared_lugs.get(at, at)  # the ear that states the size of both
             out[stated] = max(least, out.get(stated, 0.0))
     return out
 

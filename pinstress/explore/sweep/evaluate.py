@@ -20,7 +20,7 @@ from fea.core.peak import Maximum, Verdict
 from geometry import ArgumentError, PinLike
 from pinbase.memo import Memo
 from pinstress.analysis.plan import prepare, requirement_of
-from pinstress.analysis.reused_loads import bands_count
+from pinstress.analysis.reused_loads import depends_on_bands
 from pinstress.analysis.solve import solutions
 from pinstress.explore.sweep.laws import Floats
 from pinstress.explore.sweep.number import Number
@@ -210,7 +210,8 @@ class Evaluator:
         Loads depend on numbers of the mechanism, of the case and of cases that it names, on numbers
         that give mass to floating pins, and on lengths, which place bands along pins.
 
-        along: whether the places of bands count (`bands_count`), which may differ between designs.
+        along: whether the places of bands count (`depends_on_bands`), which may differ between
+        designs.
         """
         table, *inner = number.path
         if table == "case":
@@ -239,7 +240,7 @@ class Evaluator:
         """
         loads: dict[str, CaseLoads | InputError] = {}
         mechanism: AnyLinkage | None = None
-        along = study.table.mechanism is not None and bands_count(study)
+        along = study.table.mechanism is not None and depends_on_bands(study)
         for name in self._cases:
             key = name, along, *(values[k] for k in self._of_loads[name, along])
             known = self._loads.get(key)

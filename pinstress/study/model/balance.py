@@ -1,4 +1,4 @@
-"""Messages on unbalanced loads of unconstrained pins (the rule: fea.core.equilibrium)."""
+"""Messages about unbalanced loads on unconstrained pins (for the rule see fea.core.equilibrium)."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import GivenCase
 
-MIN_REPORTED_SHARE = 1e-4  # share from which a part is reported beside a larger one
+MIN_REPORTED_SHARE = 1e-4  # relative size from which a residual force, couple or torque is reported
 
 
 def unheld(study: Study, task: Task) -> dict[str, str]:
-    """Return why a pin could not be solved, by case."""
+    """Return the reason why a pin could not be solved, for each case without equilibrium."""
     how = "not held by its lugs" if task.lugs else "unconstrained"
     return {
         case.case: f"pin {task.pin.name} is {how} in case {case.case}: {balance.refusal}"
@@ -36,15 +36,15 @@ def unheld(study: Study, task: Task) -> dict[str, str]:
 def given_warnings(study: Study) -> list[str]:
     """Return a warning for every pin and case whose given loads are slightly out of balance.
 
-    Slightly is more than round-off, and no more than bands share. Only pins with a profile are
-    checked, since they take no time.
+    Slightly means more than round-off, and so little that the bands share the residual. Only pins
+    with a profile are checked, since that takes no time.
     """
     given = {name: x for name, x in study.table.case.items() if isinstance(x, GivenCase)}
     return [text for name in given for text in _quietly(partial(_of_given, study, name))]
 
 
 def other_warnings(study: Study, todo: list[Task]) -> list[str]:
-    """Return these warnings for all other loads, from the tasks to solve."""
+    """Return the warnings of `given_warnings` for all other loads, from the tasks to solve."""
     rows = ((task.pin.name, *item) for task in todo for item in _reacted(study, task).items())
     return [text for pin, case, text in rows if not _stated(study, pin, case)]
 
@@ -76,8 +76,8 @@ def _of_given(study: Study, name: str) -> list[str]:
 
 
 def _of_pin(study: Study, name: str, case: str, loads: CaseLoads, loaded: set[str]) -> list[str]:
-    """Return the warnings for one pin; none where the case does not load it, which others
-    report.
+    """Return the warnings for a pin; none if the case does not load it, which is reported
+    elsewhere.
     """
     pin = pin_of(study, name)
     if not loaded & {*pin.connections}:
@@ -90,7 +90,7 @@ def _quietly(warnings: Callable[[], list[str]]) -> list[str]:
     try:
         return warnings()
     except (TableError, InputError, ArgumentError, GeometryError):
-        return []  # whoever needs the case or the pin says what is wrong with it
+        return []  # the error is reported where the case or the pin is used
 
 
 def _balances(task: Task) -> list[tuple[PinLoads, Balance]]:
@@ -101,7 +101,9 @@ def _balances(task: Task) -> list[tuple[PinLoads, Balance]]:
 
 
 def _shared(study: Study, task: Task, case: PinLoads, balance: Balance) -> str:
-    """Return a sentence on the residual loads of a case, and on the loads that would close them."""
+    """Return a sentence on the residual loads of a case, and on the forces that would
+    balance them.
+    """
     (force, couple, torque), size = balance.shares, study.system.factor
     n, nm = study.system.force, study.system.unit("energy")
     by = "of the largest force times the length of the pin"
@@ -132,7 +134,9 @@ def _when(case: PinLoads, balance: Balance) -> str:
 
 
 def _closed_by(study: Study, pin: PinLike, case: PinLoads, balance: Balance) -> str:
-    """Return the forces that would be in balance, for a case that states its forces."""
+    """Return forces that would be in balance, for a case that states its forces; otherwise an empty
+    text.
+    """
     force, couple, _ = balance.shares
     if not isinstance(study.table.case[case.case], GivenCase) or max(force, couple) == 0.0:
         return ""

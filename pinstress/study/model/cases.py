@@ -65,22 +65,23 @@ from pinstress.study.schema.landing import DropCase, GroundCase
 
 @dataclass(frozen=True)
 class CaseLoads:
-    """The reactions of one case, with the dynamics behind them where a mechanism gives them.
+    """The reactions of one case, with the dynamics behind them if they follow from a mechanism.
 
-    note: how the loads came about.
+    note: the origin of the loads.
     range: reactions over the ranges of an impulse.
     impulse: reactions of the only impulse in the case.
     space: dynamics of a linkage in space.
-    solve: dynamics at other times (T,) s. solve_space: the same of a linkage in space.
-    peaks: the largest forces over the time.
+    solve: function that returns the dynamics at other times (T,) s. solve_space: the same for a
+    linkage in space.
+    peaks: the largest forces over time.
     over: other results of the whole motion.
-    frictionless: the same without friction, where there is any.
+    frictionless: results of the whole motion without friction, if there is friction.
     moving: the loads on the pins at any time.
     landing: course of a drop.
-    shared: the same with other stiffness of the links that share loads out of the plane, each after
-    what is different.
+    shared: the case with other stiffnesses of the links that share loads out of the plane, each
+    with a text that states the difference.
     ground: the forces of the ground by a rule.
-    side: what it has out of the plane of a planar linkage.
+    side: the part of the case out of the plane of a planar linkage.
     """
 
     reactions: Reactions
@@ -102,8 +103,8 @@ class CaseLoads:
 
     @property
     def knows_moments(self) -> bool:
-        """Whether the moments of links across their pins are known, also where they are zero: in
-        space, and of a planar linkage with loads out of its plane.
+        """Whether the moments of links across their pins are known, even if they are zero: in
+        space, and for a planar linkage with loads out of its plane.
         """
         sideways = self.dynamics is not None and bool(self.reactions.moments[..., :2].any())
         return self.space is not None or sideways
@@ -112,7 +113,7 @@ class CaseLoads:
 def at_time(case: CaseLoads, time: float) -> CaseLoads | None:
     """Return the case at one time (s), whether or not that is a sample.
 
-    None outside the case's time, and between the instants of a table.
+    None for a time outside the case, and for a time between the instants of a table.
     """
     times = case.reactions.times
     if times is None:
@@ -138,7 +139,7 @@ def case_loads(
 ) -> CaseLoads:
     """Return the reactions of a case.
 
-    extremes: whether with those of a whole motion.
+    extremes: whether to find the extremes over the whole motion, too.
 
     Raises: InputError for mistakes in the study or its tables.
     """
@@ -179,9 +180,9 @@ def _shown(study: Study) -> Callable[[float, bool], str]:
 
 @dataclass(frozen=True)
 class _Moved:
-    """A case's dynamics at any times (T,) s of its motion.
+    """The dynamics of a case at any times (T,) s of its motion.
 
-    A class instead of closures, since it is sent to processes that are started anew.
+    This is a class instead of closures, because it is sent to processes that are not forked.
     """
 
     name: str
@@ -196,7 +197,9 @@ class _Moved:
         return solved if self.side is None else self.side.completed(solved)
 
     def each_sharing(self, times: Floats) -> tuple[Dynamics, Mapping[str, Dynamics]]:
-        """Return the same, and for other stiffness of links by what is different."""
+        """Return the dynamics, and those with other stiffnesses of links, by the difference in
+        stiffness.
+        """
         solved = self.solve(times)
         return solved, {} if self.side is None else self.side.others(solved)
 
@@ -250,7 +253,7 @@ def _each(others: Mapping[str, Dynamics]) -> tuple[tuple[str, CaseLoads], ...]:
 
 def _drop(study: Study, name: str, case: DropCase, mechanism: Linkage, extremes: bool) -> CaseLoads:
     leg, where = drop(study, name, case, mechanism)
-    if not extremes:  # its course takes SciPy: extended and at rest instead
+    if not extremes:  # a drop needs SciPy; instead of it, take the leg extended and at rest
         solved = motion_reactions(name, move(mechanism, still(where), np.zeros(1)), (), False)
         return CaseLoads(solved.reactions, solved)
     landing = fallen(study, name, leg)
@@ -265,7 +268,7 @@ def _drop(study: Study, name: str, case: DropCase, mechanism: Linkage, extremes:
 def _on_ground(
     study: Study, name: str, case: GroundCase, mechanism: Linkage, extremes: bool
 ) -> CaseLoads:
-    """Return the leg at rest under the forces of the ground by a rule."""
+    """Return the loads of the leg at rest under the forces of the ground by a rule."""
     ground = grounded(study, name, case, mechanism, extremes)
     acting = ground.loads(study, case, mechanism)
     loads: list[Load] = [*springs(study, mechanism), *(load.planar for load in acting)]
@@ -279,7 +282,7 @@ def _on_ground(
 
 
 def _with_side(solved: Dynamics, note: str, side: Sideways | None) -> CaseLoads:
-    """Return the loads of a case at one instant, with what it has out of the plane."""
+    """Return the loads of a case at one instant, completed by the forces out of the plane."""
     if side is None:
         return CaseLoads(solved.reactions, solved, note)
     whole, shared = side.completed(solved), _each(side.others(solved))
@@ -287,7 +290,9 @@ def _with_side(solved: Dynamics, note: str, side: Sideways | None) -> CaseLoads:
 
 
 def _locked(mechanism: Linkage, hold: Sequence[str]) -> tuple[Linkage, tuple[Law, ...]]:
-    """Return a mechanism without drives as its locks hold it, and their laws."""
+    """Return a mechanism without drives whose locks act as drives, and the laws that hold them
+    still.
+    """
     held = locked(mechanism, hold)
     return held, tuple(StateDrive(lock.drawn) for lock in held.drives)
 
@@ -342,7 +347,7 @@ def _each_in_space(solved: InSpace) -> tuple[tuple[str, CaseLoads], ...]:
 
 
 def _require_drives(mechanism: AnyLinkage) -> None:
-    """Raise LinkageError where nothing drives a motion."""
+    """Raise LinkageError for a motion without drives."""
     if not mechanism.driven:
         raise LinkageError(
             'kind = "motion" needs a [mechanism.drive]; for loads at rest write kind = "static"',

@@ -1,8 +1,8 @@
-"""Links with two ears: the load of a link as loads of the bands on which its ears bear.
+"""Links with two ears, whose load is divided into loads on the bands on which the ears bear.
 
-The force acts amid the ears, which share it; a moment across the axis is a couple of forces on
-them, by statics. A force along the axis is that of the ear on the side to which it pushes, as the
-other is held back by it; a torque is shared.
+A force across the axis acts midway between the ears, which share it. A moment across the axis is a
+couple of forces on the ears, by statics. A force along the axis acts on the ear on the side towards
+which it pushes, since it holds the other ear off. A torque is shared.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from pinbase.arrays import Floats
 
 
 class Ears(NamedTuple):
-    """The other ear of a clevis.
+    """The second ear of a clevis.
 
     name: of its band.
-    z, other_z: middles of the connection's band and of the other's, m.
+    z, other_z: middles of the connection's band and of the second ear's band, m.
     """
 
     name: str
@@ -29,18 +29,19 @@ class Ears(NamedTuple):
 
 
 def bands_of(connection: str, pin: PinLike, ears: Mapping[str, str]) -> dict[str, Band]:
-    """The bands on which a link bears, by name: the connection's and, of a clevis, the other ear's.
+    """The bands on which a link bears, by name: the connection's band and, for a clevis, the second
+    ear's.
 
-    ears: the name of the other ear, by connection.
+    ears: the name of the second ear, by connection.
     """
     names = [connection, ears[connection]] if connection in ears else [connection]
     return {name: pin.band(name) for name in names}
 
 
 def middle_of(connection: str, pin: PinLike, ears: Mapping[str, str]) -> float:
-    """The z of a link on a pin, m: the middle of its band, of a clevis amid its ears.
+    """The z of a link on a pin, m: the middle of its band; for a clevis, midway between the ears.
 
-    ears: as of `bands_of`.
+    ears: as in `bands_of`.
     """
     bands = bands_of(connection, pin, ears).values()
     return sum(band.middle for band in bands) / len(bands)
@@ -51,7 +52,8 @@ def on_ears(
 ) -> tuple[tuple[str, ...], Floats, Floats]:
     """The bands, and the forces and moments on them, about their middles.
 
-    forces, moments: (T, C, 3) N and N m of the links, of a clevis amid its ears.
+    forces, moments: (T, C, 3) N and N m of the links; for a clevis, about the middle between its
+    ears.
     """
     if not ears:
         return tuple(connections), forces, moments
@@ -66,7 +68,7 @@ def on_ears(
         other, z, other_z = ears[connection]
         apart = other_z - z
         couple = np.stack([moment[:, 1], -moment[:, 0], np.zeros(len(moment))], axis=1) / apart
-        # Along the axis the ear in front bears: the one farther on where the force is positive.
+        # A force along the axis acts on the ear in front: at the larger z if the force is positive.
         to_other = (force[:, 2] > 0.0) == (apart > 0.0)
         torque = 0.5 * moment * [0.0, 0.0, 1.0]
         for name, sign, bears in ((connection, -1.0, ~to_other), (other, 1.0, to_other)):

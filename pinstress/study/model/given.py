@@ -1,4 +1,4 @@
-"""Cases of stated forces on pins, or of a table of them."""
+"""Cases that state the forces on pins, or a table of them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from pinstress.study.schema.units import UNIT_SYSTEMS
 
 
 def given_forces(study: Study, name: str, case: GivenCase) -> Reactions:
-    """Return the forces of a case, in pin axes, with those of links that balance the others on
+    """Return the forces of a case in pin axes, with those of the links that balance the others on
     their pin.
 
     Raises: TableError.
@@ -27,7 +27,7 @@ def given_forces(study: Study, name: str, case: GivenCase) -> Reactions:
 
 
 def _closed(study: Study, name: str, stated: Reactions) -> Reactions:
-    """Return the reactions with those of links that balance the others on their pin."""
+    """Return the reactions with those of the links that balance the others on their pin."""
     for pin, table in study.table.pin.items():
         others = [c for c in study.connections(pin) if c in stated.connections]
         if table.balance is None or not others:

@@ -1,4 +1,4 @@
-"""Loads of the ground on a wheel as parts of a reference load, by 14 CFR or by the user."""
+"""Loads of the ground on a wheel as multiples of a reference load, by 14 CFR or by the user."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from pinstress.study.model.space_forces import vector
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.landing import DropCase, FactorTable, GroundCase, Side, SpinUpTable
 
-MIN_LEVEL = 1e-6  # level part of a direction of travel, over its length
+MIN_LEVEL = 1e-6  # the least horizontal part of a direction of travel, relative to its length
 AS_STATED = (
     "The leg is as drawn, or as its position says: without a drop the deflection of strut and "
     "tyres is not known."
@@ -40,10 +40,10 @@ AS_STATED = (
 class Grounded:
     """The forces of the ground in a case.
 
-    clause: what demands them.
-    forces: their components; none where the reference is a drop that was not computed.
-    notes: how the drag of spin-up follows, and what is not known.
-    drives: of the leg at rest.
+    clause: the rule that demands them.
+    forces: their components; empty if the reference is a drop that was not computed.
+    notes: the origin of the spin-up drag, and what is not known.
+    drives: the laws that hold the leg at rest.
     """
 
     clause: str
@@ -66,12 +66,12 @@ class Grounded:
         )
 
     def loads_in_space(self, study: Study, case: GroundCase) -> tuple[SpaceForce, ...]:
-        """Return the same on a linkage in space."""
+        """Return the forces on the axle of a linkage in space, with their moments about it."""
         at = place_in_space(space_mechanism(study), case.at)
         return tuple(SpaceForce(case.body, at, force.force, force.couple) for force in self.forces)
 
     def note(self, study: Study) -> str:
-        """Return the clause and the sum of every component."""
+        """Return the clause and the product behind every component."""
         if not self.forces:
             return ""
         unit, factor = study.system.force, study.system.factor("force")
@@ -94,7 +94,7 @@ def grounded(
 ) -> Grounded:
     """Return the forces of the ground in a case.
 
-    extremes: whether a drop that is the reference is computed; without it there are no forces.
+    extremes: whether to compute a drop that is the reference; otherwise such a case has no forces.
 
     Raises: InputError, LinkageError.
     """
@@ -124,7 +124,7 @@ def grounded_in_space(
 ) -> Grounded:
     """Return the forces of the ground in a case of a linkage in space.
 
-    Raises: InputError where nothing says where up and forward are.
+    Raises: InputError if the directions of up and forward are unknown.
     """
     rule, row = _rule(case), case.factors[0] if case.factors else None
     reference, up = _own_reference(case, row), -np.array(mechanism.gravity)
@@ -152,7 +152,7 @@ def _forces(
 ) -> tuple[tuple[WheelForce, ...], tuple[str, ...]]:
     """Return the forces of a rule, and notes.
 
-    known: the reference, N, what makes the wheel spin, and whether both are of a drop.
+    known: the reference, N, the data of the wheel's spin-up, and whether both are from a drop.
     axes: up and aft.
     """
     (reference, spin_up, by_drop), row = known, case.factors[0] if case.factors else None
@@ -193,7 +193,7 @@ def _spin_up(landing: Landing) -> SpinUpTable | None:
 def _with_spin(
     study: Study, rule: GroundRule, wheel: SpinUpTable | None, reference: float
 ) -> tuple[GroundRule, str]:
-    """Return a rule with the drag of its wheel, and how that follows."""
+    """Return a rule with the spin-up drag of its wheel, and a sentence on its origin."""
     if not rule.spins:
         return rule, ""
     most = f"the most that is required, {MAX_TYRE_FRICTION:g} of the vertical reaction"

@@ -1,4 +1,4 @@
-"""Hardened surfaces of a study's pins."""
+"""The hardened surfaces of a study's pins."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from pinstress.study.model.pins import material
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.materials import HardenedTable
 
-Stretch = tuple[float, float, HardenedTable | None, str]  # z from and to, m; table and its key
+Stretch = tuple[float, float, HardenedTable | None, str]  # first and last z, m; table and its key
 
 
 def pin_material(study: Study, pin: PinLike) -> Material:
-    """Return the material of a pin with the hardened stretches of its surface.
+    """Return the material of a pin, with the hardened stretches of its surface.
 
-    Raises: InputError for a case that is as deep as the wall, for a pin that is no body of
-    revolution, and where what is not hardened has no strength, or a range of it.
+    Raises: InputError for a case that is as deep as the wall, for a pin that is not a plain body of
+    revolution, and if the part that is not hardened has no yield strength, or a range of it.
     """
     name = study.table.pin[pin.name].material
     made_of, key = material(study, name), hardened_key(study, pin.name)
@@ -62,12 +62,12 @@ def pin_material(study: Study, pin: PinLike) -> Material:
     return replace(
         made_of, yield_strength=weakest, hardened=tuple(hardened),
         unhardened=unhardened if bare else None,
-        strength_range=None,  # that of the material, which counts nowhere on the pin
+        strength_range=None,  # the material's range, which applies to no part of the pin
     )  # fmt: skip
 
 
 def hardened_key(study: Study, pin: str) -> str | None:
-    """Return the first key that hardens a pin; None where none does."""
+    """Return the first key that hardens a pin, or None."""
     table = study.table.pin[pin]
     for i, segment in enumerate(table.profile or (), 1):
         if segment.hardened is not None:
@@ -80,9 +80,9 @@ def hardened_key(study: Study, pin: str) -> str | None:
 
 
 def require_no_hardened(study: Study, pin: str, what: str) -> None:
-    """Raise InputError for a pin with a hardened surface, which something does not know.
+    """Raise InputError for a pin with a hardened surface, if a method cannot use two strengths.
 
-    what: that, as the subject of a sentence.
+    what: the method, as the subject of a sentence.
     """
     if key := hardened_key(study, pin):
         raise study.error(
@@ -93,7 +93,7 @@ def require_no_hardened(study: Study, pin: str, what: str) -> None:
 
 
 def require_strengths(study: Study, pins: Iterable[str]) -> None:
-    """Raise InputError for pins that do not have the one yield strength of reliability."""
+    """Raise InputError for pins without the single yield strength that reliability needs."""
     for name in dict.fromkeys(pins):
         material = study.table.pin[name].material
         require_no_hardened(study, name, "reliability")
@@ -106,12 +106,16 @@ def require_strengths(study: Study, pins: Iterable[str]) -> None:
 
 
 def hardened_reason(key: str) -> str:
-    """Return the reason why something does not know the two strengths of a pin, by their key."""
+    """Return the reason why a method cannot use the two strengths of a pin. key: of its hardened
+    table.
+    """
     return f"{key} gives it two yield strengths; give yield_strength, that of the core to be safe"
 
 
 def _stretches(study: Study, pin: Pin) -> list[Stretch]:
-    """Return the stretches of a pin from its start on, those that are hardened alike as one."""
+    """Return the stretches of a pin from its start to its end; neighbours hardened alike are
+    joined.
+    """
     table = study.table.pin[pin.name]
     everywhere, key = table.hardened, f"pin.{key_part(pin.name)}.hardened"
     if everywhere is None:
@@ -132,7 +136,7 @@ def _stretches(study: Study, pin: Pin) -> list[Stretch]:
 def _require_wall(
     study: Study, pin: Pin, stretch: tuple[float, float], table: HardenedTable, key: str
 ) -> None:
-    """Raise InputError where a case is as deep as the wall of its stretch."""
+    """Raise InputError for a case that is as deep as the wall of its stretch."""
     segments = zip(pin.segments, pin.stations, strict=False)
     walls = [min(s.walls) / 2.0 for s, z in segments if stretch[0] <= z < stretch[1]]
     if table.depth < min(walls):

@@ -1,7 +1,7 @@
-"""Shape of a pin, read from its file in a separate process with limits of time and memory.
+"""The shape of a pin, read from its file in a separate process with limits of time and memory.
 
-OpenCASCADE crashes on some damaged files and hangs on others; a mesh of a few bytes may request
-more memory than there is.
+OpenCASCADE crashes on some damaged files and hangs on others, and a mesh file of a few bytes may
+request more memory than there is.
 """
 
 from __future__ import annotations
@@ -29,22 +29,22 @@ MAX_READER_MEMORY = 4096 * MB
 
 Work = Callable[..., Any]
 
-CAD_LIMITS = Limits(30, 300, MAX_READER_MEMORY)  # to measure it; a sound pin takes about a second
-# For a mesh file, and to mesh a CAD file more finely.
+CAD_LIMITS = Limits(30, 300, MAX_READER_MEMORY)  # to measure a body; an intact one takes about 1 s
+# To read a mesh file, and to mesh a CAD file more finely.
 LONG_LIMITS = Limits(600, 6000, MAX_READER_MEMORY)
 
 
 def read_body(file: BodyFile, clamps: Iterable[str] = ()) -> PinLike:
     """Return the body in a file.
 
-    It is a profile, with cuts, if the body is one and its bands and clamps are on it; otherwise a
-    solid about the file's z-axis, with its bands measured.
+    The result is a profile, with cuts, if the body is one and its bands and clamps are on it;
+    otherwise a solid about the file's z-axis, with its bands measured.
 
     clamps: names of surfaces.
 
     Raises: GeometryError, MeshError as SolidBody; NotTurnedError if a band or a clamp is not on a
-    profile about another axis than the file's z-axis; GeometryError if it is not a regular file,
-    is too large, or cannot be read within the limits.
+    profile about another axis than the file's z-axis; GeometryError if the file is not a regular
+    file, is too large, or cannot be read within the limits.
     """
     require_readable(file)
     if file.meshed or not file.path.is_file():
@@ -61,9 +61,10 @@ def read_body(file: BodyFile, clamps: Iterable[str] = ()) -> PinLike:
 
 
 def turned_apart(file: BodyFile) -> RecognisedProfile:
-    """Return `geometry.imported.recognise.recognised_profile`, computed in another process.
+    """Return `geometry.imported.recognise.recognised_profile` of a file, computed in another
+    process.
 
-    Raises: as that and `apart`.
+    Raises: the errors of that function and of `apart`.
     """
     profile: RecognisedProfile = apart(recognised_profile, file)
     return profile
@@ -76,13 +77,13 @@ def require_readable(file: BodyFile) -> None:
     except FileError as error:
         raise GeometryError(f"pin {file.name}: {file.path.name} {error}", error.code) from None
     except FileNotFoundError:
-        pass  # which SolidBody reports
+        pass  # SolidBody reports a missing file
 
 
 def _profiled(file: BodyFile, recognised: RecognisedProfile, clamps: set[str]) -> Pin | CutPin:
     """Return the recognised profile with its bands.
 
-    Raises: NotTurnedError where a band or a clamp is not one of the profile.
+    Raises: NotTurnedError if a band or a clamp is not on the profile.
     """
     start, stripes = recognised.start * file.unit, []
     for place in file.places:
@@ -119,9 +120,10 @@ def _profiled(file: BodyFile, recognised: RecognisedProfile, clamps: set[str]) -
 
 
 def _axes(recognised: RecognisedProfile, of_bands: bool = False) -> str:
-    """Return how its axes lie in the file, or nothing where they are the file's.
+    """Return a text on the position of the profile's axes in the file; empty if they are the
+    file's.
 
-    of_bands: whether z is that of bands, which is the file's.
+    of_bands: whether z is that of bands, which count from the file's origin.
     """
     axes, start = "", recognised.start
     if not recognised.upright:
@@ -133,7 +135,7 @@ def _axes(recognised: RecognisedProfile, of_bands: bool = False) -> str:
 
 
 def plain_vector(v: tuple[float, float, float]) -> str:
-    """Return a vector as people read it."""
+    """Return a vector as text for people."""
     return f"({', '.join(f'{x:.6g}' for x in v)})"
 
 
@@ -164,13 +166,13 @@ def apart(work: Work, file: BodyFile, *arguments: object) -> Any:
 def _read(work: Work, file: BodyFile, arguments: tuple[object, ...], memory: float, _: Tell) -> Any:
     """Run `work` in the other process.
 
-    memory: its limit, bytes.
+    memory: limit of the process, bytes.
     """
     try:
         return work(file, *arguments)
     except (MemoryError, GeometryError, MeshError) as error:
         code = "out-of-memory"
-        if getattr(error, "code", code) != code:  # gmsh's error has it
+        if getattr(error, "code", code) != code:  # gmsh's error of memory has this code, too
             raise
         raise GeometryError(
             f"pin {file.name}: reading {file.path.name} needs more than the limit of "

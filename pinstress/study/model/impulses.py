@@ -1,4 +1,6 @@
-"""Loads of a case on its mechanism, and reactions to impulses, alone and over ranges."""
+"""Loads of a case on its mechanism, and reactions to impulses, at nominal values and over
+ranges.
+"""
 
 from __future__ import annotations
 
@@ -27,11 +29,12 @@ from pinstress.study.schema.cases import (
 
 @dataclass(frozen=True)
 class ImpulseLoads:
-    """Reactions over combinations of impulse time (s), velocity change (m/s) and pulse, an instant
+    """Reactions to combinations of impulse time (s), velocity change (m/s) and pulse, one instant
     each.
 
-    times, velocities: (P,); forces: (P,) N, with P pulses.
-    nominal, nominal_pulse: of the case, with the force nominal_force, N.
+    times, velocities: (P,). forces: (P,) N, with the P pulses.
+    nominal, nominal_pulse: time and velocity change, and pulse, of the case, with the force
+    nominal_force, N.
     """
 
     times: Floats
@@ -46,9 +49,9 @@ class ImpulseLoads:
 
 @dataclass(frozen=True)
 class ImpulseShare:
-    """Reactions without an impulse and with it, two instants.
+    """Reactions at two instants: without an impulse and with it.
 
-    time: of the impulse, s.
+    time: duration of the impulse, s.
     """
 
     time: float
@@ -76,9 +79,9 @@ def side_loads(
     mechanism: Linkage,
     impulse: tuple[int, float] | None = None,
 ) -> tuple[SideLoad, ...]:
-    """Return the loads of a case, with what they have out of the plane.
+    """Return the loads of a case, with their parts out of the plane.
 
-    impulse: number of a load, and size of its impulse, N, by default all as stated.
+    impulse: index of a load and size of its impulse, N; by default all are as stated.
     """
     sizes = dict([impulse]) if impulse else {}
     return tuple(
@@ -96,7 +99,7 @@ def _load(
     mechanism: Linkage,
     size: float | None = None,
 ) -> tuple[SideLoad, ...]:
-    """Return one of the loads.
+    """Return load number `which` (from 0) of a case.
 
     size: of its impulse, N, by default as stated.
     """
@@ -139,16 +142,17 @@ def _impulse_note(study: Study, load: ApplyTable) -> str:
     )
 
 
-# Reactions of a case whose load of a number, from 0, has an impulse of a size, N
+# Reactions of a case for the index of a load, from 0, and the size of its impulse, N
 OfSize = Callable[[int, float], Reactions]
 
 
 def over_range(
     study: Study, name: str, case: StaticCase | InstantCase, of_size: OfSize
 ) -> ImpulseLoads | None:
-    """Return the reactions to every combination in the ranges of the case's impulse, if it has any.
+    """Return the reactions to all combinations over the ranges of the case's impulse; None without
+    ranges.
 
-    Raises: InputError where several impulses have ranges.
+    Raises: InputError if several impulses have ranges.
     """
     ranged = [k for k, x in enumerate(case.apply) if x.impulse and x.impulse.range]
     if not ranged:
@@ -182,7 +186,9 @@ def over_range(
 
 
 def with_impulse(case: StaticCase | InstantCase, of_size: OfSize) -> ImpulseShare | None:
-    """Return the reactions of the case without its impulse and with it, if it has one."""
+    """Return the reactions of the case without its impulse and with it; None unless it has exactly
+    one.
+    """
     which = [k for k, load in enumerate(case.apply) if load.impulse]
     if len(which) != 1 or (impulse := case.apply[which[0]].impulse) is None:
         return None
@@ -191,7 +197,7 @@ def with_impulse(case: StaticCase | InstantCase, of_size: OfSize) -> ImpulseShar
 
 
 def _of_sizes(of_size: OfSize, which: int, sizes: Floats) -> Reactions:
-    """Return the reactions to an impulse of these sizes (P,) N, an instant each."""
+    """Return the reactions to an impulse of these sizes (P,) N, one instant each."""
     reactions: Reactions = joined([of_size(which, size) for size in sizes.tolist()])
     return reactions
 
@@ -199,7 +205,7 @@ def _of_sizes(of_size: OfSize, which: int, sizes: Floats) -> Reactions:
 def with_size(study: Study, name: str, motion: Motion, which: int, size: float) -> Reactions:
     """Return the reactions of a planar case whose load number `which` has an impulse of a size, N.
 
-    motion: of its one instant.
+    motion: at the only instant of the case.
     """
     case, mechanism = study.table.case[name], motion.linkage
     assert isinstance(case, MechanismCase)

@@ -1,4 +1,4 @@
-"""Drop of a landing leg, and the point where it touches the ground in its mechanism."""
+"""The drop of a landing leg, and the point of its mechanism that touches the ground."""
 
 from __future__ import annotations
 
@@ -33,12 +33,13 @@ from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.landing import AtWheel, DropCase, StrutTable, TyreTable
 
-# Of the mechanism's unsprung mass, which changes by as much along a stroke
+# Relative to the mechanism's unsprung mass, which changes by about as much along a stroke
 UNSPRUNG_MASS_TOLERANCE = 0.1
 
 
 def place(study: Study, name: str, case: AtWheel, mechanism: Linkage) -> Touchdown:
-    """Return the point where the ground pushes.
+    """Return the point on which the ground pushes, with its axes and the extended position of the
+    leg.
 
     Raises: InputError.
     """
@@ -54,14 +55,13 @@ def place(study: Study, name: str, case: AtWheel, mechanism: Linkage) -> Touchdo
 
 
 def drop(study: Study, name: str, case: DropCase, mechanism: Linkage) -> tuple[Drop, Touchdown]:
-    """Return a leg that can fall, and the point where it touches the ground.
+    """Return a leg ready to drop, and the point on which the ground pushes.
 
     Raises: InputError, LinkageError.
     """
     where = place(study, name, case, mechanism)
-    key = "case." + name
+    key = f"case.{key_part(name)}.strut"
     try:
-        key = f"case.{key_part(name)}.strut"
         strut = None if case.strut is None else _strut(case.strut)
         rises: Telescopic | Levered = Telescopic()
         if case.strut is not None:
@@ -78,7 +78,7 @@ def drop(study: Study, name: str, case: DropCase, mechanism: Linkage) -> tuple[D
 def _unsprung(case: DropCase, mechanism: Linkage, where: Touchdown) -> float:
     """Return the unsprung mass of the mechanism, kg.
 
-    Raises: ArgumentError where it has none.
+    Raises: ArgumentError if it has none.
     """
     if case.strut is None:
         raise ArgumentError(
@@ -96,7 +96,9 @@ def _unsprung(case: DropCase, mechanism: Linkage, where: Touchdown) -> float:
 
 
 def unsprung_warnings(study: Study) -> list[str]:
-    """Return a warning for every drop whose unsprung mass differs from that of its mechanism."""
+    """Return a warning for every drop whose stated unsprung mass differs from that of its
+    mechanism.
+    """
     drops = {n: c for n, c in study.table.case.items() if isinstance(c, DropCase)}
     warnings = []
 
@@ -110,7 +112,7 @@ def unsprung_warnings(study: Study) -> list[str]:
             mechanism = linkage(study)
             mass = effective_mass(mechanism, place(study, name, case, mechanism), case.strut.stroke)
         except (InputError, LinkageError, ArgumentError):
-            continue  # whoever needs the case says what is wrong with it
+            continue  # the error is reported where the case is computed
         if abs(case.unsprung - mass) > UNSPRUNG_MASS_TOLERANCE * mass:
             text = (
                 f"case.{key_part(name)}.unsprung: {told(case.unsprung)} is stated, but the "
@@ -190,9 +192,10 @@ def _wheel(case: DropCase, unsprung: float) -> Wheel | None:
 
 
 def fallen(study: Study, name: str, leg: Drop) -> Landing:
-    """Return the drop's course.
+    """Return the course of the drop.
 
-    Raises: InputError where the leg does not survive it.
+    Raises: InputError if the strut bottoms, the tyre is deflected too far, or the drop cannot be
+    computed.
     """
     try:
         return land(leg)
@@ -202,7 +205,7 @@ def fallen(study: Study, name: str, leg: Drop) -> Landing:
 
 
 def drop_note(study: Study, case: DropCase, leg: Drop) -> str:
-    """Return the clause of a drop, and its unsprung mass where the mechanism gives it."""
+    """Return the clause of a drop, and its unsprung mass if that follows from the mechanism."""
     clause = "" if case.rule is None else f"{DROP_RULES[case.rule].clause}."
     if case.unsprung is not None:
         return clause
@@ -211,5 +214,5 @@ def drop_note(study: Study, case: DropCase, leg: Drop) -> str:
 
 
 def still(where: Touchdown) -> list[Law]:
-    """Return laws that keep all drives as with the strut extended."""
+    """Return laws that keep all drives in the position with the strut extended."""
     return [StateDrive(value) for value in where.extended]

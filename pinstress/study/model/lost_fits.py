@@ -1,4 +1,4 @@
-"""Pins pressed into their lugs that the temperature of a case loosens."""
+"""Pins pressed into their lugs that come loose at the temperature of a case."""
 
 from __future__ import annotations
 
@@ -13,8 +13,10 @@ from pinstress.study.reading.file import Study
 
 
 def lost_fits(study: Study, task: Task, case: str) -> tuple[LostFit, ...]:
-    """Return the lugs from which a pin pressed into them comes loose at the temperature of a case,
-    with the least of its interferences: "LEFT above 143 degC".
+    """Return the lugs from which a pressed-in pin comes loose at the temperature of a case.
+
+    The temperature in the text ("LEFT above 143 degC") is that at which the least interference is
+    lost.
     """
     rise, out = rise_of(study, case), []
     for lug in task.given:
@@ -28,7 +30,9 @@ def lost_fits(study: Study, task: Task, case: str) -> tuple[LostFit, ...]:
 
 
 def _longest(study: Study, lost: Iterable[LostFit]) -> str:
-    """Return the largest interference that is needed, in the study's units: "0.0228 mm"."""
+    """Return the largest of the interferences that are needed, in the study's units:
+    "0.0228 mm".
+    """
     needed = max(x.needed for x in lost) / study.system.factor("length")
     return f"{rounded_up(needed):.3g} {study.system.length}"
 

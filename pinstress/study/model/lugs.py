@@ -1,4 +1,4 @@
-"""Lugs in which the pins of a study sit, or may sit."""
+"""The lugs in which the pins of a study sit, or may sit."""
 
 from __future__ import annotations
 
@@ -22,19 +22,23 @@ from pinstress.study.schema.iso286 import fit_of
 from pinstress.study.schema.lugs import LugRangeTable, LugTable, ShankTable
 from pinstress.study.schema.pins import PinTable
 
-EYE_DIAMETER_RATIO = 2.5  # outer diameter over the band's
-# Of the outer diameter: distance from the bore's centre to where the link clamps the eye
+EYE_DIAMETER_RATIO = 2.5  # default outer diameter over the diameter of the band
+# Distance from the bore's centre to where the link clamps the eye, over the outer diameter
 CLAMP_DISTANCE_RATIO = 0.8
-SHANK_LENGTH_RATIO = 2.0  # the default, so far from the bore that how it is held does not count
+# Default length of a shank over the outer diameter: its end is so far from the bore that the way in
+# which it is held does not matter.
+SHANK_LENGTH_RATIO = 2.0
 
 
 def lugs(
     study: Study, pin: PinLike, clamps: tuple[str, ...], case: str | None = None
 ) -> tuple[Lug, ...]:
-    """Return the lugs that support a pin, none if others hold it.
+    """Return the lugs that support a pin; empty if something else holds the pin.
 
-    There is one for every connection, and those of the structure that are named.
-    case: at whose temperature; None for that of the study's dimensions.
+    There is a lug for every connection, and for every surface of the structure that the study
+    names.
+    case: the case at whose temperature they are; None for the temperature of the study's
+    dimensions.
 
     Raises: InputError for impossible lugs, and for a pin that lugs cannot support.
     """
@@ -74,7 +78,7 @@ def given_lugs(
 ) -> tuple[Lug, ...]:
     """Return the lugs of a pin that the study gives; checks use them whatever holds the pin.
 
-    holding: the pin's `lugs`, where these hold it. case: as of `lugs`.
+    holding: the pin's `lugs`, if these hold it. case: as in `lugs`.
 
     Raises: InputError for impossible lugs.
     """
@@ -91,9 +95,9 @@ def given_lugs(
 def _fitting(
     study: Study, pin: Pin, at: str, case: str | None, in_contact: bool = True
 ) -> tuple[Lug, ...]:
-    """Return one lug for every connection, and those of the structure.
+    """Return a lug for every connection, and the lugs of the structure.
 
-    at: their key. case: as of `lugs`. in_contact: as of `fitted`.
+    at: their key. case: as in `lugs`. in_contact: as in `fitted`.
 
     Raises: InputError for impossible lugs.
     """
@@ -119,9 +123,9 @@ def _fitting(
 def _require_fit(
     study: Study, pin: Pin, lugs: list[Lug], at: str, when: str = "", in_contact: bool = True
 ) -> None:
-    """Raise InputError for lugs that do not fit a pin, also at the ends of their ranges.
+    """Raise InputError for lugs that do not fit a pin, including at the ends of their ranges.
 
-    in_contact: as of `fitted`.
+    at: the key of the lugs. when: a text before the message. in_contact: as in `fitted`.
     """
     made_of = material(study, study.table.pin[pin.name].material)
     try:
@@ -133,14 +137,14 @@ def _require_fit(
 
 
 def with_given_lugs(study: Study, pins: Iterable[str]) -> tuple[str, ...]:
-    """Return those of the pins of which the study gives lugs."""
+    """Return those of the pins for which the study gives lugs."""
     return tuple(name for name in pins if study.table.pin[name].lug)
 
 
 def known_lugs(study: Study, pin: Pin, rise: float = 0.0) -> tuple[Lug, ...]:
-    """Return these lugs for a pin that is known to sit in lugs.
+    """Return the lugs of a pin that is known to sit in lugs.
 
-    rise: of temperature above that of the study's dimensions, K.
+    rise: of the temperature above that of the study's dimensions, K.
 
     Raises: ArgumentError for impossible lugs.
     """
@@ -163,7 +167,9 @@ def _given(table: PinTable, connection: str) -> LugTable:
 def _in_contact(study: Study, pin: PinLike, instead: str) -> Pin:
     """Return the profile of a pin that lugs can hold.
 
-    Raises: InputError for another pin.
+    instead: the remedy that messages name.
+
+    Raises: InputError for a pin that lugs cannot hold.
     """
     table, joints = study.table.pin[pin.name], study.table.analysis.joints
     at = f"pin.{key_part(pin.name)}" + ".lug" * bool(table.lug)
@@ -196,7 +202,7 @@ def _in_contact(study: Study, pin: PinLike, instead: str) -> Pin:
 
 
 def _clear_of(cut: Cut, band: Band) -> str:
-    """Return what keeps a cut clear of the edges of a lug."""
+    """Return the remedy that keeps a cut clear of the edges of a lug."""
     low, high = cut.opens
     if isinstance(cut, Hole):
         return "move it"
@@ -208,7 +214,9 @@ def _clear_of(cut: Cut, band: Band) -> str:
 
 
 def _ends_of_clearance(lugs: list[Lug]) -> list[list[Lug]]:
-    """Return the lugs at both ends of the ranges of clearance that the study gives."""
+    """Return the lugs at both ends of the ranges of clearance; a lug without a range keeps its
+    clearance.
+    """
     return [
         [replace(x, clearance=(x.range.clearance or (x.clearance,) * 2)[end]) for x in lugs]
         for end in (0, 1)
@@ -217,10 +225,10 @@ def _ends_of_clearance(lugs: list[Lug]) -> list[list[Lug]]:
 
 @dataclass(frozen=True)
 class AssumedLugs:
-    """Lugs in which a pin may sit that the study loads and clamps otherwise.
+    """Lugs in which a pin may sit that the study loads and clamps directly.
 
     pin: with its clamped segments as bands on which no link bears.
-    assumed: whether no lug is given.
+    assumed: whether the study gives no lug.
     why: the reason why there are none.
     """
 
@@ -233,10 +241,10 @@ class AssumedLugs:
 def assumed_lugs(
     study: Study, pin: PinLike, clamps: tuple[str, ...], rise: float = 0.0
 ) -> AssumedLugs:
-    """Return a lug at every connection, and one of the structure at every clamped segment.
+    """Return a lug for every connection, and a lug of the structure for every clamped segment.
 
-    Defaults fill in for values that the study omits.
-    rise: of temperature above that of the study's dimensions, K.
+    Values that the study omits have their defaults.
+    rise: of the temperature above that of the study's dimensions, K.
     """
     profile = body_of_revolution(pin)
     if profile is None:
@@ -252,7 +260,7 @@ def assumed_lugs(
         return AssumedLugs(why="one band alone does not show how the pin is supported")
     made_of = material(study, table.material)
     try:
-        # Without friction, as this range is by a beam on foundations.
+        # Without friction, since a beam on foundations gives the range over these lugs.
         cold = (
             replace(_lug(study, profile, name, _given(table, name), made_of), friction=0.0)
             for name in names
@@ -266,7 +274,7 @@ def assumed_lugs(
 
 
 def _freed(pin: Pin, clamped: list[str]) -> Pin:
-    """Return the pin with clamped segments on which no link bears."""
+    """Return the pin with its clamped segments as named segments on which no link bears."""
     segments = zip(pin.segments, pin.labels, strict=True)
     return replace(
         pin,
@@ -308,10 +316,10 @@ def _bushing(
 ) -> tuple[Bushing | None, tuple[float, float] | None]:
     """Return the bushing of a lug and the range of its interference, m.
 
-    bore: its diameter, m.
+    bore: diameter of the lug's bore, m.
 
-    Raises: ArgumentError for a range without a bushing or that excludes its interference, and for
-    a fit that may leave it loose.
+    Raises: ArgumentError for a range without a bushing, a range that excludes the interference, and
+    a fit that may leave the bushing loose.
     """
     given, ends, what = lug.bushing, lug.range.interference, f"lug {connection}"
     if given is None:
@@ -342,7 +350,7 @@ def _bushing(
 
 
 def _shank(given: ShankTable, outer: float) -> Shank:
-    """Return the outline of a lug. outer: its outer diameter, m."""
+    """Return the outline of a lug. outer: the outer diameter, m."""
     return Shank(
         given.shape,
         given.width or outer,
@@ -373,15 +381,15 @@ def _stiffness(tilt: str | float) -> float:
 def _bending(lug: Lug, band: Band, held: bool) -> float:
     """Return the stiffness, N m/rad, with which a lug on a band bends out of its plane.
 
-    held: whether its shank says where it is held.
+    held: whether the shank states where it is held.
     """
     over_width = lug.outline(band.radius).bending if held else CLAMP_DISTANCE_RATIO
     return lug.material.youngs_modulus * band.length**3 / (12.0 * over_width)
 
 
 def _pressed_in_range(lugs: Iterable[Lug]) -> str:
-    """The lug whose stated range of clearance ends in an interference, if any, as a reason why a
-    beam on foundations does not answer for its range.
+    """Return, as a reason against a beam on foundations, the first lug whose stated range of
+    clearance includes an interference; empty if there is none.
     """
     for lug in lugs:
         if lug.range.clearance is not None and lug.range.clearance[0] < 0.0:

@@ -1,7 +1,7 @@
-"""Loads on the pins of a motion at any time.
+"""The loads on the pins of a motion at any time.
 
-They are polynomials between instants at which the mechanism was solved, dense enough for
-interpolation (loads.motion.refine).
+They are interpolated by polynomials between instants at which the mechanism was solved and which
+are dense enough for that (loads.motion.refine).
 """
 
 from __future__ import annotations
@@ -15,21 +15,21 @@ from loads import Dynamics, Reactions, Resolved, resolved
 from loads.landing.through import fall
 from pinbase.arrays import Floats
 
-# With the accelerations (T, J, 2) m/s^2 of the joints, or (T, C, 3) of the pins in space
+# Reactions, and the accelerations (T, J, 2) m/s^2 of the joints, or (T, C, 3) of the pins in space
 Acting = tuple[Reactions, Floats]
 
 
 def acting(dynamics: Dynamics) -> Acting:
     """Return the reactions of a mechanism, and the accelerations of its joints in their order."""
     accelerations = [acceleration for _, _, acceleration in dynamics.motion.joints()]
-    falling = fall(dynamics.motion, dynamics.applied)[:, None]  # with the aircraft of a drop
+    falling = fall(dynamics.motion, dynamics.applied)[:, None]  # of the aircraft in a drop
     return dynamics.reactions, np.stack(accelerations, axis=1) + falling
 
 
 class MovingLoads:
-    """A motion's reactions and the accelerations of its joints.
+    """The reactions of a motion and the accelerations of its joints.
 
-    solve: gives both at times (T,) s, in any order.
+    solve: function that returns both at times (T,) s, in any order.
     times: samples, s.
     corners: times at which a value may jump, s.
     """
@@ -62,7 +62,7 @@ class MovingLoads:
         return np.union1d(self._times, self._resolved.nodes)
 
     def at(self, times: Floats) -> Acting:
-        """Return the loads at times (T,) s, by the polynomials."""
+        """Return the loads at times (T,) s, interpolated."""
         r, joints = self._first
         like = (r.forces, r.moments, r.turn, joints)
         values = self._resolved.interpolate(times)

@@ -1,4 +1,4 @@
-"""Text of the `[pin.NAME]` of a study for a body from a CAD file."""
+"""The text of the `[pin.NAME]` of a study for a body from a CAD file."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ def imported_text(path: Path, name: str | None, unit: str, material: str) -> str
     """Return the TOML of the pin in a CAD file.
 
     name: of the pin, by default the file's.
-    unit: of length in the file, which the text uses, too.
+    unit: of length in the file; the text uses it, too.
 
-    Raises: InputError for a file that cannot be read, has no solid or several, or is not turned,
-    and for a name that cannot be used.
+    Raises: InputError for a file that cannot be read, has no solid or several, or is not a turned
+    part, and for a name that cannot be used.
     """
     name = path.stem if name is None else name
     for what, given in (("--pin", name), ("--material", material)):
@@ -37,7 +37,7 @@ def imported_text(path: Path, name: str | None, unit: str, material: str) -> str
             raise InputError(f"{what}: {error}", code="unusable-name") from None
     file = BodyFile(name, path, METRES_PER_UNIT[unit], ())
     try:
-        with suppress(PermissionError):  # said by require_readable
+        with suppress(PermissionError):  # require_readable reports it
             if not path.exists():
                 raise GeometryError(f"file {path} does not exist", "no-such-file")
         require_readable(file)
@@ -92,7 +92,7 @@ def _segment(s: Segment, one: float, unit: str) -> Iterator[str]:
 
 
 def _listed(pin: Pin, one: float, unit: str) -> Iterator[str]:
-    """Yield the cylinders on which links may bear."""
+    """Yield comments that list the cylinders on which links may bear."""
     yield '# Links bear on cylinders: give the segment connection = "NAME", or split it first.'
     for i, (s, band) in enumerate(zip(pin.segments, pin.bands, strict=True), 1):
         if not s.cone and band.length > pin.tolerance:
@@ -102,7 +102,7 @@ def _listed(pin: Pin, one: float, unit: str) -> Iterator[str]:
 
 
 def _cut(cut: Cut, one: float, unit: str) -> Iterator[str]:
-    """Yield the keys of a cut, except those that have their defaults."""
+    """Yield the keys of a cut, except those with default values."""
 
     def given(**lengths: float | None) -> Iterator[str]:
         for key, si in lengths.items():

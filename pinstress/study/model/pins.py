@@ -1,4 +1,4 @@
-"""Pins of a study and their materials."""
+"""The pins of a study and their materials."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.pins import BottomTable, HoleTable, PassageTable, PinTable
 
-MIN_REPORTED_LOSS_OF_VOLUME = 1e-3  # of the volume
+MIN_REPORTED_LOSS_OF_VOLUME = 1e-3  # relative to the volume
 METRES_PER_UNIT = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 
 
 def material(study: Study, name: str) -> Material:
-    """Return a material of the study; its yield strength is that of the core of a hardened one."""
+    """Return a material of the study; the yield strength of a hardened one is that of its core."""
     m = study.table.material[name]
     at_yield = m.yield_strength if m.hardened is None else m.hardened.core
     strengths = at_yield, m.ultimate_strength, m.shear_strength, m.bearing_strength
@@ -41,7 +41,7 @@ def pin(study: Study, name: str) -> PinLike:
     """Return a pin of the study.
 
     Raises: InputError for an impossible shape, a file without a solid, or an unknown clamp;
-    MeshError when a solid cannot be cut or that of a file cannot be meshed.
+    MeshError if a solid cannot be cut or the solid of a file cannot be meshed.
     """
     p = study.table.pin[name]
     try:
@@ -60,7 +60,7 @@ def pin(study: Study, name: str) -> PinLike:
 
 
 def _clamps(study: Study, name: str) -> Iterator[tuple[str, str]]:
-    """Yield all clamped surfaces of a pin, each after its key."""
+    """Yield all clamped surfaces of a pin, each with its key."""
     clamps = {f"pin.{key_part(name)}.clamp": study.table.pin[name].clamp}
     for case, table in study.table.case.items():
         clamps[f"case.{key_part(case)}.clamp.{key_part(name)}"] = table.clamp.get(name, [])
@@ -70,7 +70,7 @@ def _clamps(study: Study, name: str) -> Iterator[tuple[str, str]]:
 
 
 def _key(name: str, p: PinTable, at: Place) -> str:
-    """Return the key of the part of a pin that geometry names."""
+    """Return the key of the part of a pin that an error of geometry refers to."""
     match at:
         case ("segment", int(i)):
             return (
@@ -88,10 +88,8 @@ def _key(name: str, p: PinTable, at: Place) -> str:
 
 
 def shape_notes(pin: PinLike) -> str:
-    """Return notes on the source of a pin's shape, and on its errors that no error estimate
-    includes.
-
-    The text is empty if there is nothing to note.
+    """Return notes on the source of a pin's shape, and on errors of the shape that no error
+    estimate includes; empty if there are none.
     """
     return "; ".join(filter(None, (pin.source, _lost_shape(pin))))
 
@@ -118,18 +116,18 @@ def _lost_shape(pin: PinLike) -> str:
 
 
 def weight(pin: PinLike, density: float, gravity: float = 9.80665) -> float:
-    """Return the weight (N) for a density in kg/m^3."""
+    """Return the weight (N) of a pin for a density in kg/m^3."""
     return density * gravity * pin.volume
 
 
 def slenderness(pin: PinLike) -> float:
-    """Return the length over the largest diameter on which a link bears."""
+    """Return the length over the largest diameter of a band."""
     return pin.length / (2.0 * max(pin.band(name).radius for name in pin.connections))
 
 
 def far_ends(pin: PinLike) -> tuple[tuple[float, float], ...]:
-    """Return the diameter and bore (m) at the far ends of what `outline` draws; empty where all
-    are cylinders.
+    """Return the diameter and bore (m) at the far end of each part that `outline` draws; empty if
+    all are cylinders.
     """
     profile = pin.profile
     if profile is None or profile.stepped:
@@ -138,7 +136,7 @@ def far_ends(pin: PinLike) -> tuple[tuple[float, float], ...]:
 
 
 def outline(pin: PinLike) -> list[tuple[float, float, float, str, str]]:
-    """Return the cylinders or cones to draw a pin by.
+    """Return the cylinders or cones that draw a pin.
 
     Each has length, diameter, bore (m), name, and "band" or "plain". A shape from a file is drawn
     by its bands, and the space between them.
@@ -214,7 +212,7 @@ def _at_ends(radius: float | tuple[float, float]) -> tuple[float, float]:
 
 
 def by_corners(name: str, p: PinTable) -> Pin:
-    """Return a pin whose outline is given by its corners.
+    """Return a pin whose outline is given by corners.
 
     Raises: GeometryError.
     """
@@ -226,7 +224,7 @@ def by_corners(name: str, p: PinTable) -> Pin:
 def _from_file(study: Study, name: str, p: PinTable) -> PinLike:
     from geometry.imported.body_file import BodyFile
     from geometry.imported.body_file import Place as Band
-    from pinstress.study.model.imported_pin import read_body  # which needs meshio and scikit-fem
+    from pinstress.study.model.imported_pin import read_body  # imports meshio and scikit-fem
 
     assert p.geometry is not None
     places = tuple(Band(n, b.z, b.surface, b.connection) for n, b in p.band.items())

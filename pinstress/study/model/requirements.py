@@ -23,8 +23,8 @@ CHECKED_BY_FORMULA = "shear", "bearing", "bending"
 def required_factor(study: Study, pin: str, case: str) -> float | None:
     """Return the largest factor against yield that is required of a pin in a case.
 
-    A requirement on yield at limit load replaces required_safety_factor; one at proof load comes
-    on top.
+    A requirement on yield at limit load replaces required_safety_factor; a requirement at proof
+    load applies in addition.
     """
     default = study.table.analysis.required_safety_factor
     limit = stated_factor(study, pin, case, "yield", "limit") or default
@@ -33,7 +33,9 @@ def required_factor(study: Study, pin: str, case: str) -> float | None:
 
 
 def required_factors(study: Study, pin: str, cases: Iterable[str]) -> dict[str, float]:
-    """Return the factors of the cases in which they are not that of the whole study."""
+    """Return the required factors of the cases in which they differ from that of the whole
+    study.
+    """
     if not study.table.require:
         return {}
     factors = {case: required_factor(study, pin, case) for case in cases}
@@ -42,8 +44,10 @@ def required_factors(study: Study, pin: str, cases: Iterable[str]) -> dict[str, 
 
 
 def common_required_factor(study: Study, pins: Iterable[str] | None = None) -> float | None:
-    """Return the factor that is required of all pins in all cases; None without one or where
-    requirements differ, so that a summary of many rows cannot name one.
+    """Return the factor that is required of all pins in all cases.
+
+    None if none is required, or if requirements differ, so that a summary of many rows cannot name
+    one.
 
     pins: by default all.
     """
@@ -56,8 +60,11 @@ def common_required_factor(study: Study, pins: Iterable[str] | None = None) -> f
 
 
 def checks_besides_yield(study: Study) -> tuple[str, ...]:
-    """Return the checks of pins that a run judges besides their largest stress against yield: what
-    the study requires, what it has data for, and the formulas for pins with a profile or outline.
+    """Return the checks of pins that a run judges in addition to their largest stress against
+    yield.
+
+    These are the checks that the study requires, those for which it has data, and the formulas for
+    pins with a profile or outline.
     """
     table, pins = study.table, study.table.pin.values()
     life = table.fatigue is not None and table.fatigue.life is not None
@@ -70,8 +77,8 @@ def checks_besides_yield(study: Study) -> tuple[str, ...]:
 
 
 def sizing_factor(study: Study, pin: str, case: str) -> float | None:
-    """Return the factor against yield with which a pin meets its requirements on stress in a case,
-    on yield and rupture; None without any.
+    """Return the factor against yield with which a pin meets its requirements on yield and rupture
+    in a case; None without any.
     """
     material = study.material_of(pin)
     factors = [required_factor(study, pin, case)]
@@ -82,8 +89,10 @@ def sizing_factor(study: Study, pin: str, case: str) -> float | None:
 
 
 def asks_more_than_yield(study: Study, pin: str, case: str) -> bool:
-    """Return whether a pin must have less stress in a case than by its required factor against
-    yield: for rupture, or for a limit load that only little stress shows to be far away.
+    """Return whether a pin needs less stress in a case than its required factor against yield
+    allows.
+
+    The reason is rupture, or a limit load that only a low stress shows to be far away.
     """
     required = required_factor(study, pin, case)
     collapse = (stated_factor(study, pin, case, "limit load", x) for x in REQUIRED_LEVELS)
@@ -95,7 +104,7 @@ def asks_more_than_yield(study: Study, pin: str, case: str) -> bool:
 def stated_factor(
     study: Study, pin: str, case: str, check: RequiredCheck, level: RequiredLevel
 ) -> float | None:
-    """Return the factor that [[require]] states for a check, None where it states none."""
+    """Return the factor that [[require]] states for a check, or None."""
     for table in study.table.require:
         if (table.check, level_of(table)) == (check, level) and _concerns(table, pin, case):
             return table.factor
@@ -121,10 +130,10 @@ def _concerns(table: RequireTable, pin: str, case: str) -> bool:
 def stated_requirements(
     study: Study, rows: Collection[Pair], pins: Collection[str], cases: Collection[str]
 ) -> tuple[StatedRequirement, ...]:
-    """Return the requirements of [[require]] on the rows of a run, and those on pins and cases that
-    it names but that have no row.
+    """Return the requirements of [[require]] on the rows of a run, and those on named pins and
+    cases that have no row.
 
-    rows: pins and cases that are solved. pins, cases: that are run.
+    rows: solved pins and cases. pins, cases: those that are run.
     """
     return tuple(r for table in study.table.require for r in _of_table(table, rows, pins, cases))
 
@@ -139,7 +148,7 @@ def _of_table(
 
     wanted = [(pin, case) for pin, case in rows if _concerns(table, pin, case)]
     yield from (stated(*pair) for pair in _without_cases(wanted, has_cases))
-    # Pins and cases by name that have no row must not be forgotten.
+    # Requirements on named pins and cases without a row must be reported, too.
     for pin, case in _without_cases(product(table.pins or pins, table.cases or ("",)), has_cases):
         known = any(row_pin == pin and case in (row_case, "") for row_pin, row_case in rows)
         if known or not (table.pins or table.cases):
@@ -153,5 +162,5 @@ def _of_table(
 
 
 def _without_cases(pairs: Iterable[Pair], has_cases: bool) -> dict[Pair, None]:
-    """Return each pair once, for a check over several cases with none of them."""
+    """Return each pair once; for a check over several cases, each pin once without a case."""
     return dict.fromkeys(pair if has_cases else (pair[0], "") for pair in pairs)

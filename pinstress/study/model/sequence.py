@@ -1,4 +1,4 @@
-"""Sequences of a study: their cases, and the time at which each begins."""
+"""The sequences of a study, with their cases and the time at which each begins."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pinstress.study.reading.choices import select
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.sequence import SequenceTable
 
-MAX_SEQUENCE_INSTANTS = 1_000_000  # of a sequence
+MAX_SEQUENCE_INSTANTS = 1_000_000  # limit for each sequence
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ def steps(table: SequenceTable, times: Mapping[str, Floats | None]) -> Iterator[
 
 
 def complete(study: Study, cases: Container[str]) -> tuple[str, ...]:
-    """Return the sequences all of whose cases are among these."""
+    """Return the sequences whose cases are all among these."""
     table = study.table.sequence
     return tuple(name for name, s in table.items() if all(x.case in cases for x in s.steps))
 
@@ -58,8 +58,8 @@ def chosen_cases(study: Study, wanted: Iterable[str] | None) -> list[str]:
 
 
 def require_times(study: Study, times: Mapping[str, Floats | None]) -> None:
-    """Raise InputError for a step's case that has no time and no duration, or has both, and for
-    a sequence with too many instants.
+    """Raise InputError for a step whose case has neither a time nor a duration, or has both, and
+    for a sequence with too many instants.
     """
     for name in complete(study, times):
         count = 0

@@ -1,4 +1,4 @@
-"""The direction in which the shanks of lugs point, as their links move."""
+"""The directions in which the shanks of lugs point, as their links move."""
 
 from __future__ import annotations
 
@@ -16,11 +16,12 @@ from pinstress.study.schema.shown import listed
 
 
 def shank_angles(study: Study, pin: str, case: CaseLoads) -> dict[str, ShankAngle]:
-    """Return the angles of a pin's shanks in a case, by connection; those that neither the study
-    nor the mechanism gives are left out.
+    """Return the angles of a pin's shanks in a case, by connection.
 
-    Raises: InputError for a joint that does not exist, or that no linkage in the plane gives, and
-    where the other joints of a body lie about the lug.
+    Shanks whose angle neither the study nor the mechanism gives are left out.
+
+    Raises: InputError for a joint that does not exist or is not in a planar linkage, and if the
+    middle of the other joints of a body is at the lug.
     """
     out, mechanism, table = {}, study.table.mechanism, study.table.pin[pin]
     links = {ear: connection for connection, ear in table.ears.items()}
@@ -46,23 +47,24 @@ def shank_angles(study: Study, pin: str, case: CaseLoads) -> dict[str, ShankAngl
 
 
 def _link(case: CaseLoads, connection: str, shank: ShankTable, pin: PinTable) -> str | None:
-    """Return the connection by which the mechanism gives a shank's direction; None for a lug of
-    the ground or of the structure, unless that is stated.
+    """Return the connection from which the mechanism gives a shank's direction.
 
-    connection: of the link whose lug it is, which is also that of its other ear.
+    None for a lug of the ground or of the structure, unless the direction is stated.
+
+    connection: of the link to which the lug belongs; both ears of a link have the same.
     """
     r = case.reactions
     if shank.toward is None:
         known = connection in r.connections
         return connection if known and r.bodies[r.connections.index(connection)] != GROUND else None
-    at_pin = (connection, *(name for _, name in pin.connections))  # one place, one turn
+    at_pin = (connection, *(name for _, name in pin.connections))  # all at one point, in pin axes
     return next((name for name in at_pin if name in r.connections), None)
 
 
 def _toward(
     study: Study, at: str, connection: str, others: list[str], case: CaseLoads
 ) -> ShankAngle:
-    """Return the angles towards the middle of other joints."""
+    """Return the angles towards the mean position of other joints."""
     dynamics, times = case.dynamics, None
     assert dynamics is not None
     if case.moving is not None and case.solve is not None:
@@ -108,7 +110,7 @@ def _others(
         for s in linkage.sliders
         if body in (s.base, s.moving)
     }
-    for bodies in ({body}, sliding):  # a piston points towards where its cylinder is held
+    for bodies in ({body}, sliding):  # a piston points towards the joint of its cylinder
         known = (j.name for j, c in linkage.connections if c.body in bodies and j.name != here)
         if others := list(dict.fromkeys(known)):
             return others

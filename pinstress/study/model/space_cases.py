@@ -1,4 +1,4 @@
-"""Cases of a linkage in space: wrenches on its pins, in their axes."""
+"""Cases of a linkage in space, solved for the forces and moments on its pins in pin axes."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import InstantCase, MotionCase, StaticCase
 from pinstress.study.schema.landing import GroundCase
 
-MAX_POSTURES = 200_000  # of `postures_of`: of longer motions transmission angles are not sought
-POWER_BALANCE = 1e-6  # of the largest power of a drive: a larger violation is noted
+MAX_POSTURES = 200_000  # limit of `postures_of`; longer motions get no transmission angles
+POWER_BALANCE = 1e-6  # relative to the largest power of a drive: a larger violation is noted
 
 
 @dataclass(frozen=True)
@@ -45,15 +45,16 @@ class InSpace:
     """A case of a linkage in space, solved at some instants.
 
     dynamics: of all joints. pins: by connection.
-    reactions: at the pins alone, in the study's order.
-    ground: inertia by the motion of the ground, if that moves.
-    note: how the loads came about.
+    reactions: at the pins only, in the study's order.
+    ground: the inertia forces due to the motion of the ground, if it moves.
+    note: the origin of the loads.
     peaks, efforts: over the whole motion, with every drive's work at the instants.
-    frictionless: the same without friction, where there is any.
-    others: the reactions with other stiffness of links, by what is different.
-    held: by what it is held, and whether that slides; None: by its drives.
-    violation: of the power balance over the whole motion, of the largest power of a drive.
-    transmission: smallest transmission angles (rad) over it by link and joint of the linkage.
+    frictionless: the results over the motion without friction, if there is friction.
+    others: the reactions with other stiffnesses of links, by the difference in stiffness.
+    held: what holds the linkage, and whether that slides; None if its drives do.
+    violation: of the power balance over the whole motion, relative to the largest power of a drive.
+    transmission: smallest transmission angles (rad) over the motion, by link and joint of the
+    linkage.
     """
 
     dynamics: SpaceDynamics
@@ -76,8 +77,9 @@ class InSpace:
 
     @property
     def accelerations(self) -> Floats:
-        """Accelerations of the pins at all connections, (T, C, 3) m/s^2: less these, gravity is
-        what the pins feel, also on a moving ground.
+        """Accelerations of the pins at all connections, (T, C, 3) m/s^2.
+
+        Gravity minus these is the body force per mass on a pin, even on a moving ground.
         """
         motion = self.dynamics.motion
         each = [motion.point(pin.carrier, pin.at) for pin in self.pins.values()]
@@ -88,7 +90,7 @@ class InSpace:
 
     @property
     def bodies(self) -> BodyMomenta:
-        """Motion and momenta of all bodies as seen from outside, in the mechanism's axes."""
+        """Motion and momenta of all bodies relative to a fixed frame, in the mechanism's axes."""
         return body_momenta(self.dynamics.motion, self.ground.ground if self.ground else None)
 
     @property
@@ -102,9 +104,9 @@ class InSpace:
 def _at_pins(
     dynamics: SpaceDynamics, pins: dict[str, SpacePin], ground: GroundInertia | None, note: str
 ) -> InSpace:
-    """Return the reactions of the connections, with the axes of their pins."""
+    """Return a solved case with the reactions of the connections and the axes of their pins."""
     which = [pin.joint for pin in pins.values()]
-    # In batches, so that the pose of all instants does not stay in memory.
+    # In batches, so that the poses of all instants are not in memory at once.
     turns = [
         np.stack([part.rotation(pin.carrier) @ pin.axes for pin in pins.values()], axis=1)
         for part in dynamics.motion.parts
@@ -121,8 +123,8 @@ def _at_pins(
 
 
 def postures_of(linkage: SpaceLinkage, instants: int) -> int:
-    """Return the number of velocities that transmission angles need: of every body with every
-    drive.
+    """Return the number of velocities from which transmission angles follow: one for every body,
+    drive and instant.
     """
     return len(linkage.bodies) * max(1, len(linkage.driven)) * instants
 
@@ -131,7 +133,7 @@ def postures_of(linkage: SpaceLinkage, instants: int) -> int:
 class MovedInSpace:
     """A motion in space at any times (T,) s.
 
-    A class instead of closures, since it is sent to processes that are started anew.
+    This is a class instead of closures, because it is sent to processes that are not forked.
     """
 
     name: str
@@ -145,7 +147,7 @@ class MovedInSpace:
     def solve(self, times: Floats, variants: bool = False) -> InSpace:
         """Return the case at times (T,) s.
 
-        variants: whether with the reactions for other stiffness of links.
+        variants: whether to add the reactions for other stiffnesses of links.
         """
         loads = (*self.loads, *((self.ground,) if self.ground else ()))
         at = self.course.at(times)
@@ -153,7 +155,9 @@ class MovedInSpace:
         return _at_pins(dynamics, self.pins, self.ground, self.note)
 
     def acting(self, times: Floats) -> Acting:
-        """Return reactions, and accelerations of the pins (T, C, 3) m/s^2, at times (T,) s."""
+        """Return the reactions, and the accelerations of the pins (T, C, 3) m/s^2, at times
+        (T,) s.
+        """
         solved = self.solve(times)
         return solved.reactions, solved.accelerations
 
@@ -165,7 +169,9 @@ class MovedInSpace:
         return corners_of(course, self.loads, nodes)
 
     def solved(self, samples: int, extremes: bool) -> InSpace:
-        """Return the case at equally spaced instants; where asked, with its extremes."""
+        """Return the case at equally spaced instants; extremes: with those over the whole
+        motion.
+        """
         instants = np.linspace(self.course.first, self.course.last, samples)
         solved = self.solve(instants, variants=True)
         if not extremes:
@@ -226,11 +232,11 @@ def at_rest_in_space(
     states: Sequence[tuple[float, float, float]],
     grounded: Grounded | None = None,
 ) -> Callable[..., InSpace]:
-    """Return what gives a case at one instant: `solve()` as stated, `solve(which, size)` with an
-    impulse of another size (N) in the load of that number.
+    """Return a function that solves a case at one instant: `solve()` as stated, `solve(which,
+    size)` with an impulse of another size (N) in the load of index `which`.
 
-    states: position, velocity and acceleration of every drive, SI.
-    grounded: the forces of the ground, of a case that has nothing but these.
+    states: position, velocity and acceleration of every drive, in SI units.
+    grounded: the forces of the ground, for a case that has no other loads.
     """
     stated = case.hold if isinstance(case, StaticCase | GroundCase) else None
     hold = tuple(dict.fromkeys(stated or ()))
@@ -269,10 +275,10 @@ def at_rest_in_space(
 def _require_closed(
     study: Study, dynamics: SpaceDynamics, held_by: Sequence[tuple[str, bool]]
 ) -> None:
-    """Raise LinkageError where a stop would have to pull."""
+    """Raise LinkageError if a stop would have to pull."""
     stops, forces = space_mechanism(study).stop, dynamics.drive
     units = [dynamics.motion.equations.unit_of(name) for name, _ in held_by]
-    scale = np.array(units)  # forces that are comparable
+    scale = np.array(units)  # makes forces and couples comparable
     least = OPENING_FORCE_TOLERANCE * float(np.abs(forces / scale).max())
     for k, (name, slides) in enumerate(held_by):
         if name in stops:

@@ -47,7 +47,9 @@ def springs_in_space(study: Study, linkage: SpaceLinkage) -> tuple[SpaceSpring, 
 
 
 def ground_inertia(case: MechanismCase) -> GroundInertia | None:
-    """Return the inertia by the motion of the ground of a case; None: the ground is still."""
+    """Return the inertia forces due to the motion of the ground in a case; None if the ground is at
+    rest.
+    """
     if (moved := case.ground_motion) is None:
         return None
     straight = moved.path == "straight"
@@ -61,7 +63,7 @@ def ground_inertia(case: MechanismCase) -> GroundInertia | None:
 def applied_in_space(
     study: Study, name: str, case: MechanismCase, linkage: SpaceLinkage
 ) -> list[tuple[SpaceForce, ...]]:
-    """Return the loads of a case, several for one with a table.
+    """Return the loads of a case; a load with tables gives several forces.
 
     Raises: InputError.
     """
@@ -93,7 +95,7 @@ def load_in_space(
     else:
         stated = table.at if isinstance(table.at, str) else vector(table.at)
         at = place(space_mechanism(study), stated)
-    begin = table.begin or -math.inf  # at its start a load acts already
+    begin = table.begin or -math.inf  # a load from time 0 acts at time 0, too
     end = math.inf if table.end is None else table.end
 
     def acting(

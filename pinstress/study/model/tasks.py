@@ -1,4 +1,4 @@
-"""Tasks to solve: each pin, its constraints, and its loads in every case."""
+"""Tasks to solve, each a pin with its constraints and its loads in every case."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PinImpulse:
-    """Loads on a pin without an impulse and with it, two instants.
+    """Loads on a pin at two instants: without an impulse and with it.
 
-    time: of the impulse, s.
+    time: duration of the impulse, s.
     """
 
     time: float
@@ -43,10 +43,10 @@ class PinImpulse:
 
 @dataclass(frozen=True)
 class SharedLoads:
-    """Loads on a pin with other stiffness of the links that share them.
+    """Loads on a pin with other stiffnesses of the links that share them.
 
-    what: what is different at each instant of the loads, which are those at which the force or the
-    moment of one of its links is largest.
+    what: the difference in stiffness for each instant of the loads. The instants are those at which
+    the force or the moment of one of the pin's links is largest.
     """
 
     what: tuple[str, ...]
@@ -55,21 +55,21 @@ class SharedLoads:
 
 @dataclass(frozen=True)
 class Task:
-    """One pin of a material, clamped in one way, in lugs of one temperature, with its loads in all
+    """A pin of a material, clamped in one way, in lugs of one temperature, with its loads in all
     cases of that kind.
 
-    left_out: by case, the connections whose force and moment are not applied because their band is
-    clamped.
-    ranges: by case, the loads over the ranges of its impulse.
-    between: by case that is a motion, the loads at any times.
+    left_out: for each case, the connections whose force and moment are not applied because their
+    band is clamped.
+    ranges: for each case with ranges of its impulse, the loads over them.
+    between: for each case that is a motion, the loads at any times.
     lugs: those that support the pin, if any.
-    surroundings: lugs in which it may sit where none support it.
-    impulses: by case that has an impulse.
+    surroundings: lugs in which the pin may sit if none support it.
+    impulses: for each case that has an impulse.
     given: the lugs that the study gives, whether they support the pin or not.
     shanks: by case and connection, the angles of the shanks of lugs.
-    shared: by case, the loads with other stiffness of links.
-    rise: of the temperature of its cases above that of the study's dimensions, K, which has changed
-    the fit of its lugs; 0 where it has not.
+    shared: by case, the loads with other stiffnesses of links.
+    rise: of the temperature of the cases above that of the study's dimensions, K, if it changes the
+    fit of the lugs; otherwise 0.
     """
 
     pin: PinLike
@@ -89,11 +89,13 @@ class Task:
 
     @property
     def also(self) -> dict[str, PinLoads]:
-        """The loads under which stress is needed besides those of the case itself, by case."""
+        """The loads under which stress is needed in addition to those of the case itself,
+        by case.
+        """
         return {case: x.loads for case, x in self.shared.items()} | self.ranges
 
     def of_case(self, loads: PinLoads) -> Task:
-        """The same pin with the loads of one of its cases alone."""
+        """The same pin with the loads of one of its cases only."""
         return replace(self, loads=(loads,))
 
 
@@ -127,9 +129,10 @@ def tasks(study: Study, pins: list[PinLike], loads: dict[str, CaseLoads]) -> lis
 
 
 def _rise(study: Study, pin: PinLike, case: str) -> float:
-    """Return the rise of temperature in a case that changes the fits of a pin; 0 where it does not.
+    """Return the rise of temperature in a case, K, if it changes the fits of a pin; otherwise 0.
 
-    One without the data that it needs is returned: who makes the lugs says what is missing.
+    If data for the change are missing, the rise is returned; making the lugs then reports what is
+    missing.
     """
     rise, profile, joints = rise_of(study, case), pin.profile, study.table.analysis.joints
     in_lugs = study.table.pin[pin.name].lug or joints in ("contact", "foundation")
@@ -150,7 +153,7 @@ def _task(
     rise: float,
     loads: dict[str, CaseLoads],
 ) -> Task:
-    """Return the task of a pin in cases that have these clamps and this rise of temperature."""
+    """Return the task of a pin in the cases that have these clamps and this rise of temperature."""
     constrained = {pin.surface(c) for c in clamps}
     made_of = pin_material(study, pin)
     cases: list[PinLoads] = []
@@ -197,7 +200,7 @@ def _task(
 
 
 def _shared(given: CaseLoads, applied: list[str], build: Callable[..., PinLoads]) -> SharedLoads:
-    """Return the loads on a pin with other stiffness of links, at its worst instants."""
+    """Return the loads on a pin with other stiffnesses of links, at the worst instants of each."""
     parts: list[PinLoads] = []
     what: list[str] = []
     for text, other in given.shared:
@@ -228,14 +231,14 @@ def _shanks(
 ) -> dict[str, dict[str, ShankAngle]]:
     if not any(lug.shank for lug in in_lugs):
         return {}
-    from pinstress.study.model.shanks import shank_angles  # with the elements of lugs
+    from pinstress.study.model.shanks import shank_angles  # imports the elements of lugs
 
     return {case.case: shank_angles(study, pin.name, loads[case.case]) for case in cases}
 
 
 def assumed_distribution(study: Study, todo: Iterable[Task]) -> str:
-    """Return a sentence on the load distribution of the cases that state none; empty where every
-    case states it, or lugs carry the loads.
+    """Return a sentence on the load distribution of the cases that state none; empty if every case
+    states it, or lugs carry the loads.
 
     todo: the tasks of an analysis.
     """
@@ -256,8 +259,8 @@ def assumed_distribution(study: Study, todo: Iterable[Task]) -> str:
 
 
 def taper_assumption(todo: Iterable[Task]) -> tuple[str, ...]:
-    """Return a sentence on clamps on cones, which hold a pin as no tapered seat does; none without
-    such clamps.
+    """Return a sentence on clamps on cones, which hold a pin more firmly than a tapered seat; empty
+    without such clamps.
 
     todo: the tasks of an analysis.
     """
@@ -278,7 +281,7 @@ def taper_assumption(todo: Iterable[Task]) -> tuple[str, ...]:
 
 
 def require_models(study: Study, todo: Iterable[Task], model: str) -> None:
-    """Raise InputError, with all such tasks, for a model that cannot solve some."""
+    """Raise InputError for tasks that a model cannot solve, with all of them."""
     wrong = Errors(study.path)
     for task in todo:
         wrong.attempt(partial(_require_model, study, model, task))
@@ -286,7 +289,7 @@ def require_models(study: Study, todo: Iterable[Task], model: str) -> None:
 
 
 def _require_model(study: Study, model: str, task: Task) -> None:
-    """Raise InputError for a model that cannot solve a task."""
+    """Raise InputError for a task that a model cannot solve."""
     pin = task.pin.name
     if model in ("beam", "harmonic") and not task.pin.revolved:
         raise study.error(
@@ -324,9 +327,9 @@ def _pin_loads(
 ) -> PinLoads:
     """Return the loads on a pin at some connections.
 
-    heavy: whether its own weight acts.
+    heavy: whether the pin's own weight acts.
     ears: of the links that are clevises, by connection.
-    accelerations: (T, J, 2) m/s^2 of the joints, by default those of the case's instants.
+    accelerations: (T, J, 2) m/s^2 of the joints, by default those at the case's instants.
     """
     body = _own_weight(given, applied[0], reactions, accelerations) if heavy else np.zeros(3)
     forces = np.stack([reactions.in_pin_axes(c) for c in applied], axis=1)
@@ -341,7 +344,7 @@ def _pin_loads(
 def _ears(study: Study, pin: PinLike, constrained: set[str], applied: list[str]) -> dict[str, Ears]:
     """Return the ears of a pin's clevises that bear loads.
 
-    Raises: InputError for a clamped one.
+    Raises: InputError for a clamped ear.
     """
     out = {}
     for connection, other in study.table.pin[pin.name].ears.items():
@@ -359,15 +362,15 @@ def _ears(study: Study, pin: PinLike, constrained: set[str], applied: list[str])
 def _own_weight(
     case: CaseLoads, connection: str, reactions: Reactions, accelerations: Floats | None
 ) -> Floats:
-    """Return gravity less the pin's acceleration, (T, 3) m/s^2 in its own axes; zero without a
+    """Return gravity minus the pin's acceleration, (T, 3) m/s^2 in pin axes; zero without a
     mechanism.
 
-    A clamped pin's weight goes into its clamp, as the loads there do.
+    The weight of a clamped pin would go into its clamp, as loads on a clamped band do.
     """
     if case.space is not None:
         known = case.space.accelerations if accelerations is None else accelerations
         at = known[:, reactions.connections.index(connection)]
-        if len(at) != len(reactions):  # an impulse's range, at the case's one instant
+        if len(at) != len(reactions):  # the range of an impulse, all at the case's only instant
             at = np.broadcast_to(at, (len(reactions), 3))
         return reactions.to_pin_axes(case.space.gravity - at, connection)
     if case.dynamics is None:

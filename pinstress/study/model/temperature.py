@@ -1,4 +1,4 @@
-"""The temperature of a case, and what it does to the fits of a pin's lugs."""
+"""The temperature of a case, and its effect on the fits of a pin's lugs."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def rise_of(study: Study, case: str | None) -> float:
 
 
 def temperature_words(study: Study, rise: float) -> str:
-    """Return the temperature that is `rise` (K) above that of the study's dimensions, in words."""
+    """Return as text the temperature that is `rise` (K) above that of the study's dimensions."""
     kelvin = study.table.analysis.reference_temperature + rise
     return shown_temperature(kelvin, study.system.imperial)
 
@@ -40,8 +40,8 @@ def band_radius(pin: Pin, lug: Lug) -> float:
 def at_case(study: Study, pin: Pin, lugs: Iterable[Lug], case: str) -> list[Lug]:
     """Return the lugs of a pin at the temperature of a case.
 
-    Raises: InputError for a material without thermal expansion, and for a pressed bushing that is
-    loose at this temperature.
+    Raises: InputError for a material without thermal expansion, and for a pressed bushing that
+    comes loose at this temperature.
     """
     rise, made_of = rise_of(study, case), material(study, study.table.pin[pin.name].material)
     at, out = f"case.{key_part(case)}.temperature", []
@@ -60,7 +60,9 @@ def at_case(study: Study, pin: Pin, lugs: Iterable[Lug], case: str) -> list[Lug]
 
 
 def _require_bushing(study: Study, pin: Pin, lug: Lug, case: str) -> None:
-    """Raise InputError for a pressed bushing that is loose in a lug at its temperature."""
+    """Raise InputError for a pressed bushing that is loose in a lug at the temperature of a
+    case.
+    """
     rise = rise_of(study, case)
     opens, bushing = bushing_opening_rise(lug, rise), lug.bushing
     if opens is None or bushing is None:
@@ -76,7 +78,7 @@ def _require_bushing(study: Study, pin: Pin, lug: Lug, case: str) -> None:
 
 
 def temperature_assumption(study: Study) -> tuple[str, ...]:
-    """Return a sentence on the temperatures of the cases; none where no case has one."""
+    """Return a sentence on the temperatures of the cases; empty if no case states one."""
     hot = [name for name, case in study.table.case.items() if case.temperature is not None]
     if not hot:
         return ()

@@ -1,5 +1,5 @@
-"""Stated weights: those of floating pins compared with those of their profiles, and those in a
-gravity that is not the earth's.
+"""Warnings about stated weights of floating pins that differ from those of their shapes, and about
+stated weights in a gravity that is not the earth's.
 """
 
 from __future__ import annotations
@@ -12,16 +12,15 @@ from pinstress.study.model.pins import pin, weight
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 
-STATED_WEIGHT_TOLERANCE = 0.02  # of the profile's weight
-GRAVITY_TOLERANCE = 0.02  # of the standard one
+STATED_WEIGHT_TOLERANCE = 0.02  # relative to the weight of the pin's shape
+GRAVITY_TOLERANCE = 0.02  # relative to standard gravity
 
 
 def weight_warnings(study: Study) -> list[str]:
-    """Return a warning for every joint whose stated weight is not that of its pin's shape, and one
-    where weights are stated in another gravity than the earth's.
+    """Return a warning for every joint whose stated weight differs from that of its pin's shape or
+    is not used, and a warning if weights are stated in another gravity than the earth's.
 
-    The former gives both weights, and the one that is used. Weights that are not used at all have a
-    warning too.
+    A warning on a difference gives both weights, and states which one is used.
     """
     mechanism = study.table.mechanism
     if mechanism is None:
@@ -65,7 +64,7 @@ def _differs(study: Study, name: str, stated: float, gravity: float) -> str:
     try:
         computed = weight(pin(study, name), density, gravity)
     except InputError:
-        return ""  # whoever needs the pin says what is wrong with it
+        return ""  # the error is reported where the pin is used
     if abs(stated - computed) <= STATED_WEIGHT_TOLERANCE * computed:
         return ""
     unit, factor = study.system.force, study.system.factor("force")

@@ -1,4 +1,4 @@
-"""What a case says of its tables of forces, as the reader of tables needs it."""
+"""The layout of a case's tables of forces, as the reader of tables needs it."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def _units(table: TableFile) -> dict[str, str]:
 
 
 def _unit_needed(table: TableFile) -> frozenset[str]:
-    """Return which columns must have a unit, as those beside them have one that is stated."""
+    """Return the columns that must have a unit because a unit is stated for those next to them."""
     needed = {"moment"} if table.unit else set()
     for name, joint in table.connections.items():
         if joint.unit:
@@ -67,7 +67,9 @@ def _unit_needed(table: TableFile) -> frozenset[str]:
 
 
 def _axes(table: TableFile, own: ForceAxes, joint: JointColumns | None) -> JointAxes:
-    """Return how the forces of a connection are written, by its own keys or those of the table."""
+    """Return the axes, the sign and the reference point of a connection's forces, by its own keys
+    or those of the table.
+    """
     axes = own.axes or table.axes
     sign = -1.0 if (own.acts_on or table.acts_on) == "link" else 1.0
     rows = NO_ROTATION if axes is None else matrix_of(axes)

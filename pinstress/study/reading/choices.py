@@ -20,7 +20,7 @@ MAX_ARGUMENT = sys.float_info.max
 
 
 class Selection(TypedDict, total=False):
-    """Keywords of analysis.plan.prepare; None: as in the study."""
+    """Keyword arguments of analysis.plan.prepare; None means as in the study."""
 
     pins: Iterable[str] | None
     cases: Iterable[str] | None
@@ -31,7 +31,7 @@ class Selection(TypedDict, total=False):
 
 
 class ChoiceError(InputError):
-    """A bad argument, which the message begins with: an option on the command line."""
+    """A bad argument, with whose name the message begins; on the command line it is an option."""
 
     @property
     def of_option(self) -> str:
@@ -43,9 +43,9 @@ class ChoiceError(InputError):
 def select(
     names: Iterable[str], wanted: Iterable[str] | None, what: str, argument: str = ""
 ) -> list[str]:
-    """Return the wanted names in their order, or all.
+    """Return the wanted names in the order of `names`, or all.
 
-    argument: the argument that gave them, {what}s by default.
+    argument: the argument that gave the wanted names, {what}s by default.
 
     Raises: ChoiceError for an unknown name, or an empty list.
     """
@@ -78,9 +78,9 @@ def select(
 def require_model(model: Model | None) -> Model | None:
     """Return the model.
 
-    Raises: ChoiceError for an unknown one.
+    Raises: ChoiceError for an unknown model.
     """
-    from fea.core.requirement import Model  # which is slow to import
+    from fea.core.requirement import Model  # slow to import
 
     must = f"must be one of {listed(get_args(Model))}"
     right = model is None or model in get_args(Model)

@@ -1,4 +1,4 @@
-"""Content of a study: its tables, in SI, and what is wrong in them, all at once."""
+"""The content of a study with its tables in SI units, and all its errors at once."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from pinstress.study.schema.tables import AnyCase, StudyTable
 from pinstress.study.schema.types import ANY_CASE, usable_name
 from pinstress.study.schema.units import UNIT_SYSTEMS, UnitSystem
 
-MAX_READINGS = 50  # of a study with errors, each of which removes something
+MAX_READINGS = 50  # of a study with errors; each reading removes wrong parts
 
 
 def system_of(raw: Mapping[str, Any]) -> UnitSystem:
@@ -38,10 +38,10 @@ def system_of(raw: Mapping[str, Any]) -> UnitSystem:
 def table_of(
     path: Path, raw: Mapping[str, Any], damage: Damage, wrong: list[Wrong]
 ) -> StudyTable | None:
-    """Return the content in SI of what is valid of a study; None where that cannot be found.
+    """Return the valid content of a study in SI units, or None if it cannot be found.
 
-    damage: receives what is wrong.
-    wrong: earlier errors, to which those of content and references are added.
+    damage: receives the wrong parts.
+    wrong: earlier errors, to which errors of content and references are added.
 
     Raises: InputError for an unusable table of cases.
     """
@@ -69,8 +69,8 @@ def table_of(
 
 
 def _remove_references(references: list[Wrong], tree: Any, damage: Damage) -> list[Wrong]:
-    """Remove references to what does not exist, and return the errors that do not follow from what
-    was removed before.
+    """Remove references to things that do not exist, and return the errors that do not follow from
+    earlier removals.
 
     tree: the remainder of the study.
     """
@@ -83,7 +83,7 @@ def _remove_references(references: list[Wrong], tree: Any, damage: Damage) -> li
     ]
     for wrong, place in zip(references, originals, strict=True):
         some = next(iter(tree.get("material", ())), None)
-        drive = ("mechanism", "drive")  # what it drives tells what kind it is
+        drive = ("mechanism", "drive")  # removed as a whole, since its keys determine its kind
         damage.remove(
             drive if place[:2] == drive else place,
             some if wrong.code == "unknown-material" else None,
@@ -92,7 +92,9 @@ def _remove_references(references: list[Wrong], tree: Any, damage: Damage) -> li
 
 
 def _hint(wrong: Wrong, removed: set[str]) -> str:
-    """Return the hint of an error, which may also name what was removed for another error."""
+    """Return the hint of an error, which may also suggest a name that was removed for another
+    error.
+    """
     hint = wrong.hint()
     if not wrong.name or hint.startswith("did") or not removed:
         return hint
@@ -103,10 +105,11 @@ def _hint(wrong: Wrong, removed: set[str]) -> str:
 def _expanded(
     table: StudyTable, folder: Path, wrong: list[Wrong]
 ) -> tuple[StudyTable, dict[str, str]]:
-    """Return the study with the cases of sections whose name has a *, and the section of each case.
+    """Return the study with the cases of sections whose name has a *, and the section of each such
+    case.
 
-    Of kind "given" such a section gives a case for every name in the column `case` of its table, of
-    kind "ground" one for every load; that name replaces the *.
+    A section of kind "given" yields a case for every name in the column `case` of its table, a
+    section of kind "ground" a case for every load. That name replaces the *.
 
     folder: of the tables.
     wrong: receives the errors.
@@ -134,7 +137,7 @@ def _expanded(
 def _cases_of(
     key: str, case: AnyCase, folder: Path, wrong: list[Wrong]
 ) -> Iterator[tuple[str, AnyCase]]:
-    """Yield the cases of a section, each with what replaces the * in its name."""
+    """Yield the cases of a section, each with the text that replaces the * in its name."""
     if isinstance(case, GroundCase):
         yield from ground_cases(case)
         return
@@ -165,7 +168,7 @@ def _name_mistakes(key: str, name: str, known: bool) -> Iterator[Wrong]:
 
 
 def _of_sections(references: Iterable[Wrong], sections: Mapping[str, str]) -> list[Wrong]:
-    """Return errors of cases that a section stands for as errors of the section, each once."""
+    """Return errors of cases that come from a section as errors of the section, each once."""
     named: dict[str, Wrong] = {}
     for wrong in references:
         for name, section in sections.items():
@@ -181,7 +184,7 @@ def _of_sections(references: Iterable[Wrong], sections: Mapping[str, str]) -> li
 def ground_cases(case: GroundCase) -> Iterator[tuple[str, GroundCase]]:
     """Yield the single cases of a section with their names.
 
-    A side load gives two, one to each side, unless `toward` states one.
+    A side load yields two cases, one towards each side, unless `toward` states the side.
     """
     sides: tuple[Side, Side] = (
         ("left", "right") if case.stands == "nose" else ("inboard", "outboard")

@@ -1,8 +1,8 @@
-"""Factors that a study gives twice: in its required safety factor, and for its margins.
+"""Factors that a study gives twice, in its required safety factor and for its margins.
 
 The required factor compares yield with the stress under the loads of the study as they are. Limit,
-ultimate and fitting factors multiply these loads in the margins of safety. A study that includes
-one of them in the required factor, too, counts it twice: 14 CFR 25.305 lets a pin yield beyond
+ultimate and fitting factors multiply these loads in the margins of safety. A study whose required
+factor includes one of these counts the factor twice: 14 CFR 25.305 allows a pin to yield beyond
 limit load.
 """
 
@@ -18,7 +18,7 @@ REQUIRED_FACTOR_KEY = "analysis.required_safety_factor"
 LEVEL_FACTOR_KEYS = "limit_factor", "ultimate_factor"
 FITTING_FACTOR_KEY = "fitting_factor"
 USUAL_FITTING_FACTOR = 1.15  # 14 CFR 25.625, 23.625
-FACTOR_DIFFERENCE_TOLERANCE = 0.005  # relative: factors that differ by no more are one
+FACTOR_DIFFERENCE_TOLERANCE = 0.005  # relative: factors that differ by no more are equal
 FACTOR_WORDS = {
     "ultimate_factor": re.compile(r"ultimate (load|factor)|\b2[3579]\.303\b", re.IGNORECASE),
     FITTING_FACTOR_KEY: re.compile(r"\bfitting\b|\b2[3579]\.625\b", re.IGNORECASE),
@@ -28,7 +28,8 @@ FACTOR_WORDS = {
 def counted_twice(table: AnalysisTable, notes: Mapping[str, str]) -> tuple[str, ...]:
     """Return a sentence on the factors of margins that the required factor seems to contain.
 
-    notes: the source of each number, by key; a note that names no such factor settles it.
+    notes: the source of each number, by key. A note on the required factor that mentions none of
+    these factors settles the question.
     """
     required, note = table.required_safety_factor, notes.get(REQUIRED_FACTOR_KEY, "")
     if required is None or required <= 1.0:
@@ -68,9 +69,10 @@ def _in_numbers(table: AnalysisTable, required: float) -> list[str]:
 
 
 def _products(table: AnalysisTable) -> Iterator[tuple[list[str], float]]:
-    """Yield the products of the limit or ultimate factor and the fitting factor, of those above 1.
+    """Yield the products of the limit or ultimate factor and the fitting factor, as far as they
+    exceed 1.
 
-    Where margins have no fitting factor, the usual one is tried too.
+    If margins have no fitting factor, the usual one is tried, too.
     """
     fitting = table.fitting_factor
     if fitting > 1.0:

@@ -1,8 +1,8 @@
-"""What remains of a study when its wrong parts are removed, so that one reading reports all errors.
+"""The remainder of a study without its wrong parts, so that one reading reports all errors.
 
-An error hides others: pydantic does not look at the rest of a table with an unknown key, references
-are checked in valid tables only, and a linkage needs both. So the part that is wrong is removed and
-the rest is read again, until it is valid. Errors that only follow from a removed part are not
+An error hides others: pydantic does not validate the rest of a table with an unknown key,
+references are checked in valid tables only, and a linkage needs both. So each wrong part is removed
+and the rest is read again, until it is valid. Errors that only follow from a removed part are not
 reported.
 """
 
@@ -17,8 +17,8 @@ from pinbase.keys import key_part
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.toml_lines import Place, said
 
-NO_CASE = "(none)"  # name of a case that stands for removed ones
-# What stands for removed parts without which nothing else could be read; * is any name
+NO_CASE = "(none)"  # name of a case that replaces removed ones
+# Replacements of removed parts without which nothing else could be read; * is any name
 STAND_INS: Mapping[Place, Any] = {
     ("title",): "",
     ("units",): "m-N-s",
@@ -45,8 +45,8 @@ class Damage:
     """The wrong parts of a study.
 
     raw: the content of the study, without provenance.
-    places: of the removed parts, with what stands for them, if anything does.
-    names: all names in the removed parts; what they stood for is not known to be missing.
+    places: the places of the removed parts, each with its replacement or None.
+    names: all names in the removed parts; references to them are not errors.
     """
 
     def __init__(self, raw: Mapping[str, Any]) -> None:
@@ -59,9 +59,9 @@ class Damage:
         return bool(self.places)
 
     def remove(self, place: Place, value: Any = None) -> bool:
-        """Remove a part, and return whether it was there before.
+        """Remove a part, and return whether it was not removed before.
 
-        value: what stands for it.
+        value: its replacement.
         """
         if not place or place in self.places:
             return False
@@ -70,7 +70,7 @@ class Damage:
         return True
 
     def part(self, place: Place) -> Any:
-        """The part of the study at a place; None where there is none."""
+        """The part of the study at a place, or None."""
         node: Any = self.raw
         for key in place:
             try:
@@ -80,17 +80,17 @@ class Damage:
         return node
 
     def touches(self, place: Place) -> bool:
-        """Whether a part is removed in whole or in part."""
+        """Whether all or a part of the part at a place is removed."""
         return any(p[: len(place)] == place or place[: len(p)] == p for p in self.places)
 
     def children(self, place: Place) -> list[str | int]:
-        """The removed keys or elements of a table or list."""
+        """The removed keys of a table, or elements of a list."""
         return [p[-1] for p in self.places if p[:-1] == place]
 
     def reduced(self, place: Place, by_any: bool) -> list[str | int]:
-        """The keys of a table, or elements of a list, that have lost all that was in them.
+        """The keys of a table, or elements of a list, that have lost all their content.
 
-        by_any: also of lists that have lost any element.
+        by_any: also lists that have lost any element.
         """
         node = self.part(place)
         listed = dict(enumerate(node)) if isinstance(node, list) else {}
@@ -116,7 +116,7 @@ class Damage:
         return tree
 
     def _without(self, node: Any, place: Place) -> Any:
-        """Return a part without the removed ones, or what stands for it; None for nothing."""
+        """Return a part without the removed parts, or its replacement; None if nothing remains."""
         if place in self.places:
             return self.places[place]
         if isinstance(node, dict):
@@ -129,7 +129,7 @@ class Damage:
         return node
 
     def original(self, place: Place) -> Place:
-        """The place in the study of a place in its remainder."""
+        """The place in the study that corresponds to a place in its remainder."""
         out: Place = ()
         for key in place:
             indices = self._indices.get(out, [])
@@ -142,7 +142,7 @@ class Damage:
         return out
 
     def renumbered(self, wrong: Wrong, place: Place) -> Wrong:
-        """Return an error of the remainder with the indices that the study has.
+        """Return an error of the remainder with the indices of the study.
 
         place: of the error, in the remainder.
         """
@@ -152,26 +152,26 @@ class Damage:
         return replace(wrong, message=there + wrong.message.removeprefix(here))
 
     def explains(self, wrong: Wrong, place: Place) -> bool:
-        """Whether an error of the remainder may only follow from what was removed.
+        """Whether an error of the remainder may be only a consequence of what was removed.
 
         place: of the error, in the study.
         """
         if any(place[: len(p)] == p for p in self.places):
             return True
         if any(wrong.message.startswith(f"{said(p)} is missing") for p in self.places):
-            return True  # its place ends before what the remainder lacks
+            return True  # the place of such an error is the table that lacks the part
         if wrong.name and wrong.name in self.names:
             return True
         return any(self.touches(cause) for cause in CAUSES.get(wrong.code, ()))
 
 
 def stand_in(place: Place) -> Any:
-    """Return what stands for a removed part; None for nothing."""
+    """Return the replacement of a removed part, or None."""
     for pattern, value in STAND_INS.items():
         if len(pattern) == len(place) and all(
             a in ("*", b) for a, b in zip(pattern, place, strict=True)
         ):
-            # each name of a connection is its own
+            # the name of a connection must be unique
             return {f"({place[2]})": "ground"} if pattern[-1] == "connections" else value
     return None
 
@@ -190,7 +190,7 @@ def _names(node: Any) -> Iterator[str]:
 
 
 def place_of(tree: Any, message: str) -> Place:
-    """Return the place of the key with which a message begins, as far as the tree has it."""
+    """Return the place of the key with which a message begins, as far as the tree contains it."""
     place: Place = ()
     node, rest = tree, message
     while True:

@@ -12,17 +12,17 @@ from pinstress.study.schema.shown import ELLIPSIS, printable
 
 T = TypeVar("T")
 
-MAX_LISTED_ERRORS = 20  # errors in a message; it counts the others
-MAX_LINE_LENGTH = 800  # characters; a longer line loses its middle
+MAX_LISTED_ERRORS = 20  # errors in a message, which gives only the number of the others
+MAX_LINE_LENGTH = 800  # characters; the middle of a longer line is left out
 
 
 class InputError(Exception):
     """Bad input: the message names the file, the key and the remedy. Exit status 2.
 
     code: short and stable, for programs.
-    lines: the errors, one by one, by their codes in `codes`.
+    lines: the errors, one by one; `codes` has their codes.
     more: the number of further errors.
-    remainder: of a study with errors (file.py: Remainder), where anything of it is valid.
+    remainder: of a study with errors (file.py: Remainder), if any part of it is valid.
     """
 
     remainder: Any = None
@@ -57,7 +57,9 @@ def cannot_write_out(directory: Path, error: OSError) -> InputError:
 
 
 def _no_folder(path: Path) -> str | None:
-    """Return the kind of an entry that is not a folder; None where there is none. Never raises."""
+    """Return the kind of an entry that is not a folder; None for a folder or a missing path. Never
+    raises.
+    """
     if os.path.isdir(path) or not os.path.lexists(path):
         return None
     if not os.path.exists(path):
@@ -66,7 +68,9 @@ def _no_folder(path: Path) -> str | None:
 
 
 def clipped(line: str) -> str:
-    """Return the beginning of a line, which has the key, and its end, which has the remedy."""
+    """Return a line shortened to its beginning, which has the key, and its end, which has the
+    remedy.
+    """
     if len(line) <= MAX_LINE_LENGTH:
         return line
     half = MAX_LINE_LENGTH // 2
@@ -75,10 +79,11 @@ def clipped(line: str) -> str:
 
 @dataclass(frozen=True)
 class Wrong:
-    """An error: a message that begins with its key, or with the key `at` to point at.
+    """An error: a message that begins with its key, or with the key `at` whose line is shown.
 
-    hint: gives a likely intended name; called only for errors that are printed, as it takes time.
-    name: what the message says does not exist.
+    hint: function that returns a likely intended name; only called for errors that are printed, as
+    it takes time.
+    name: the name that does not exist, if that is the error.
     """
 
     message: str
@@ -89,11 +94,11 @@ class Wrong:
 
 
 def study_error(path: Path, text: str, wrong: Sequence[Wrong]) -> InputError:
-    """Return the errors of a valid TOML text, the first of them in the order of the file.
+    """Return the errors of a valid TOML text as one, the first of them in the order of the file.
 
-    Each has its line as "file:line: key: remedy".
+    Each line reads "file:line: key: remedy".
     """
-    from pinstress.study.reading.toml_lines import lines_of  # only for studies that are wrong
+    from pinstress.study.reading.toml_lines import lines_of  # needed only for studies with errors
 
     lines = lines_of(text, [f"{w.at}:" if w.at else w.message for w in wrong])
     first = sorted(zip(lines, wrong, strict=True), key=lambda pair: pair[0] or 0)[
@@ -116,15 +121,15 @@ def _listed(path: Path, listed: Sequence[tuple[str, str]], more: int) -> InputEr
 
 
 class Errors:
-    """Errors of parts of a study that can be read independently, reported together."""
+    """Errors of parts of a study that can be read independently; they are reported together."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.lines: dict[str, str] = {}  # codes by message: one part may be read twice
+        self.lines: dict[str, str] = {}  # codes by message, since a part may be read twice
         self.more = 0
 
     def attempt(self, make: Callable[[], T]) -> T | None:
-        """Return the result of `make`, or None when its input is wrong."""
+        """Return the result of `make`, or None if its input is wrong."""
         try:
             return make()
         except InputError as error:
@@ -144,6 +149,6 @@ class Errors:
             raise _listed(self.path, listed[:MAX_LISTED_ERRORS], self.more + beyond) from None
 
     def _line_number(self, item: tuple[str, str]) -> int:
-        """Return the line of the study that an error names; 0 for none."""
+        """Return the line of the study that an error names, or 0."""
         number, colon, _ = item[0].removeprefix(f"{self.path}:").partition(":")
         return int(number) if colon and number.isdecimal() else 0

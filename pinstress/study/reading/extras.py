@@ -7,10 +7,10 @@ from importlib.util import find_spec
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 
-EXTRAS = {  # by their package
+EXTRAS = {  # the extra of each package
     "cryptography": "cluster",
     "distributed": "cluster",
-    "pandas": "fatigue",  # which pylife needs
+    "pandas": "fatigue",  # pylife needs it
     "pylife": "fatigue",
     "typst": "pdf",
 }
@@ -22,7 +22,7 @@ def require_package(package: str, user: str) -> None:
 
     user: the option or command that needs it, with which the message begins.
 
-    Raises: InputError where it is not installed, which names the extra that installs it.
+    Raises: InputError if it is not installed; the message names the extra that installs it.
     """
     if problem := _missing(package):
         raise InputError(f"{user}: {problem}", code=MISSING)
@@ -38,7 +38,7 @@ def require_fatigue(study: Study) -> None:
 
 
 def _missing(package: str) -> str:
-    """Return the remedy where a package is not installed; empty where it is."""
+    """Return the remedy if a package is not installed; empty if it is."""
     if find_spec(package) is not None:
         return ""
     return f"needs {package}, which is not installed: pip install 'pinstress[{EXTRAS[package]}]'"

@@ -1,4 +1,4 @@
-"""Reading of a study file: TOML, validated, in SI, with every cross-reference checked."""
+"""Reading of a study file into validated tables in SI units, with every cross-reference checked."""
 
 from __future__ import annotations
 
@@ -31,20 +31,20 @@ from pinstress.study.schema.types import PROVENANCE_KINDS
 from pinstress.study.schema.units import UNIT_SYSTEMS, UnitSystem
 
 MAX_STUDY_SIZE = 16 * MB
-MAX_PATH_LENGTH = 4096  # as Linux has it
-# Errors of a file (loads.read_regular) that say nothing of a line in it
+MAX_PATH_LENGTH = 4096  # the limit of Linux
+# Errors that concern a file as a whole (loads.read_regular), not one of its lines
 UNREADABLE_FILE_CODES = "no-such-file", "folder", "not-regular", "too-large"
-MAX_LIST_ITEMS = 200_000  # of a list
-MAY_BE_EMPTY = "title", "report."  # of the keys of texts
+MAX_LIST_ITEMS = 200_000  # limit for each list
+MAY_BE_EMPTY = "title", "report."  # beginnings of the keys whose texts may be empty
 CHECKED_NAMES = "pin", "case", "sequence"  # tables whose names the schema checks
-MAX_KEY_LENGTH = 200  # characters; no name is longer, and messages have it in full
+MAX_KEY_LENGTH = 200  # characters; limits names, which messages show in full
 
 
 @dataclass(frozen=True)
 class Sourced:
     """The source of a number of the study.
 
-    value: as the study writes it; of a whole table its numbers with their keys.
+    value: as the study writes it; for a whole table, its numbers with their keys.
     """
 
     key: str
@@ -65,10 +65,10 @@ class Remainder:
 class Study:
     """A valid study.
 
-    table: its content in SI.
-    questions: implausible values and keys without effect, each after its key.
-    located: whether messages give lines of its text, which the user did not write if the study was
-    built in Python.
+    table: its content in SI units.
+    questions: implausible values and keys without effect, each text beginning with its key.
+    located: whether messages give lines of the text. They do not for a study built in Python, whose
+    text the user did not write.
     """
 
     path: Path
@@ -98,7 +98,7 @@ class Study:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Its questions, each with its line: the first ones, and the number of others."""
+        """The questions, each with its line: the first ones, and the number of the others."""
         if not self.questions:
             return ()
         errors = self.errors([Wrong(question) for question in self.questions])
@@ -129,8 +129,8 @@ class Study:
         return self.path.parent / name
 
     def error(self, message: str, at: str = "", code: str = "") -> InputError:
-        """Return an error of this study, with the line of the key that the message begins with,
-        or of the key `at`.
+        """Return an error of this study, with the line of the key that the message begins with, or
+        of the key `at`.
         """
         return self.errors([Wrong(message, at=at, code=code)])
 
@@ -139,7 +139,7 @@ class Study:
         return study_error(self.path, self._lines, wrong)
 
     def table_error(self, key: str, error: TableError) -> InputError:
-        """Return the error of a table that is named at `key`, with the line of this key where the
+        """Return the error of a table that is named at `key`; with the line of this key if the
         table cannot be read at all.
         """
         if error.code in UNREADABLE_FILE_CODES:
@@ -166,7 +166,7 @@ class Study:
 def load_study(path: str | os.PathLike[str]) -> Study:
     """Read and validate a study file.
 
-    Raises: InputError naming the file, the keys and what would be right.
+    Raises: InputError, which names the file, the keys and what would be right.
     """
     if not isinstance(path, str | os.PathLike):
         raise InputError(
@@ -174,7 +174,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
             code="not-a-path",
         )
     path = Path(path)
-    if any("\ud800" <= letter <= "\udfff" for letter in path.name):  # bytes that are no letters
+    if any("\ud800" <= letter <= "\udfff" for letter in path.name):  # bytes that are not UTF-8
         raise InputError(
             f"{path}: the name of this file is not UTF-8 text, and results name it; rename it",
             code="unusable-name",
@@ -223,7 +223,8 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
     if table is not None and not damage:
         doubtful = questions(table, raw, system_of(raw)) + counted_twice(table.analysis, notes)
     if beyond:
-        wrong += [Wrong(text, code="doubtful") for text in doubtful]  # a wrong unit may be why
+        # A wrong unit may be the cause.
+        wrong += [Wrong(text, code="doubtful") for text in doubtful]
     if table is not None and not wrong:
         same = same_files(table.pin, table.case)
         wrong += [Wrong(text, code="same-file-names") for text in same]
@@ -238,8 +239,8 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
 
 
 def raw_study(study: Study) -> dict[str, Any]:
-    """Return the content of the study's file, without provenance and notes, with the materials
-    that it only names.
+    """Return the content of the study's file without provenance and notes, including the materials
+    that the study only names.
     """
     raw = with_materials(study.path, read_toml(study.path, study.text))
     plain: dict[str, Any] = unwrapped(raw, "", [], [])
@@ -247,14 +248,15 @@ def raw_study(study: Study) -> dict[str, Any]:
 
 
 def named_materials(study: Study) -> tuple[StoredMaterial, ...]:
-    """Return the materials that a study names and does not define."""
+    """Return the materials that a study names without defining them."""
     return tuple(looked_up(study.path, read_toml(study.path, study.text)).values())
 
 
 def with_value(raw: Mapping[str, Any], path: Sequence[str | int], value: Any) -> dict[str, Any]:
-    """Return a copy of a study's raw content with another value at a path; the rest is shared.
+    """Return a copy of a study's raw content with another value at a path; unchanged parts are
+    shared.
 
-    Tables of lugs that are not in it are added; one number for both ends is made two.
+    Missing tables of lugs are added. A single number for both ends becomes two.
     """
     content: dict[str, Any] = dict(raw)
     here: Any = content
@@ -270,14 +272,15 @@ def with_value(raw: Mapping[str, Any], path: Sequence[str | int], value: Any) ->
 
 
 def replaces_fit(path: Sequence[str | int]) -> bool:
-    """Return whether a value is the clearance of a lug, which its fit gives otherwise."""
+    """Return whether a value is the clearance of a lug, which replaces the fit."""
     return path[0] == "pin" and "lug" in path and path[-1] == "clearance"
 
 
 def with_raw(study: Study, raw: Mapping[str, Any]) -> Study:
-    """Return the study with other numbers in what `raw_study` returned, validated directly.
+    """Return the study with changed content, as `raw_study` returns it, validated without writing
+    text.
 
-    Implausible values are not looked for.
+    Implausible values are not searched.
 
     Raises: InputError as load_study.
     """
@@ -290,7 +293,7 @@ def with_raw(study: Study, raw: Mapping[str, Any]) -> Study:
 
 
 def _written(value: Any) -> str:
-    """Return a value as the study writes it, shortened; for a table its values with their keys."""
+    """Return a value as the study writes it, shortened; for a table, its values with their keys."""
     if isinstance(value, dict):
         numbers = ((k, v) for k, v in value.items() if not isinstance(v, dict))
         return ", ".join(f"{cut(k)} {_written(v)}" for k, v in islice(numbers, MAX_LISTED_NAMES))
@@ -305,10 +308,10 @@ def _written(value: Any) -> str:
 def unwrapped(node: Any, key: str, sourced: list[Sourced], wrong: list[Wrong]) -> Any:
     """Return the tree without provenance and notes, which are added to `sourced`.
 
-    The value remains of { value, provenance, note }.
+    A table { value, provenance, note } is replaced by its value.
 
-    wrong: receives the errors for keys and lists that are too long, for notes, and for texts and
-    names without a letter.
+    wrong: receives the errors for keys and lists that are too long, for notes that are not texts,
+    and for blank texts and names.
     """
     if isinstance(node, list):
         if len(node) > MAX_LIST_ITEMS:

@@ -1,4 +1,4 @@
-"""Check that the files written for pins and cases have different names."""
+"""Names of the files written for pins and cases, and a check that they differ."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ def field_name(pin: str, case: str) -> str:
 
 
 def same_files(pins: Iterable[str], cases: Iterable[str]) -> Iterable[str]:
-    """Yield errors for names that give the same file name, also on systems that ignore case."""
+    """Yield errors for names that give the same file name, including on systems that ignore
+    case.
+    """
     cases = list(cases)
     owners: dict[str, str] = {}
     for kind, names in (("pin", pins := list(pins)), ("case", cases)):

@@ -1,4 +1,4 @@
-"""Studies built in Python: from tables as a study file has them, and from another study."""
+"""Studies built in Python from tables with the keys of a study file, or from another study."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from pinstress.study.schema.shown import as_text
 
 KEY_PART_PATTERN = re.compile(rf'({QUOTED}|[^.\["]+)((?:\[[0-9]+\])*)(?:\.|$)')
 INDEX_PATTERN = re.compile(r"\[([0-9]+)\]")
-INDEX_RANGE_PATTERN = re.compile(r"\[([0-9]+)-([0-9]+)\]")  # neighbours with one number
-# Between keys of one dimension (geometry.shape.dimensions.KEY_JOINT), not within a name
+INDEX_RANGE_PATTERN = re.compile(r"\[([0-9]+)-([0-9]+)\]")  # neighbours that share a number
+# Separator of the keys of one dimension (geometry.shape.dimensions.KEY_JOINT), outside names
 JOINT_PATTERN = re.compile(r" & (?=profile\[|meridian\[|bore_meridian\[|band\.)")
 PIN_PATTERN = re.compile(rf'pin\.(?:{QUOTED}|[^.\["]+)\.')
-PAIR_KEYS = "edge_radius", "bore_radius"  # of both ends, also where one number stands for both
+PAIR_KEYS = "edge_radius", "bore_radius"  # pairs for both ends, which one number may abbreviate
 
 
 def study_from(
     tables: Mapping[str, Any] | str, folder: str | os.PathLike[str] = ".", name: str = "study"
 ) -> Study:
-    """Return a study from a dict with the keys of a study file (docs/study-file.md), or from its
-    text.
+    """Return a study from a dict with the keys of a study file (docs/study-file.md), or from the
+    text of one.
 
     tables: None for a value means that the key is absent.
     folder: folder of the files that the study refers to.
@@ -54,8 +54,8 @@ def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
     """Return the study with other values.
 
     changes: values by key as in messages: {"pin.E.profile[2].diameter": "1.5 in",
-    "analysis.tolerance": 0.01}; for one that stands for several, see `single_keys`. Missing keys
-    are added, and tables of lugs. The provenance of replaced values is removed; comments are kept.
+    "analysis.tolerance": 0.01}; for keys that stand for several, see `single_keys`. Missing keys
+    and tables of lugs are added. The provenance of replaced values is removed; comments are kept.
 
     Raises: InputError as load_study, and for a key that does not exist in the study.
     """
@@ -69,10 +69,10 @@ def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
 
 
 def single_keys(key: str) -> Iterator[str]:
-    """Yield the keys that a key stands for.
+    """Yield the single keys that a key stands for.
 
-    "pin.E.profile[1-3].diameter" stands for three, and "pin.E.meridian[2][1] & band.B.z[1]" for two
-    of pin E.
+    "pin.E.profile[1-3].diameter" stands for three keys, and "pin.E.meridian[2][1] & band.B.z[1]"
+    for two keys of pin E.
 
     Raises: ArgumentError for a range that does not count upwards.
     """
@@ -95,7 +95,7 @@ def single_keys(key: str) -> Iterator[str]:
 
 
 def _singles(study: Study, key: str) -> Iterator[str]:
-    """Yield the keys that a key stands for.
+    """Yield the single keys that a key stands for.
 
     Raises: InputError.
     """
@@ -106,7 +106,7 @@ def _singles(study: Study, key: str) -> Iterator[str]:
 
 
 def _change(study: Study, document: Any, key: str, value: Any) -> None:
-    """Set the value at a key of a document of tomlkit."""
+    """Set the value at a key in a tomlkit document."""
     import tomlkit
 
     parts = written_parts(document, key_parts(study, key))
@@ -119,7 +119,7 @@ def _change(study: Study, document: Any, key: str, value: Any) -> None:
     if replaces_fit(parts):
         table.pop("fit", None)
     new = _plain(value, key)
-    if _is_dotted(document, parts[:-1]):  # [table] would begin at the root
+    if _is_dotted(document, parts[:-1]):  # a table [...] here would begin at the root
         inline: Any = tomlkit.inline_table()
         inline["new"] = new
         new = inline["new"]
@@ -127,7 +127,7 @@ def _change(study: Study, document: Any, key: str, value: Any) -> None:
 
 
 def _is_dotted(document: Any, parts: Iterable[str | int]) -> bool:
-    """Return whether a table of a document of tomlkit is written by dotted keys."""
+    """Return whether a table of a tomlkit document is written with dotted keys."""
     here = document
     for part in parts:
         here = _unwrapped(here)
@@ -141,10 +141,11 @@ def _is_dotted(document: Any, parts: Iterable[str | int]) -> bool:
 def write_lug(
     document: Any, study: Study, pin: str, connection: str, inner: Iterable[str | int] = ()
 ) -> None:
-    """Write the empty table of a lug that is in a study only by its lug_defaults or connection.
+    """Write the empty table of a lug that the study has only through its lug_defaults or a
+    connection.
 
-    document: the study as tomlkit has it.
-    inner: names of tables in that of the lug, to be written, too.
+    document: the study as a tomlkit document.
+    inner: names of tables within that of the lug, which are written, too.
     """
     import tomlkit
 
@@ -162,7 +163,7 @@ def changed_raw(
     study: Study, raw: Mapping[str, Any], changes: Mapping[str, Any]
 ) -> Mapping[str, Any]:
     """Return the content of a study (pinstress.study.reading.file.raw_study) with the changes that
-    `changed_study` takes: a hundred times sooner, but without a text.
+    `changed_study` takes. This is a hundred times faster, but gives no text.
 
     Raises: InputError for a key that does not exist in the study.
     """
@@ -178,7 +179,7 @@ def changed_raw(
 
 
 def _with_lug(raw: dict[str, Any], study: Study, parts: list[str | int]) -> dict[str, Any]:
-    """Return a study's content with the table of a lug that it has only by its connection."""
+    """Return a study's content with the table of a lug that it has only through a connection."""
     match parts:
         case ["pin", str(pin), "lug", str(connection), *_] if pin in study.table.pin:
             if connection in study.connections(pin):
@@ -188,11 +189,12 @@ def _with_lug(raw: dict[str, Any], study: Study, parts: list[str | int]) -> dict
 
 
 def _place(study: Study, table: Any, parts: list[str | int], key: str, split: bool = False) -> Any:
-    """Return the table or list that has the last part of a key.
+    """Return the table or list that contains the last part of a key.
 
-    split: whether one number for both ends is made two in the table.
+    split: whether one number for both ends is replaced by two in the table.
 
-    Raises: InputError for a key that does not exist; a table may lack its last part.
+    Raises: InputError for a key that does not exist; only the last part may be missing from a
+    table.
     """
     for part in parts[:-1]:
         owner, table = table, _inside(study, table, part, key)
@@ -203,12 +205,12 @@ def _place(study: Study, table: Any, parts: list[str | int], key: str, split: bo
                 table = _unwrapped(owner)[part]
     if isinstance(parts[-1], int):
         table = _unwrapped(table)
-        _inside(study, table, parts[-1], key)  # an item that is there
+        _inside(study, table, parts[-1], key)  # raises unless the element exists
     return table
 
 
 def _unwrapped(table: Any) -> Any:
-    """Return the value of { value, provenance }."""
+    """Return the value of a table { value, provenance }, or any other object itself."""
     wrapped = isinstance(table, Mapping) and "value" in table and "provenance" in table
     return table["value"] if wrapped else table
 
@@ -243,7 +245,7 @@ def key_parts(study: Study, key: str) -> list[str | int]:
         case []:
             raise study.error("'' is not a key", code="not-a-key")
         case ["pin", str(pin), "lug", str(ear), _, *_] if pin in study.table.pin:
-            if link := study.table.pin[pin].like_the_other.get(ear):
+            if link := study.table.pin[pin].shared_lugs.get(ear):
                 raise study.error(
                     f"{key}: the lug of this ear is that of {link}, whose keys change both; to "
                     f"change one, give {ear} a lug of its own",
@@ -255,8 +257,8 @@ def key_parts(study: Study, key: str) -> list[str | int]:
 def written_parts(content: Any, parts: Iterable[str | int]) -> list[str | int]:
     """Return the parts of a key as the content of a study needs them.
 
-    A list of one element may be meant without its index, a table where there may be a list with
-    [1].
+    The index of a list of one element may be left out, and [1] may follow a table where a list
+    could be.
     """
     written: list[str | int] = []
     here = _unwrapped(content)
@@ -289,9 +291,9 @@ def _inside(study: Study, table: Any, part: str | int, key: str) -> Any:
 
 
 def _plain(value: Any, key: str) -> Any:
-    """Return a value as TOML has it; numbers of numpy, tuples and paths are accepted.
+    """Return a value as TOML can have it; numbers of numpy, tuples and paths are accepted.
 
-    Raises: InputError for others.
+    Raises: InputError for other values.
     """
     if isinstance(value, Mapping):
         return {

@@ -1,4 +1,4 @@
-"""All values of a study by their keys, as results.json has them, so that runs can be compared."""
+"""All values of a study by their keys, as stored in results.json, so that runs can be compared."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from pinstress.study.reading.file import MAX_PATH_LENGTH, Study, raw_study
 from pinstress.study.schema.shown import in_toml
 
 MAX_TABLE_SIZE = 256 * MB
-FILE_HASH_DIGITS = 12  # of the hash of a file
-IGNORED_TEXTS = "title", "report", "assumptions"  # texts that change no result
+FILE_HASH_DIGITS = 12  # number of digits of a file's hash
+IGNORED_TEXTS = "title", "report", "assumptions"  # texts that affect no result
 
 
 def inputs(study: Study) -> dict[str, str]:
-    """Return the values of a study by key, as it writes them.
+    """Return the values of a study by key, as the study writes them.
 
-    A value that names a file has also the start of the file's SHA-256.
+    A value that names a file is followed by the beginning of the file's SHA-256.
     """
     raw = raw_study(study)
     return {
@@ -32,7 +32,7 @@ def inputs(study: Study) -> dict[str, str]:
 def _leaves(node: Any, key: str) -> Iterator[tuple[str, Any]]:
     if isinstance(node, dict):
         for name, inner in node.items():
-            part = key_part(name)  # without quotes a name with dots could be another key's parts
+            part = key_part(name)  # quotes distinguish a name with dots from the parts of a key
             yield from _leaves(inner, f"{key}.{part}" if key else part)
     elif isinstance(node, list) and any(isinstance(x, dict) for x in node):
         for k, inner in enumerate(node, 1):
@@ -53,7 +53,7 @@ def _written(study: Study, value: Any) -> str:
 
 
 def _file(study: Study, name: str) -> bytes | None:
-    """Return the content of a file of the study, None if it has none of that name."""
+    """Return the content of a file of the study, or None if there is no file of that name."""
     if "." not in name or "\0" in name or len(name) > MAX_PATH_LENGTH:
         return None
     try:

@@ -1,4 +1,4 @@
-"""Limits on the size of a study; larger ones would take hours, or more memory than machines
+"""Limits on the size of a study; larger studies would take hours, or more memory than machines
 have.
 """
 
@@ -12,18 +12,18 @@ from pinbase.keys import key_part
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.schema.tables import StudyTable
 
-# All but tab and line ends
+# All control characters except tab and line ends
 CONTROL_CHARACTER_PATTERN = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]")
 
 MAX_PINS = MAX_CASES = 1000
 PIN_PARTS = {"profile": "segments", "meridian": "corners", "bore_meridian": "corners"} | {
     key: f"{key}s" for key in ("hole", "flat", "slot", "passage", "band")
 }
-MAX_PIN_PARTS = 1000  # of a pin: a profile of so many segments takes half a minute
-MAX_CASE_LOADS = 1000  # of a case
-MAX_SLENDERNESS = 1000.0  # length over diameter: beyond it the numerics fail, after many minutes
+MAX_PIN_PARTS = 1000  # limit for each pin: a profile with as many segments takes half a minute
+MAX_CASE_LOADS = 1000  # limit for each case
+MAX_SLENDERNESS = 1000.0  # length over diameter; beyond it the solution fails, after many minutes
 MAX_DIAMETER_RATIO = 3000.0  # largest diameter over smallest
-MAX_BODIES = 500  # and joints: three unknowns each, in dense equations
+MAX_BODIES = 500  # of joints, sliders and drives, too; each body adds unknowns to dense equations
 
 
 def texts(node: Any, key: str = "") -> Iterator[tuple[str, str]]:
@@ -39,7 +39,7 @@ def texts(node: Any, key: str = "") -> Iterator[tuple[str, str]]:
 
 
 def control_characters(named_texts: Iterable[tuple[str, str]]) -> Iterator[Wrong]:
-    """Yield errors for texts with characters that command terminals or that PDF and XML cannot
+    """Yield errors for texts with characters that control terminals or that PDF and XML cannot
     show.
     """
     for key, text in named_texts:
@@ -49,7 +49,7 @@ def control_characters(named_texts: Iterable[tuple[str, str]]) -> Iterator[Wrong
 
 
 def too_many(table: StudyTable) -> Iterator[str]:
-    """Yield errors for whatever exceeds a limit."""
+    """Yield errors for everything that exceeds a limit."""
     for key, what, items, most in _counted(table):
         if len(items) > most:
             yield f"{key}: {len(items):,} {what}; the limit is {most:,}"

@@ -1,7 +1,7 @@
-"""Materials that a study names without defining them: of a file of the user's, or of the library
+"""Materials that a study names without defining them, from a file of the user or from the library
 that ships with the program.
 
-A file of materials has tables [material.NAME] as a study has them, whose quantities have units.
+A file of materials has tables [material.NAME] like those of a study, whose quantities have units.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ SOURCE_KEYS = "provenance", "note"
 
 @dataclass(frozen=True)
 class StoredMaterial:
-    """A material of a file: its table as written, with sources, and the name of the file."""
+    """A material from a file: its table as written, with sources, and the name of the file."""
 
     name: str
     table: dict[str, Any]
@@ -39,17 +39,17 @@ class StoredMaterial:
 
     @property
     def source(self) -> str:
-        """Return the document from which its values are."""
+        """Return the document from which the values are."""
         return str(self.table.get("note", "")) or self.file
 
     @property
     def values(self) -> dict[str, Any]:
-        """Return its values by key, as written, without their sources."""
+        """Return the values by key, as written, without their sources."""
         return {k: _value(v) for k, v in self.table.items() if k not in SOURCE_KEYS}
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """Return the keys that every material needs and this one lacks."""
+        """Return the keys that every material needs but this one lacks."""
         needed = (k for k, field in MaterialTable.model_fields.items() if field.is_required())
         return tuple(key for key in needed if key not in self.table)
 
@@ -124,7 +124,7 @@ def library() -> dict[str, StoredMaterial]:
 
 
 def looked_up(path: Path, raw: dict[str, Any]) -> dict[str, StoredMaterial]:
-    """Return the materials that a study names and does not define, as far as they are known.
+    """Return the known materials that a study names without defining them.
 
     path: of the study. raw: its content with sources, not validated.
 
@@ -141,7 +141,7 @@ def looked_up(path: Path, raw: dict[str, Any]) -> dict[str, StoredMaterial]:
 
 
 def with_materials(path: Path, raw: dict[str, Any]) -> dict[str, Any]:
-    """Return a study's content with the materials that it names and does not define.
+    """Return a study's content with the materials that it names without defining them.
 
     path, raw: as in `looked_up`.
 

@@ -1,4 +1,4 @@
-"""References by name within a mechanism in a plane, and those of the cases of any mechanism."""
+"""References by name within a planar mechanism, and those of the cases of any mechanism."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ from pinstress.study.schema.tables import AnyMechanism, StudyTable
 
 
 def of_pins(table: StudyTable, mechanism: AnyMechanism, bears: dict[str, str]) -> Iterator[Wrong]:
-    """Yield the connections on pins that the mechanism does not have. bears: pins by connection."""
+    """Yield the connections on pins that the mechanism does not have. bears: the pin of each
+    connection.
+    """
     have = dict.fromkeys(c for joint in mechanism.joint.values() for c in joint.connections)
     if all(isinstance(case, GivenCase) for case in table.case.values()):
         return
@@ -31,14 +33,14 @@ def of_pins(table: StudyTable, mechanism: AnyMechanism, bears: dict[str, str]) -
             yield Wrong(text, hint, code="unknown-connection", name=connection)
 
 
-# Keys below [mechanism] in a plane that name its parts
+# Keys of a planar [mechanism] that name its parts
 BODY_PATHS = "joint.fixed_in joint.connections body.welded_to drive.body drive.against rack.pinion"
 JOINT_PATHS = (
     "slider.joints body.bar.joints drive.line drive.against_line point.at spring.joints "
     "gear.joints rack.joint"
 )
 SLIDER_PATHS = "drive.slider spring.slider rack.slider"
-# Keys elsewhere that name its joints, and its drives or sliders
+# Keys of other tables that name its joints, and its drives or sliders
 LOADED_JOINT_PATHS = (
     "case.apply.at case.apply.force_law.length_between case.apply.couple_law.length_between "
     "motion_check.joint motion_check.pivot"
@@ -47,7 +49,7 @@ POSITION_PATHS = "case.apply.force_law.position_of case.apply.couple_law.positio
 
 
 def of_plane(mechanism: MechanismTable) -> Iterator[Wrong]:
-    """Yield the references of a mechanism in a plane to things that do not exist."""
+    """Yield the references of a planar mechanism to things that do not exist."""
     bodies = dict.fromkeys(["ground", *mechanism.body])
     for name, joint in mechanism.joint.items():
         for origin in joint.origins:
@@ -69,7 +71,7 @@ def of_plane(mechanism: MechanismTable) -> Iterator[Wrong]:
 
 
 def of_its_cases(table: StudyTable, mechanism: AnyMechanism) -> Iterator[Wrong]:
-    """Yield the references of cases to what the mechanism does not have."""
+    """Yield the references of cases to things that the mechanism does not have."""
     moves = all(d.moves for d in mechanism.drive)
     drives = [drive_name(drive) for drive in mechanism.drive]
     holders, what_holds = dict.fromkeys([*drives, *mechanism.stop]), "drive or stop"
@@ -109,8 +111,8 @@ def of_its_cases(table: StudyTable, mechanism: AnyMechanism) -> Iterator[Wrong]:
 
 
 def _of_dimension(where: str, load: ApplyTable, dimension: int) -> Iterator[Wrong]:
-    """Yield errors for vectors of a load in space with two components, and for what is only known
-    in space.
+    """Yield errors for vectors with two components of a load in space, and for keys that are only
+    for linkages in space.
     """
     given: dict[str, object] = {
         "at": load.at,
@@ -136,8 +138,8 @@ def _of_dimension(where: str, load: ApplyTable, dimension: int) -> Iterator[Wron
 
 
 def _of_time(where: str, load: ApplyTable, moves: bool) -> Iterator[Wrong]:
-    """Yield errors for what depends on time in a case that is no motion, and for the range of an
-    impulse in one that is.
+    """Yield errors for keys that depend on time in a case that is not a motion, and for the range
+    of an impulse in a motion.
     """
     timed = [key for key in ("begin", "end") if getattr(load, key) is not None]
     for key in ("force_law", "couple_law"):
@@ -159,7 +161,7 @@ def _of_time(where: str, load: ApplyTable, moves: bool) -> Iterator[Wrong]:
 
 
 def _of_height(where: str, load: ApplyTable, mechanism: AnyMechanism) -> Iterator[Wrong]:
-    """Yield an error for the z of a point where no pin of a planar mechanism has one."""
+    """Yield an error for the z of a point of a planar mechanism, if no pin has a z."""
     if not isinstance(mechanism, MechanismTable) or not load.at_height:
         return
     if all(joint.z is None for joint in mechanism.joint.values()):

@@ -1,4 +1,4 @@
-"""Names that a study refers to: each must exist."""
+"""Names that a study refers to, each of which must exist."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ from pinstress.study.schema.shown import as_text, near
 
 
 def known_name(where: str, what: str, name: str, names: Collection[str]) -> Iterator[Wrong]:
-    """Yield an error unless a name exists; `what` it is of, and `where` it is named."""
+    """Yield an error unless a name exists. what: the kind of thing it names. where: the key with
+    the name.
+    """
     if name not in names:
         if what == "material":
             names = [*names, *library()]
@@ -28,8 +30,10 @@ def known_names(
 ) -> Iterator[Wrong]:
     """Yield an error for each name below a table that does not exist.
 
-    key: of the table. paths: of keys below it, joined by dots; the names of a table of tables and
-    the numbers of a list are passed over. what, names: as of `known_name`.
+    key: of the table.
+    paths: keys below it, joined by dots; names in a table of tables and indices of a list are
+    skipped.
+    what, names: as in `known_name`.
     """
     for path in paths.split():
         for where, name in _named(table, path, key):
@@ -37,7 +41,7 @@ def known_names(
 
 
 def _named(node: object, path: str, key: str) -> Iterator[tuple[str, str]]:
-    """Yield the names at a path below a node, each with its key; points [x, y] are none."""
+    """Yield the names at a path below a node, each with its key; points [x, y] are not names."""
     if isinstance(node, str):
         yield key, node
     elif isinstance(node, BaseModel):
@@ -48,7 +52,7 @@ def _named(node: object, path: str, key: str) -> Iterator[tuple[str, str]]:
             yield from _named(inner, path, f"{key}.{key_part(name)}")
     elif isinstance(node, list | tuple):
         for i, inner in enumerate(node, 1):
-            # An only drive may be written without a list, and only tables have numbers.
+            # A single drive may be written without a list, and only tables have indices.
             plain = not isinstance(inner, BaseModel) or (key.endswith(".drive") and not node[1:])
             yield from _named(inner, path, key if plain else f"{key}[{i}]")
 

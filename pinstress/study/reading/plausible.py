@@ -1,5 +1,5 @@
-"""Possible mistakes in the numbers of a study: values that are allowed but unusual, mostly
-because of another unit.
+"""Possible mistakes in the numbers of a study, which are allowed but unusual, mostly because of a
+wrong unit.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from pinstress.study.schema.units import UNIT_SYSTEMS, UnitSystem, split, to_si
 
 @dataclass(frozen=True)
 class UsualRange:
-    """The usual range of a quantity in SI, its owner and typical value, and its usual units.
+    """The usual range of a quantity and its typical value, in SI units, with what it is usual for.
 
-    The units are metric and imperial; messages use the first.
+    metric, imperial: the usual units; messages use the first metric one.
     """
 
     dimension: str
@@ -60,16 +60,16 @@ USUAL_RANGES = {
     ),
 }  # fmt: skip
 USUAL_TEMPERATURES = 1.0, 2000.0  # K, from liquid helium to beyond the melting of steel
-USUAL_STIFFNESS_RATIOS = 1e-2, 1e2  # of a lug over that of its description
-MAX_YIELD_STRAIN = 1.0 / 20.0  # at which a material yields
+USUAL_STIFFNESS_RATIOS = 1e-2, 1e2  # stiffness of a lug over that of the lug as described
+MAX_YIELD_STRAIN = 1.0 / 20.0  # largest plausible strain at yield
 
 
 @dataclass(frozen=True)
 class StatedValue:
-    """A number of the study: a key of USUAL_RANGES, its own key, its value in SI and as it is
-    written.
+    """A number of the study: its key in USUAL_RANGES (`kind`), its key in the study, its value in
+    SI units, and its text.
 
-    most: upper bound in SI, where values below the usual are plausible.
+    most: upper bound in SI units, if it is below the usual one.
     """
 
     kind: str
@@ -84,7 +84,7 @@ class StatedValue:
         return USUAL_RANGES[self.kind]
 
     def plausible(self, value: float) -> bool:
-        """Return whether a value (SI) would be plausible."""
+        """Return whether a value (in SI units) would be plausible."""
         return self.usual.low <= value <= min(self.usual.high, self.most)
 
 
@@ -98,7 +98,7 @@ def questions(table: StudyTable, raw: dict[str, Any], system: UnitSystem) -> tup
 
 
 def _of_temperatures(table: StudyTable, raw: dict[str, Any]) -> Iterator[str]:
-    """Yield a sentence on every temperature that no machine has."""
+    """Yield a sentence on every temperature outside the usual range of machines."""
     stated = {
         f"case.{key_part(name)}.temperature": (case.temperature, raw["case"][name])
         for name, case in table.case.items()
@@ -118,7 +118,7 @@ def _of_temperatures(table: StudyTable, raw: dict[str, Any]) -> Iterator[str]:
 
 
 def _of_ranges(table: StudyTable) -> Iterator[str]:
-    """Yield a sentence on every range of a lug's stiffness that is hardly one."""
+    """Yield a sentence on every range of a lug's stiffness with implausible ratios."""
     low, high = USUAL_STIFFNESS_RATIOS
     common = None if table.lug_defaults is None else table.lug_defaults.range.stiffness
     stated = {"lug_defaults": common}
@@ -182,7 +182,7 @@ def _question(stated: StatedValue, system: UnitSystem) -> str:
         return ""
     unit, ends = usual.metric[0], (usual.low, min(usual.high, stated.most))
     one = to_si(f"1 {unit}", usual.dimension, system)
-    if usual.low <= stated.value <= usual.high:  # then the modulus may as well be wrong
+    if usual.low <= stated.value <= usual.high:  # the modulus may be the wrong value
         return (
             f"{stated.key}: {as_text(stated.written)} is {stated.value / one:,.4g} {unit}, more "
             f"than {MAX_YIELD_STRAIN:.0%} of youngs_modulus "
@@ -197,10 +197,10 @@ def _question(stated: StatedValue, system: UnitSystem) -> str:
 
 
 def _likely(stated: StatedValue, system: UnitSystem) -> str:
-    """Return the number as written with its most plausible unit, if there is one.
+    """Return the number as written with its most plausible unit; empty if there is none.
 
-    Of the units of its own system the one nearest to the typical value is taken, else of the
-    others.
+    Units of the number's own system come first; among them the unit counts that brings the value
+    nearest to the typical one.
     """
     quantity = split(stated.written) if isinstance(stated.written, str) else (stated.written, "")
     if quantity is None:

@@ -80,7 +80,7 @@ def _values(study: Study, name: str | None) -> tuple[PublishedRow, ...]:
 def _rows(
     study: Study, name: str | None, names: tuple[str, ...], numbers: tuple[str, ...]
 ) -> list[tuple[str, list[str], list[float]]]:
-    """Return the rows of one table: file and line, names and numbers of each."""
+    """Return the rows of a table, each as its file and line, its names and its numbers."""
     if name is None:
         return []
     rows = []

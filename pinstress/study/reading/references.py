@@ -1,4 +1,4 @@
-"""References by name within a study: each must exist."""
+"""References by name within a study, each of which must refer to something that exists."""
 
 from __future__ import annotations
 
@@ -89,9 +89,11 @@ def _materials(lug: LugTable) -> dict[str, str]:
 
 
 def _of_clamps(table: StudyTable, pin: str, surfaces: Iterable[str]) -> Iterator[Wrong]:
-    """Yield the clamped surfaces of a pin that do not exist, also where its shape is impossible.
+    """Yield the clamped surfaces of a pin that do not exist, even if the shape of the pin is
+    impossible.
 
-    Those that the program names itself ("segment 2", "hole 1") are known with the shape only.
+    Names that the program itself gives ("segment 2", "hole 1") are left out, since only the shape
+    tells whether they exist.
     surfaces: the names that the study gives.
     """
     clamps = {f"pin.{key_part(pin)}.clamp": table.pin[pin].clamp}
@@ -105,7 +107,7 @@ def _of_clamps(table: StudyTable, pin: str, surfaces: Iterable[str]) -> Iterator
 
 
 def _of_ears(name: str, pin: PinTable) -> Iterator[Wrong]:
-    """Yield the ears of clevises whose connection does not exist, or has an ear already."""
+    """Yield the ears of clevises whose connection does not exist, or has two ears already."""
     known, ears = [connection for _, connection in pin.connections], set[str]()
     for i, segment in enumerate(pin.profile or (), 1):
         if segment.ear_of is None:
@@ -122,9 +124,10 @@ def _of_ears(name: str, pin: PinTable) -> Iterator[Wrong]:
 
 
 def _of_bearing(table: StudyTable) -> Iterator[Wrong]:
-    """Yield errors for bearing strengths with which no pressure is compared.
+    """Yield errors for bearing strengths that are never compared with a pressure.
 
-    They belong to materials of no pin on which a link bears, and of no lug or bushing.
+    They are of materials of which neither a pin with a connection or lug, nor a lug or bushing, is
+    made.
     """
     bears: set[str] = set()
     for pin in table.pin.values():
@@ -194,7 +197,7 @@ def _of_sequences(table: StudyTable) -> Iterator[Wrong]:
 
 
 def _of_requirements(table: StudyTable) -> Iterator[Wrong]:
-    """Yield errors unless the level fits the check, and there is one factor for each pin, case,
+    """Yield errors for levels that do not fit the check, and for several factors for one pin, case,
     check and level.
     """
     known: dict[tuple[str, str, str, str], int] = {}
@@ -224,7 +227,7 @@ def _of_requirements(table: StudyTable) -> Iterator[Wrong]:
 
 
 def _of_fatigue(table: StudyTable, fatigue: FatigueTable) -> Iterator[Wrong]:
-    """Yield errors unless the spectrum's cases exist and a pin's material has data for its
+    """Yield errors for cases of the spectrum that do not exist, and for missing data of the fatigue
     method.
     """
     for case in fatigue.occurrences:
@@ -253,7 +256,7 @@ def _of_fatigue(table: StudyTable, fatigue: FatigueTable) -> Iterator[Wrong]:
 
 
 def _parameters(material: MaterialTable, fatigue: FatigueTable) -> dict[str, float | None]:
-    """Return the further parameters of a method, by key."""
+    """Return the further material parameters that a method needs, by key."""
     ultimate = {"ultimate_strength": material.ultimate_strength}
     sn = material.fatigue
     if fatigue.method == "fkm-p-ram" or sn is None:

@@ -1,4 +1,4 @@
-"""Location of the studies that ship with the project: in the wheel, or in the checkout."""
+"""Location of the studies that ship with the project, in the wheel or in the checkout."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""References by name within a mechanism in space, and what its cases cannot have."""
+"""References by name within a mechanism in space, and keys that its cases cannot have."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def _of_kind(where: str, mechanism: SpaceMechanismTable, name: str, kind: Kind) 
 def _moved(
     where: str, mechanism: SpaceMechanismTable, name: str, connection: str | None, slides: bool
 ) -> Iterator[Wrong]:
-    """Yield an error unless a joint has an angle, or travel, of one connection."""
+    """Yield an error unless a joint has an angle, or travel, of exactly one connection."""
     yield from known_name(where, "joint", name, mechanism.joint)
     if (joint := mechanism.joint.get(name)) is None:
         return
@@ -120,7 +120,7 @@ def _moved(
 
 
 def _on_ground(where: str, case: GroundCase, mechanism: SpaceMechanismTable) -> Iterator[Wrong]:
-    """Yield errors of a case of the ground's loads."""
+    """Yield errors of a case of ground loads."""
     yield from known_name(f"{where}.body", "body", case.body, mechanism.body)
     if isinstance(case.at, str):
         yield from known_name(f"{where}.at", "joint", case.at, mechanism.joint)
@@ -139,7 +139,7 @@ def _on_ground(where: str, case: GroundCase, mechanism: SpaceMechanismTable) -> 
 
 
 def cases_in_space(table: StudyTable, mechanism: SpaceMechanismTable) -> Iterator[Wrong]:
-    """Yield errors for what cases of a linkage in space cannot have."""
+    """Yield errors for keys and kinds that cases of a linkage in space cannot have."""
     for name, case in table.case.items():
         where = f"case.{key_part(name)}"
         if isinstance(case, DropCase):

@@ -1,7 +1,7 @@
-"""Lines of the keys of a study file, for messages that name a key.
+"""The lines of the keys of a study file, for messages that name a key.
 
-tomllib keeps no positions and tomlkit gives none. The text has been read by tomllib already, so it
-is valid TOML and its headers, keys and brackets only need to be followed.
+tomllib keeps no positions and tomlkit gives none. The text has been read by tomllib before, so it
+is valid TOML, and only its headers, keys and brackets need to be followed.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from itertools import count
 
 from pinbase.keys import key_part
 
-# A string that does not end goes on to the end of its line or of the text: were it no token, every
-# quote in it would be looked at anew.
+# A string without a closing quote is a token up to the end of its line or of the text. Otherwise
+# every quote in it would be tried again.
 TOKEN_PATTERN = re.compile(
     r'''"""(?:\\.|[^\\])*?(?:"{3,5}|\Z) | \'\'\'.*?(?:'{3,5}|\Z)
     | "(?:\\.|[^"\\\n])*+"? | '[^'\n]*'? | \#[^\n]*'''
@@ -28,9 +28,9 @@ Place = tuple[str | int, ...]  # keys, and indices from 0 into arrays
 
 
 class Tokens:
-    """The tokens of a text one after the other, each with the line on which it begins.
+    """The tokens of a text in order, each with the line on which it begins.
 
-    They are an iterator, since a list of those of a large file would take gigabytes.
+    They are an iterator, since a list of the tokens of a large file would take gigabytes.
     """
 
     def __init__(self, text: str) -> None:
@@ -54,13 +54,13 @@ class Tokens:
 
 
 def places(text: str) -> dict[Place, int]:
-    """Return the line, from 1 on, of every key, table and array element of a valid TOML text.
+    """Return the line, counted from 1, of every key, table and array element of a valid TOML text.
 
     A table without a line of its own has the first line of its content.
     """
     tokens = Tokens(text)
     lines: dict[Place, int] = {}
-    sizes: dict[Place, int] = {}  # of the arrays of tables
+    sizes: dict[Place, int] = {}  # number of tables in each array of tables
     table: Place = ()
     while tokens:
         token, line = tokens.first
@@ -77,12 +77,12 @@ def places(text: str) -> dict[Place, int]:
 def lines_of(text: str, messages: Iterable[str]) -> list[int | None]:
     """Return the line of the key with which each message begins ("pin.B.profile[2].length: ...").
 
-    Where that key is absent, the line is that of the nearest table around it, or None. If the
-    message goes on to quote a key of that table ("unknown key 'x'"), it is that key's.
+    If that key is absent, the line is that of the nearest enclosing table, or None. If the message
+    then quotes a key of that table ("unknown key 'x'"), the line is that of the quoted key.
     """
     known: dict[str, int] = {}
     everywhere = places(text)
-    # Messages leave out the `value` of { value, provenance }, and the index of an only table.
+    # Messages leave out the `value` of { value, provenance }, and the index of a single table.
     for unsaid in ((), ("value",), ("value", 0)):
         for place, line in everywhere.items():
             known.setdefault(said([part for part in place if part not in unsaid]), line)
@@ -91,7 +91,7 @@ def lines_of(text: str, messages: Iterable[str]) -> list[int | None]:
 
 
 def _line(known: dict[str, int], longest: int, message: str) -> int | None:
-    # [1] also for the one table that may be written without an array
+    # [1] may also refer to a single table that is written without an array
     spellings = (message, message.replace("[1]", ""))
     keys = (next(_keys(known, m[: longest + MAX_KEY_END_LENGTH]), "") for m in spellings)
     key = max(keys, key=len)
@@ -103,8 +103,8 @@ def _line(known: dict[str, int], longest: int, message: str) -> int | None:
 def _keys(known: dict[str, int], message: str) -> Iterator[str]:
     """Yield the known keys with which a message begins, the longest first.
 
-    They are looked up where a key may end, which takes far less time than comparing the message
-    with every key of a large study.
+    Only texts up to a possible end of a key are looked up. This is much faster than comparing the
+    message with every key of a large study.
     """
     for end in reversed([m.start() for m in KEY_END_PATTERN.finditer(message)]):
         if message[:end] in known:
@@ -112,7 +112,7 @@ def _keys(known: dict[str, int], message: str) -> Iterator[str]:
 
 
 def said(place: Sequence[str | int]) -> str:
-    """Return a place as messages spell it, which count from 1."""
+    """Return a place as messages spell it, with indices from 1."""
     return "".join(f"[{p + 1}]" if isinstance(p, int) else f".{key_part(p)}" for p in place)[1:]
 
 
@@ -162,11 +162,11 @@ def _pair(tokens: Tokens, table: Place, lines: dict[Place, int]) -> None:
 
 
 def _value(tokens: Tokens, place: Place, lines: dict[Place, int]) -> None:
-    """Advance past a value and its content; the token that ends it remains."""
+    """Advance past a value and its content, up to the token that follows it."""
     first, _ = tokens.pop()
     if first not in ("[", "{"):
         while tokens.first[0] not in (",", "]", "}", "\n"):
-            tokens.pop()  # 1.5 and a time of day are several tokens
+            tokens.pop()  # 1.5 or a time of day consists of several tokens
         return
     for i in count():
         while tokens.first[0] in (",", "\n"):

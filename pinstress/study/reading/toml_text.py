@@ -1,7 +1,7 @@
-"""TOML of a study file, read in a time that is proportional to its length.
+"""The TOML of a study file, read in a time that is proportional to its length.
 
-tomllib takes minutes and gigabytes for a key of ten thousand parts, so such text, which no study
-needs, is refused by its tokens before tomllib reads it.
+tomllib takes minutes and gigabytes for a key of ten thousand parts. No study needs such text, so it
+is rejected by its tokens before tomllib reads it.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def read_toml(path: Path, text: str) -> dict[str, Any]:
 def _require_moderate(path: Path, text: str) -> None:
     """Raise InputError for tables nested too deeply and for words too long."""
     line, at = 1, 0
-    open_: list[int] = [0]  # by bracket that is open, outermost first: dots of the key before it
+    open_: list[int] = [0]  # for each open bracket, outermost first: dots of the current key in it
     depth = 0  # brackets and dots together
     for match in TOKEN_PATTERN.finditer(text):
         token = match[0]

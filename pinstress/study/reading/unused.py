@@ -1,5 +1,6 @@
-"""Keys of a study that have no effect or contradict another: a warning, as sweeps and other choices
-may need them.
+"""Keys of a study that have no effect or contradict another key.
+
+They cause a warning only, as sweeps and other choices may need them.
 """
 
 from __future__ import annotations
@@ -15,11 +16,13 @@ from pinstress.study.schema.lugs import LugTable
 from pinstress.study.schema.tables import StudyTable
 from pinstress.study.schema.units import UNIT_SYSTEMS, UnitSystem
 
-VELOCITY_ROUND_OFF = 1e-6  # of a converted velocity, or lift
+VELOCITY_ROUND_OFF = 1e-6  # relative, of a converted velocity or of lift
 
 
 def unused(table: StudyTable) -> Iterator[str]:
-    """Yield a sentence on every key without an effect or against another, after the key."""
+    """Yield a sentence on every key that has no effect or contradicts another; it begins with the
+    key.
+    """
     lugs = {
         lug_key(name, connection): lug
         for name, pin in table.pin.items()
@@ -68,7 +71,7 @@ def unused(table: StudyTable) -> Iterator[str]:
 
 
 def _of_codes(table: StudyTable) -> Iterator[str]:
-    """Yield a sentence on every factor that only checks of a code which is not chosen have."""
+    """Yield a sentence on every factor that only checks of codes use that are not chosen."""
     codes, given = table.analysis.codes, table.lug_defaults or LugTable()
     factors = ["lug_defaults.factors"] if "factors" in given.model_fields_set else []
     for name, pin in table.pin.items():
@@ -105,7 +108,7 @@ def _of_codes(table: StudyTable) -> Iterator[str]:
 
 
 def _of_fillets(table: StudyTable) -> Iterator[str]:
-    """Yield a sentence on every fillet of a segment whose far end has no corner."""
+    """Yield a sentence on every fillet of a segment that has no corner at its far end."""
     for name, pin in table.pin.items():
         segments = pin.profile or []
         for k, segment in enumerate(segments):
@@ -121,8 +124,8 @@ def _of_fillets(table: StudyTable) -> Iterator[str]:
 
 
 def _of_drops(table: StudyTable) -> Iterator[str]:
-    """Yield a sentence on every key of a drop without an effect, and on every one by which the drop
-    is less than its rule requires.
+    """Yield a sentence on every key of a drop without effect, and on every value less severe than
+    the drop's rule requires.
     """
     drops = {n: case for n, case in table.case.items() if isinstance(case, DropCase)}
     for name, case in drops.items():
@@ -149,7 +152,7 @@ def _of_drops(table: StudyTable) -> Iterator[str]:
 
 
 def _short_of_rule(key: str, case: DropCase, rule: str, system: UnitSystem) -> Iterator[str]:
-    """Yield a sentence on a velocity and a lift that a drop's rule does not allow."""
+    """Yield a sentence on a velocity or a lift that a drop's rule does not allow."""
     if rule != "23.473" or case.wing_loading is not None:
         least = required_velocity(rule, case.wing_loading) * (1.0 - VELOCITY_ROUND_OFF)
         if case.velocity is not None and case.velocity < least:
@@ -167,8 +170,8 @@ def _short_of_rule(key: str, case: DropCase, rule: str, system: UnitSystem) -> I
 
 
 def _of_mechanism(table: StudyTable) -> Iterator[str]:
-    """Yield a sentence on every spring without a force, or with a reference of no stiffness, and on
-    every stop that nothing uses.
+    """Yield a sentence on every spring without a force, or with a reference but no stiffness, and
+    on every stop that nothing uses.
     """
     if (mechanism := table.mechanism) is None:
         return
@@ -200,7 +203,7 @@ def _of_mechanism(table: StudyTable) -> Iterator[str]:
 
 
 def _of_designs(table: StudyTable) -> Iterator[str]:
-    """Yield a sentence on keys of another sample of designs than the one that is chosen."""
+    """Yield a sentence on keys that belong to another sample of designs than the chosen one."""
     vary = table.vary
     if vary is None:
         return

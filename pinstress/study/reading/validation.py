@@ -1,4 +1,6 @@
-"""Validation errors of pydantic in our words; none of its own messages reach a user."""
+"""Validation errors of pydantic in the words of this program; pydantic's own messages never reach a
+user.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +18,8 @@ from pinstress.study.reading.toml_lines import Place
 from pinstress.study.schema.shown import in_toml, nearest, printable
 from pinstress.study.schema.types import UNKNOWN_KEY_ERROR, hint_for_key
 
-# By pydantic's type of error: our code, and what would be right. Its other types need a field of a
-# type that no table has; a test feeds every kind of mistake to every key.
+# Code and remedy by pydantic's type of error. Other types of error need a type of field that no
+# table has; a test tries every kind of mistake at every key.
 MISTAKE_MESSAGES = {
     "missing": ("missing-key", "is missing"),
     "string_type": ("not-a-text", "must be a text in quotes"),
@@ -53,8 +55,8 @@ def explain(error: ValidationError) -> list[Wrong]:
 
 
 def remove_wrong(error: ValidationError, tree: Any, damage: Damage) -> list[Wrong]:
-    """Remove from a study what is wrong in its remainder, and return the errors that do not follow
-    from what was removed before.
+    """Remove the wrong parts from the remainder of a study, and return the errors that do not
+    follow from earlier removals.
 
     tree: the remainder of the study.
     """
@@ -67,7 +69,7 @@ def remove_wrong(error: ValidationError, tree: Any, damage: Damage) -> list[Wron
         if item["type"] == UNKNOWN_KEY_ERROR:
             there = (*there, item["ctx"]["key"])
         elif item["type"] == "missing" and stand_in(there) is None:
-            there = there[:-1]  # the table or list is useless without it
+            there = there[:-1]  # the table or list is useless without the missing part
         removals.append(there)
     for there in removals:
         damage.remove(there)
@@ -82,7 +84,7 @@ def _place(loc: tuple[int | str, ...], tree: Any) -> Place:
         if str(part).startswith(("<", "[key]")) or (i == 2 and loc[0] == "case"):
             continue
         if isinstance(part, int) and not isinstance(node, list):
-            continue  # of the one table that may be written without a list
+            continue  # index of a single table that is written without a list
         place += (part,)
         try:
             node = node[part]
@@ -92,13 +94,12 @@ def _place(loc: tuple[int | str, ...], tree: Any) -> Place:
 
 
 def _follows(item: dict[str, Any], place: Place, damage: Damage) -> bool:
-    """Return whether an error may follow from parts that were removed from the same table or
-    list.
+    """Return whether an error may follow from parts that were removed from the same table or list.
 
     place: of the error, in the study.
     """
     if damage.touches(DIMENSION) and place[:1] == DIMENSION[:1]:
-        return True  # which of a plane or of space the linkage is read as
+        return True  # the linkage may have been read for the wrong dimension
     table = place[:-1] if item["type"] == "missing" else place
     removed = [*damage.children(table), *damage.reduced(table, item["type"] == "value_error")]
     if place in damage.places or any(isinstance(child, int) for child in removed):
@@ -145,7 +146,7 @@ def _key(loc: tuple[int | str, ...], kind: str) -> str:
 
 
 def _found(kind: str, context: dict[str, Any], value: object) -> str:
-    """Return the actual value, as the end of the message."""
+    """Return the actual value, as the end of a message."""
     if kind in ("too_short", "too_long"):
         most = context.get("min_length", context.get("max_length"))
         what = "entry" if context["field_type"] == "Dictionary" else "element"

@@ -1,4 +1,4 @@
-"""The study file's form: cases, what loads the pins."""
+"""Keys of the load cases in a study file."""
 
 from typing import Annotated, Literal
 
@@ -60,16 +60,19 @@ class GivenCase(CaseTable):
     table: Tables | None = None
     """File in the study's folder, instead of `forces` and `moments`; a sweep if it has times. Its
     columns are connection,fx,fy[,fz][,mx,my,mz][,time][,case], or one per component, as B.fx,B.fy
-    for connection B; units in brackets, fx [kN], or in a row under the header. Separated by commas,
-    semicolons, tabs or blanks, but for commas also with decimal commas. For a file of another
-    program a table that states its columns; several with [[case.NAME.table]]."""
+    for connection B; units in brackets, fx [kN], or in a row under the header. Columns are
+    separated by commas, semicolons, tabs or blanks; decimal commas are read unless commas separate
+    the columns. For a file of another program, give a table that states its columns; several with
+    [[case.NAME.table]]."""
     table_case: str | None = None
-    """Which rows of a table with a column `case`; by default those with the name of this case."""
+    """Name in the column `case` of the rows that are read; by default the name of this case."""
     columns: dict[str, str | int] = {}
-    """Columns of a table of another program: by our name the header, or the number from 1 where the
-    table has no header; with a minus before it where the sign is the opposite."""
+    """Columns of a table of another program: for each name used here, the header in the table, or
+    the number from 1 if the table has no header; with a minus sign in front if the sign is
+    opposite."""
     labels: dict[str, str | int] = {}
-    """What the connections are called in the table's column `connection`; others are skipped."""
+    """Names of the connections in the table's column `connection`; rows with other names are
+    skipped."""
     time_step: Annotated[Duration, POSITIVE] | None = None
     """Time between the rows of one connection, where the table has no times."""
     table_units: Literal["in-lbf-s", "mm-N-s", "m-N-s"] | None = None
@@ -113,8 +116,8 @@ Pulse = Literal["rectangular", "half-sine", "triangular"]
 
 
 class ImpulseRange(StrictTable):
-    """Other values of the impulse, of which none is known better: the safety factor is computed for
-    all combinations, and a pin is safe only if it meets its factor in all of them.
+    """Other, equally possible values of the impulse: the safety factor is computed for all
+    combinations, and a pin is safe only if it meets its factor in all of them.
     """
 
     impulse_time: Annotated[list[Duration], Field(min_length=1)] | None = None
@@ -202,9 +205,9 @@ class ApplyTable(StrictTable):
     impulse: ImpulseTable | None = None
     """A force estimated from an impulse, instead of `force`."""
     begin: Annotated[Time, NOT_NEGATIVE] | None = None
-    """Time from which the load acts, in a motion. Default: from its start."""
+    """Time from which the load acts, in a motion. Default: the start of the motion."""
     end: Annotated[Time, POSITIVE] | None = None
-    """Time until which it acts. Default: to the end of the motion."""
+    """Time until which the load acts. Default: the end of the motion."""
 
     @model_validator(mode="after")
     def _one_force(self) -> "ApplyTable":
@@ -236,14 +239,14 @@ class ApplyTable(StrictTable):
 
     @property
     def out_of_plane(self) -> bool:
-        """Whether it acts out of the plane: along z, about x or y, or at a stated z."""
+        """Whether the load acts out of the plane: along z, about x or y, or at a stated z."""
         impulse = None if self.impulse is None else self.impulse.direction
         along_z = any(any((d or [])[2:]) for d in (self.force, self.direction, impulse))
         return along_z or self.at_height or any(self.moments[:2])
 
     @property
     def at_height(self) -> bool:
-        """Whether the z of its point is stated."""
+        """Whether the z of the point of application is stated."""
         return self.at is not None and not isinstance(self.at, str) and len(self.at) > 2
 
 
@@ -267,8 +270,8 @@ class GroundMotionTable(StrictTable):
     rate_change: AngularAcceleration = 0.0
     """Constant change of this rate."""
     path: Literal["turns", "straight"] = "turns"
-    """Whether the velocity turns with the ground, as that of wheels that do not slip, or is of
-    constant direction at every instant, a skid."""
+    """Whether the velocity turns with the ground, as with wheels that do not slip ("turns"), or
+    keeps its direction, as in a skid ("straight")."""
 
     _about_a_direction = not_zero("axis")
 

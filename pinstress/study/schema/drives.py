@@ -1,4 +1,4 @@
-"""The study file's form: drives of a planar mechanism and the laws of their motion."""
+"""Keys of drives and of the laws of their motion in a study file."""
 
 import math
 from typing import Annotated, ClassVar, Literal
@@ -8,7 +8,7 @@ from pydantic import model_validator
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.types import NOT_NEGATIVE, Angle, Duration, Length, StrictTable, Time
 
-MAX_TURNS = 1000  # each is followed in steps of 0.25 rad
+MAX_TURNS = 1000  # limit on work, since each turn is followed in steps of 0.25 rad
 
 
 class LawTable(StrictTable):
@@ -16,7 +16,7 @@ class LawTable(StrictTable):
     drive can only be used by cases that give its position.
     """
 
-    slides: ClassVar[bool]  # whether it has a length, instead of an angle
+    slides: ClassVar[bool]  # whether it drives a length, instead of an angle
 
     name: str | None = None
     """Name of the drive. Default: the name of its slider or body."""
@@ -53,7 +53,7 @@ class LawTable(StrictTable):
 
 
 class SlidingDrive(LawTable):
-    """Keys of all drives of a length."""
+    """Keys of all drives that change a length."""
 
     start: Length | None = None
     """Length, travel or distance at the start."""
@@ -66,7 +66,7 @@ class SlidingDrive(LawTable):
 
 
 class TurningDrive(LawTable):
-    """Keys of all drives of an angle."""
+    """Keys of all drives that change an angle."""
 
     start: Angle | None = None
     """Angle at the start."""
@@ -92,8 +92,8 @@ class SliderDrive(SlidingDrive):
 
 class RotaryDrive(TurningDrive):
     """A drive of a body's angle: the direction of a line between two of its joints,
-    counter-clockwise from x or, for a drive between two bodies, from a line of the other; without
-    a line what the body has turned since the drawing.
+    counter-clockwise from x or, for a drive between two bodies, from a line of the other; without a
+    line, the rotation of the body since the drawing.
     """
 
     body: str
@@ -118,8 +118,8 @@ class RotaryDrive(TurningDrive):
 
 
 def drive_name(drive: LawTable) -> str:
-    """Return the name of a drive: its slider, or its own name, or that of the body that it turns
-    or of the joint that it moves.
+    """Return the name of a drive: its slider, its own name, or the name of the body or joint that
+    it moves.
     """
     if isinstance(drive, SliderDrive):
         return drive.slider

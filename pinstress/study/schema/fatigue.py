@@ -1,4 +1,4 @@
-"""Keys of fatigue: the spectrum of a study, and the data of its materials."""
+"""Keys of the fatigue spectrum and of the fatigue data of materials in a study file."""
 
 from typing import Annotated, Literal
 
@@ -26,7 +26,7 @@ class SnTable(StrictTable):
     scatter: Annotated[Number, Field(gt=1.0, le=1e6)] | None = None
     """Life at 90 % failure probability over that at 10 %. Default: lives have no scatter."""
     failure_probability: Probability = 0.5
-    """Failure probability for which the curve stands."""
+    """Failure probability of the curve."""
     mean_stress: Literal["none", "fkm", "goodman", "swt", "walker"] = "fkm"
     """Correction for mean stress: "fkm" (Haigh diagram with `mean_stress_sensitivity`), "goodman"
     (with the material's `ultimate_strength`), "swt" (Smith, Watson, Topper), "walker" (with
@@ -55,17 +55,18 @@ class FatigueTable(StrictTable):
     """The numbers of occurrences of cases, and the method by which fatigue is assessed."""
 
     unit: str = "flight"
-    """Name of what occurrences are counted in."""
+    """Name of the unit in which occurrences are counted."""
     occurrences: Annotated[
         dict[str, Annotated[Number, Field(gt=0.0, le=10_000.0)]], Field(min_length=1)
     ]
-    """By case or sequence, how often it occurs per unit, in the order in which they follow each
-    other. Each begins and ends at zero load; between the steps of a sequence there is none."""
+    """Number of occurrences per unit of each case or sequence, in the order in which they follow
+    each other. Each begins and ends at zero load; between the steps of a sequence the load does not
+    return to zero."""
     life: Annotated[Number, Field(gt=0.0)] | None = None
     """Design life in units. Default: no utilisation."""
     failure_probability: Probability | None = None
-    """Failure probability at which damage is found. Default: that of the S-N curve."""
+    """Failure probability for which damage is computed. Default: that of the S-N curve."""
     method: Literal["signed-von-mises", "critical-plane", "fkm-p-ram"] = "signed-von-mises"
-    """Stress that counts: the von Mises stress with a sign, Findley's critical plane, or local
-    strains by the FKM guideline. Where a stress with a sign does not stand for all components, the
-    critical plane is taken instead, or fatigue is not decided."""
+    """Stress that is counted: the signed von Mises stress, Findley's critical plane, or local
+    strains by the FKM guideline. Where a signed stress does not represent all components, the
+    critical plane is used instead, or fatigue is not decided."""

@@ -1,4 +1,4 @@
-"""The study file's form: how a table of another program states forces."""
+"""Keys in a study file that describe tables of forces from other programs."""
 
 import math
 import re
@@ -31,7 +31,7 @@ from pinstress.study.schema.units import UNIT_SYSTEMS, to_si
 
 CONNECTIONS_ALIAS = "<connections>"  # in angle brackets, so that messages leave it out
 AXIS_NAMES = "x", "y", "z"
-MAX_AXES_ERROR = 1e-4  # of the products of rows of `axes`: numbers of four digits
+MAX_AXES_ERROR = 1e-4  # of products of the rows of `axes`, which may have four digits only
 
 JOINED_UNITS_PATTERN = re.compile(r"([kM]?N)([cm]?m)")  # Nm, kNmm
 HYPHEN_PATTERN = re.compile(r"(?<=[A-Za-z])-(?=[A-Za-z])")  # in-lbf
@@ -87,11 +87,12 @@ class ForceAxes(StrictTable):
     moment_unit: Annotated[str, _unit_of("moment")] | None = None
     """Unit of the moments, where the file does not state it."""
     axes: Axes | None = None
-    """The pin's axes x, y, z in those of the table, for instance ["x", "-z", "y"] where the pin
-    points along y of the table; or by their components, three rows of three numbers. Both are
-    right-handed."""
+    """The pin's axes x, y, z in terms of the table's axes, for instance ["x", "-z", "y"] if the pin
+    points along y of the table; or by their components, three rows of three numbers. Both systems
+    are right-handed."""
     acts_on: Literal["pin", "link"] | None = None
-    """What the forces and moments act on: the pin (default), or the link, which reverses them."""
+    """The body on which the forces and moments act: the pin (default), or the link, which reverses
+    their signs."""
 
     @model_validator(mode="after")
     def _right_handed(self) -> "ForceAxes":
@@ -101,9 +102,9 @@ class ForceAxes(StrictTable):
 
 
 def matrix_of(axes: tuple[Any, Any, Any]) -> Matrix:
-    """Return (3, 3) the pin's axes in the table's, by row.
+    """Return (3, 3) the pin's axes in those of the table, as rows.
 
-    Raises: ArgumentError for a name that is not that of an axis.
+    Raises: ArgumentError for a name that is not an axis.
     """
     rows = []
     for axis in axes:
@@ -121,7 +122,7 @@ def matrix_of(axes: tuple[Any, Any, Any]) -> Matrix:
 
 
 def _require_rotation(rows: Matrix) -> None:
-    """Raises: ArgumentError unless the rows are right-handed unit vectors at right angles."""
+    """Raise ArgumentError unless the rows are right-handed unit vectors at right angles."""
     for i, one in enumerate(rows):
         for j, other in enumerate(rows):
             product = sum(p * q for p, q in zip(one, other, strict=True))
@@ -137,8 +138,8 @@ def _require_rotation(rows: Matrix) -> None:
 
 
 class JointColumns(ForceAxes):
-    """The columns of a connection's force and moment: headers, or numbers from 1; with a minus
-    before it where the sign is the opposite.
+    """The columns of a connection's force and moment: headers, or numbers from 1; with a minus sign
+    in front if the sign is opposite.
     """
 
     fx: Column | None = None
@@ -180,7 +181,7 @@ class TimeColumn(StrictTable):
 
 
 def _with_connections(schema: dict[str, Any], table: type[StrictTable]) -> None:
-    """Complete the JSON Schema of a table whose other keys are connections."""
+    """Complete the JSON Schema of a table whose other keys are the names of connections."""
     complete_schema(schema, table)
     connections = schema["properties"].pop(CONNECTIONS_ALIAS)
     words = {"description": connections["description"]}
@@ -201,7 +202,7 @@ class TableFile(ForceAxes):
     header_line: Annotated[Whole, Field(ge=1, le=1_000_000)] | None = None
     """Line of the header (row of a sheet), where lines precede it that are not comments."""
     separator: Literal[",", ";", "tab", "blank"] | None = None
-    """What separates columns. Default: the first of ; tab , blank that the header has."""
+    """Separator of the columns. Default: the first of ; tab , blank that the header contains."""
     decimal: Literal[".", ","] | None = None
     """The decimal sign, where the file does not show it; the other one then separates thousands."""
     encoding: Literal["utf-8", "utf-16-le", "utf-16-be", "cp1252"] | None = None

@@ -1,4 +1,4 @@
-"""The study file's form: forces by a table, springs and dampers."""
+"""Keys of forces given by tables, of springs and of dampers in a study file."""
 
 from typing import Annotated, Literal
 
@@ -22,20 +22,20 @@ from pinstress.study.schema.types import (
 
 
 class CurveTable(StrictTable):
-    """A function by its rows."""
+    """A function given by rows."""
 
     table: str | None = None
     """CSV file in the study's folder with the argument in the first column: `time`, `position`,
-    `position_deg`, `length`, `angle_deg`, `velocity` or `angular_velocity`, as the argument is one;
-    and `force` or `moment` in the second."""
+    `position_deg`, `length`, `angle_deg`, `velocity` or `angular_velocity`, and `force` or `moment`
+    in the second."""
     points: Annotated[list[tuple[Coordinate, Coordinate]], Field(min_length=2)] | None = None
     """Rows [argument, value] instead of a file, each a number or a text with a unit."""
     interpolation: Literal["linear", "monotone"] = "linear"
-    """Between the rows: "linear", or "monotone", a cubic without extremes that the rows do not
-    have."""
+    """Interpolation between the rows: "linear", or "monotone", a cubic without extremes that the
+    rows do not have."""
     outside: Literal["error", "hold", "repeat"] = "error"
-    """Outside the rows: "error", "hold" (the value of the last row) or "repeat" (the table
-    again)."""
+    """Values outside the rows: "error", "hold" (the value of the last row) or "repeat" (the table
+    is repeated)."""
 
     _one_source = exactly_one(
         'either table = "file.csv" or points = [[x, y], ...]', "table", "points"
@@ -43,7 +43,7 @@ class CurveTable(StrictTable):
 
 
 class ForceLawTable(CurveTable):
-    """A force or couple by a table of time or, if stated, of a position or distance."""
+    """A force or couple given by a table over time or, if stated, over a position or distance."""
 
     position_of: str | None = None
     """A drive or slider, whose position (its length or angle) is the argument."""
@@ -58,7 +58,7 @@ class ForceLawTable(CurveTable):
 
 
 class LineLawTable(StrictTable):
-    """Keys of all springs of a length."""
+    """Keys of all springs that act along a length."""
 
     stiffness: Stiffness = 0.0
     """Stiffness."""
@@ -69,9 +69,9 @@ class LineLawTable(StrictTable):
     damping: Damping = 0.0
     """Coefficient of a linear damper."""
     force: CurveTable | None = None
-    """Force by a table of the length."""
+    """Force as a table over the length."""
     damper: CurveTable | None = None
-    """Force by a table of the velocity, the rate of the length."""
+    """Force as a table over the velocity, the rate of the length."""
 
 
 class LineSpringTable(LineLawTable):
@@ -92,7 +92,7 @@ class LineSpringTable(LineLawTable):
 
 
 class TorsionLawTable(StrictTable):
-    """Keys of all springs of an angle."""
+    """Keys of all springs that act about an axis."""
 
     stiffness: TorsionalStiffness = 0.0
     """Stiffness."""
@@ -103,9 +103,9 @@ class TorsionLawTable(StrictTable):
     damping: TorsionalDamping = 0.0
     """Coefficient of a linear damper."""
     couple: CurveTable | None = None
-    """Couple by a table of the angle."""
+    """Couple as a table over the angle."""
     damper: CurveTable | None = None
-    """Couple by a table of the angular velocity."""
+    """Couple as a table over the angular velocity."""
 
 
 class TorsionSpringTable(TorsionLawTable):

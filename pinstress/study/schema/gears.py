@@ -1,4 +1,4 @@
-"""The study file's form: gears and racks."""
+"""Keys of gears and racks in a study file."""
 
 import math
 from typing import Annotated
@@ -17,7 +17,7 @@ from pinstress.study.schema.types import (
     Whole,
 )
 
-Count = Annotated[Whole, Field(ge=1, le=100_000)]  # of teeth
+Count = Annotated[Whole, Field(ge=1, le=100_000)]  # number of teeth
 STANDARD_PRESSURE_ANGLE = math.radians(20.0)
 
 
@@ -38,16 +38,16 @@ class GearTable(StrictTable):
     """
 
     bodies: tuple[str, str]
-    """The two that mesh; one may be "ground", a fixed ring."""
+    """The two bodies that mesh; one may be "ground", a fixed ring."""
     joints: tuple[str, str]
-    """The joint at the centre of each. What is on both joints is the carrier: the ground, or the
+    """The joint at the centre of each. The body on both joints is the carrier: the ground, or the
     arm of a planetary train."""
     teeth: tuple[Count, Count] | None = None
     """Numbers of teeth. Give either `teeth` or `radii`."""
     radii: tuple[PositiveLength, PositiveLength] | None = None
     """Radii of the pitch circles, which must touch."""
     module: PositiveLength | None = None
-    """Module of the teeth; only checks that the centres are as far apart as it says."""
+    """Module of the teeth; it only serves to check the distance of the centres."""
     internal: Switch = False
     """Whether the larger one is a ring with its teeth inside."""
     pressure_angle: PressureAngle = STANDARD_PRESSURE_ANGLE
@@ -70,7 +70,7 @@ class PinionTable(StrictTable):
     joint: str
     """The joint at its centre."""
     side: Side
-    """On which side of the gear's centre the rack is, looking along the slider's direction."""
+    """Side of the gear's centre on which the rack is, looking along the slider's direction."""
     radius: PositiveLength | None = None
     """Radius of the pitch circle. Give either `radius`, or `teeth` and `module`."""
     teeth: Count | None = None
@@ -114,20 +114,20 @@ class SpaceGearTable(GearTable):
     """
 
     joints: tuple[str, str]
-    """The revolute joint of each. What is on both joints is the carrier: the ground, or the arm of
+    """The revolute joint of each. The body on both joints is the carrier: the ground, or the arm of
     a planetary train."""
     radii: tuple[PositiveLength, PositiveLength] | None = None
-    """Radii of the pitch circles, of bevel gears in the middle of the teeth. Those of parallel axes
-    must touch."""
+    """Radii of the pitch circles; for bevel gears, in the middle of the teeth. Circles about
+    parallel axes must touch."""
     module: PositiveLength | None = None
-    """Module of the teeth: of parallel axes it only checks their distance, of bevel gears it gives
-    the size in the middle of the teeth."""
+    """Module of the teeth: for parallel axes, it only serves to check their distance; for bevel
+    gears, it gives the size in the middle of the teeth."""
     at: Point3 | None = None
-    """A point in the middle of the teeth that meet: of parallel axes its place along them counts
-    (default: midway between the joints), of bevel gears the side and, without radii and module, the
-    distance from where the axes meet."""
+    """A point in the middle of the meshing teeth. For parallel axes, its position along them counts
+    (default: midway between the joints); for bevel gears, its side and, without radii and module,
+    its distance from the intersection of the axes."""
     helix_angle: HelixAngle = 0.0
-    """Helix angle (of bevel gears spiral angle) of the first gear, positive right-handed. The
+    """Helix angle (for bevel gears, spiral angle) of the first gear, positive right-handed. The
     pressure angle is that across the teeth."""
 
 
@@ -139,13 +139,13 @@ class SpaceRackTable(PinionTable):
     joint: str
     """The revolute joint of the gear, at a right angle to the rack."""
     side: Side
-    """On which side of the gear's centre the rack is, looking along the axis of the prismatic joint
+    """Side of the gear's centre on which the rack is, looking along the axis of the prismatic joint
     with that of the gear's joint upwards."""
     slide: str
     """The prismatic joint that guides the rack on the body with that joint, or that body on the
     rack."""
     at: Point3 | None = None
-    """A point in the middle of the teeth that meet, of which the place along the gear's axis
-    counts. Default: the joint."""
+    """A point in the middle of the meshing teeth, whose position along the gear's axis counts.
+    Default: the joint."""
     helix_angle: HelixAngle = 0.0
     """Helix angle of the gear, positive right-handed."""

@@ -1,12 +1,13 @@
 """Limits and fits of ISO 286-1 for nominal sizes up to 500 mm.
 
-The values are those that two documents print: K. L. Narayana, P. Kannaiah, K. Venkata Reddy,
-"Machine Drawing", table 15.1 (p. 213, tolerances), 15.2 (pp. 215 and 216, shafts) and 15.3 (p. 219,
-holes), and cobanengineering.com, "Calculation of Upper and Lower Deviation for Shaft" (shafts a to
-h up to 180 mm); k is by its formula, as JIS B 0401 prints it up to 65 mm. The formulae of the
-standard (the same book, table 15.1A, p. 212, and table 15.4, p. 222) give the values before they
-were rounded, and are in the test: the printed value counts where no rounding leads to it (16 i is
-14.4 micrometres over 6 up to 10 mm, IT7 is 15). What is not printed there is not included.
+The values are as printed in two documents: K. L. Narayana, P. Kannaiah, K. Venkata Reddy, "Machine
+Drawing", table 15.1 (p. 213, tolerances), 15.2 (pp. 215 and 216, shafts) and 15.3 (p. 219, holes),
+and cobanengineering.com, "Calculation of Upper and Lower Deviation for Shaft" (shafts a to h up to
+180 mm). Deviation k follows its formula, as JIS B 0401 prints it up to 65 mm. The formulae of the
+standard (the same book, table 15.1A, p. 212, and table 15.4, p. 222) give the values before
+rounding; they are in the test. Where no rounding leads to the printed value, the printed value is
+used (16 i is 14.4 micrometres for sizes over 6 up to 10 mm, but IT7 is 15). Values that are not
+printed there are not included.
 """
 
 from __future__ import annotations
@@ -18,12 +19,12 @@ from dataclasses import dataclass
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.shown import as_text
 
-SIZE_LIMITS = (3, 6, 10, 18, 30, 50, 80, 120, 180, 250, 315, 400, 500)  # mm, upper ends of steps
+SIZE_LIMITS = (3, 6, 10, 18, 30, 50, 80, 120, 180, 250, 315, 400, 500)  # mm, upper ends of ranges
 FINE_SIZE_LIMITS = (
     3, 6, 10, 14, 18, 24, 30, 40, 50, 65, 80, 100, 120, 140, 160, 180, 200, 225, 250, 280, 315, 355,
     400, 450, 500,
 )  # fmt: skip
-STANDARD_TOLERANCES = {  # micrometres, by grade, of SIZE_LIMITS
+STANDARD_TOLERANCES = {  # micrometres, by grade, for the ranges of SIZE_LIMITS
     5: (4, 5, 6, 8, 9, 11, 13, 15, 18, 20, 23, 25, 27),
     6: (6, 8, 9, 11, 13, 16, 19, 22, 25, 29, 32, 36, 40),
     7: (10, 12, 15, 18, 21, 25, 30, 35, 40, 46, 52, 57, 63),
@@ -37,9 +38,9 @@ STANDARD_TOLERANCES = {  # micrometres, by grade, of SIZE_LIMITS
     15: (400, 480, 580, 700, 840, 1000, 1200, 1400, 1600, 1850, 2100, 2300, 2500),
     16: (600, 750, 900, 1100, 1300, 1600, 1900, 2200, 2500, 2900, 3200, 3600, 4000),
 }
-# Of the limit that is nearer to the nominal size, micrometres, of SIZE_LIMITS or FINE_SIZE_LIMITS,
-# as far as they are printed. Shafts a to h are below their nominal size, holes A to H above it by
-# as much.
+# Deviations of the limit that is nearer to the nominal size, micrometres, for the ranges of
+# SIZE_LIMITS or FINE_SIZE_LIMITS, as far as they are printed. Shafts a to h are below their nominal
+# size, and holes A to H are above it by the same amount.
 CLEARANCE_DEVIATIONS = {
     "a": (270, 270, 280, 290, 290, 300, 300, 310, 320, 340, 360, 380, 410, 460, 520, 580, 660, 740,
           820, 920, 1050, 1200, 1350, 1500, 1650),
@@ -54,20 +55,20 @@ CLEARANCE_DEVIATIONS = {
     "h": (0,) * 13,
 }  # fmt: skip
 INTERFERENCE_DEVIATIONS = {  # of the lower limit of shafts, above their nominal size
-    "k": (0, 1, 1, 1, 2, 2, 2, 3, 3, 4, 4, 4, 5),  # of grades up to 7, else 0
+    "k": (0, 1, 1, 1, 2, 2, 2, 3, 3, 4, 4, 4, 5),  # for grades up to 7; 0 for others
     "m": (2, 4, 6, 7, 8, 9, 11, 13, 15, 17, 20, 21, 23),
     "n": (4, 8, 10, 12, 15, 17, 20, 23, 27, 31, 34, 37, 40),
     "p": (6, 12, 15, 18, 22, 26, 32, 37, 43),
     "r": (10, 15, 19, 23, 23, 28, 28, 34, 34, 41, 43, 51, 54, 63, 65, 68),
     "s": (14, 19, 23, 28, 28, 35, 35, 43, 43, 53, 59, 71, 79, 92, 100, 108),
 }
-LETTERS = {  # of the deviations that are included at some size
+LETTERS = {  # deviations that are included for some size
     *CLEARANCE_DEVIATIONS, *map(str.upper, CLEARANCE_DEVIATIONS), *INTERFERENCE_DEVIATIONS, "js",
     "JS",
 }  # fmt: skip
-FINE_LETTERS = "abcrs"  # whose deviations are by FINE_SIZE_LIMITS
-MAX_GRADE_OF_K = 7  # in which k is above the nominal size
-COARSE_GRADE = 14  # from which, as a and b, classes are for more than 1 mm
+FINE_LETTERS = "abcrs"  # deviations that are listed for FINE_SIZE_LIMITS
+MAX_GRADE_OF_K = 7  # the highest grade in which deviation k is above the nominal size
+COARSE_GRADE = 14  # from this grade on, and for a and b, classes are for sizes above 1 mm only
 CLASS_PATTERN = re.compile(r"([A-Za-z]{1,2})([0-9]{1,2})")
 MISSING_VALUES_TEXT = (
     "its values are not at hand; there are those of a to h, js, k, m, n, p, r and s for shafts and "
@@ -77,7 +78,7 @@ MISSING_VALUES_TEXT = (
 
 @dataclass(frozen=True)
 class Fit:
-    """A hole and a shaft of one nominal size by their classes.
+    """A hole and a shaft of one nominal size, given by their tolerance classes.
 
     hole, shaft: the least and the largest deviation from the nominal size, m.
     """
@@ -100,7 +101,7 @@ class Fit:
 
 
 def fit_of(text: str, size: float) -> Fit:
-    """Return the fit of classes of hole and shaft, as "H7/f7", at a nominal size, m.
+    """Return the fit of two classes such as "H7/f7" at a nominal size, m.
 
     Raises: ArgumentError.
     """
@@ -109,9 +110,10 @@ def fit_of(text: str, size: float) -> Fit:
 
 
 def classes_of(text: str) -> tuple[str, str]:
-    """Return the tolerance classes of hole and shaft of a fit, as "H7/f7".
+    """Return the tolerance classes of hole and shaft of a fit such as "H7/f7".
 
-    Raises: ArgumentError for a text that is not a fit, and for classes included at no size.
+    Raises: ArgumentError for a text that is not a fit, and for classes that are not included for
+    any size.
     """
     hole, slash, shaft = (part.strip() for part in text.partition("/"))
     if not slash or not hole[:1].isupper() or not shaft[:1].islower():
@@ -125,8 +127,9 @@ def classes_of(text: str) -> tuple[str, str]:
 
 
 def deviations(tolerance_class: str, size: float) -> tuple[float, float]:
-    """Return the least and the largest deviation (m) from a nominal size (m) in a tolerance class:
-    of holes in capitals ("H7"), of shafts in small letters ("f7").
+    """Return the least and the largest deviation (m) from a nominal size (m) in a tolerance class.
+
+    Classes of holes are in capitals ("H7"), those of shafts in small letters ("f7").
 
     Raises: ArgumentError for a class or a size that is not included.
     """
@@ -149,7 +152,8 @@ def deviations(tolerance_class: str, size: float) -> tuple[float, float]:
 def _letter_and_grade(tolerance_class: str) -> tuple[str, int]:
     """Return the letter (or two) and the grade of a tolerance class.
 
-    Raises: ArgumentError for a text that is no class, and for a class included at no size.
+    Raises: ArgumentError for a text that is not a class, and for a class that is not included for
+    any size.
     """
     match = CLASS_PATTERN.fullmatch(tolerance_class)
     if match is None:
@@ -166,7 +170,10 @@ def _letter_and_grade(tolerance_class: str) -> tuple[str, int]:
 
 
 def _lower_limit(letter: str, size: float, width: int, grade: int) -> float:
-    """Return the lower deviation, micrometres, of a size in mm and a tolerance of this width."""
+    """Return the lower deviation, micrometres.
+
+    size: mm. width: of the tolerance, micrometres.
+    """
     if letter in ("js", "JS"):
         return -0.5 * width
     if letter == "k" and grade > MAX_GRADE_OF_K:

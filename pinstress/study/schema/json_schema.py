@@ -1,4 +1,4 @@
-"""The JSON Schema of the study file for editors, which accepts whatever the reader accepts."""
+"""The JSON Schema of the study file for editors; it accepts everything that the reader accepts."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pinstress.study.schema.tables import StudyTable
 from pinstress.study.schema.types import PROVENANCE_PROPERTIES, sourced
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
-WORDS = ("description", "default", "title")  # of a key, whatever form its value has
+WORDS = ("description", "default", "title")  # belong to a key, whatever the form of its value
 
 
 def editor_schema() -> dict[str, Any]:
@@ -18,7 +18,7 @@ def editor_schema() -> dict[str, Any]:
 
 
 def _in_table(table: dict[str, Any]) -> dict[str, Any]:
-    """Return the schema of a study or of a table, where `note` goes with `provenance`."""
+    """Return the schema of a study or of a table, in which `note` requires `provenance`."""
     inner = {name: _in_table(x) for name, x in table.get("$defs", {}).items()}
     properties = {
         key: x if key in PROVENANCE_PROPERTIES else _value(x)
@@ -35,11 +35,11 @@ def _in_table(table: dict[str, Any]) -> dict[str, Any]:
 
 
 def _value(schema: dict[str, Any]) -> dict[str, Any]:
-    """Return the schema of a value that may have its provenance."""
-    if "dimension" in schema:  # a quantity, which says so itself
+    """Return the schema of a value that may have provenance."""
+    if "dimension" in schema:  # a quantity, whose schema includes provenance
         return schema
     form = _form(schema)
-    if "$ref" in form:  # a table, which has the keys for it
+    if "$ref" in form:  # a table, which has the keys for provenance
         return form
     one = [_form(form["items"])] if form.pop("one_or_several", False) else []
     words = {key: form.pop(key) for key in WORDS if key in form}
@@ -47,8 +47,8 @@ def _value(schema: dict[str, Any]) -> dict[str, Any]:
 
 
 def _form(schema: dict[str, Any]) -> dict[str, Any]:
-    """Return a schema whose inner values may have their provenance, and whose alternatives may both
-    apply: "guided" is a text, as a quantity is.
+    """Return a schema whose inner values may have provenance, and whose alternatives may both
+    apply: "guided" is a text, and so may be a quantity.
     """
     out = dict(schema)
     alternatives = [*out.pop("oneOf", []), *out.pop("anyOf", [])]
@@ -61,5 +61,5 @@ def _form(schema: dict[str, Any]) -> dict[str, Any]:
         if isinstance(out.get(key), dict):
             out[key] = _value(out[key])
     if isinstance(out.get("additionalProperties"), dict) and "properties" not in out:
-        out["properties"] = PROVENANCE_PROPERTIES  # of all values of a table with names
+        out["properties"] = PROVENANCE_PROPERTIES  # provenance of the whole table of named values
     return out

@@ -1,4 +1,4 @@
-"""The study file's form: a landing as a drop, and ground loads by rule."""
+"""Keys of a landing as a drop, and of ground loads by rule, in a study file."""
 
 from typing import Annotated, Literal
 
@@ -54,7 +54,7 @@ class GasTable(StrictTable):
 
 
 class SpringTable(StrictTable):
-    """A leaf or a coil instead of gas."""
+    """A leaf or coil spring instead of gas."""
 
     stiffness: Stiffness
     """Force per stroke."""
@@ -104,11 +104,11 @@ class TyreTable(StrictTable):
     force: Annotated[list[Force], Field(max_length=1000)] | None = None
     """Forces at these deflections, from 0 on."""
     at: tuple[Positive, Annotated[Force, POSITIVE]] | None = None
-    """A deflection and the force there, of a power law."""
+    """A deflection and the force at it, for a power law."""
     exponent: Annotated[Number, Field(ge=0.5, le=3.0)] = 1.0
     """Exponent of the power law."""
     damping: Annotated[Number, Field(ge=0.0, le=100.0)] = 0.0
-    """By which part the force grows with the speed of deflection, s/m."""
+    """Relative increase of the force per speed of deflection, s/m."""
 
     @model_validator(mode="after")
     def _one_law(self) -> "TyreTable":
@@ -125,7 +125,7 @@ class TyreTable(StrictTable):
 
 
 class WheelTable(StrictTable):
-    """A wheel that does not turn before it touches: spin-up and spring-back."""
+    """A wheel that does not rotate before touch-down, for spin-up and spring-back."""
 
     inertia: Annotated[Inertia, POSITIVE]
     """Moment of inertia about the axle."""
@@ -140,7 +140,7 @@ class WheelTable(StrictTable):
     mass: Mass | None = None
     """Mass that moves fore and aft with the axle. Default: the unsprung mass of the case."""
     damping: Annotated[Number, Field(ge=0.0, lt=1.0)] = 0.0
-    """Damping of that bending, ratio to critical."""
+    """Damping of the fore-and-aft bending, relative to critical damping."""
 
 
 Forward = Annotated[
@@ -157,14 +157,14 @@ class AtWheel(CaseTable):
     at: JointOrPoint3
     """Joint at the axle, where the forces act; in space a joint or [x, y, z] as drawn."""
     forward: Forward = "left"
-    """Direction of travel: in a plane "left" or "right", with gravity downwards; in space
-    [x, y, z], of which the level part counts."""
+    """Direction of travel: in a plane "left" or "right", with gravity downwards; in space [x, y,
+    z], of which the horizontal part counts."""
     position: Coordinates | None = None
-    """Position of the drives, of a strut extended; as in a static case."""
+    """Position of the drives, with a strut extended; as in a static case."""
 
     @property
     def joint(self) -> str:
-        """The joint at the axle, of a mechanism in a plane."""
+        """The joint at the axle, for a planar mechanism."""
         assert isinstance(self.at, str)
         return self.at
 
@@ -221,7 +221,7 @@ Side = Literal["left", "right", "inboard", "outboard"]
 
 
 class FactorTable(StrictTable):
-    """A load on a wheel as parts of a reference load, by the user."""
+    """A load on a wheel as multiples of a reference load, defined by the user."""
 
     name: str = ""
     """What replaces the * in the case's name; not needed for a single load."""
@@ -260,13 +260,15 @@ class SpinUpTable(StrictTable):
     radius: Positive
     """Rolling radius of the loaded tyre."""
     speed: Annotated[Velocity, POSITIVE]
-    """Speed over ground, less that of the tyre by pre-rotation."""
+    """Speed over ground minus the speed of the tyre by pre-rotation."""
     time: Annotated[Duration, POSITIVE]
     """Time from touch-down to the largest vertical reaction."""
 
 
 class GroundCase(AtWheel):
-    """Loads on a wheel as parts of a reference load, by 14 CFR or by the user; the leg at rest."""
+    """Loads on a wheel as multiples of a reference load, by 14 CFR or by the user, with the leg at
+    rest.
+    """
 
     kind: Literal["ground"]
     """Kind of case."""
@@ -292,14 +294,14 @@ class GroundCase(AtWheel):
     factors: Annotated[list[FactorTable], Field(max_length=100), ONE_OR_SEVERAL] = []
     """Other loads: one table, or several `[[case."NAME *".factors]]` with names."""
     reference: Annotated[Force, POSITIVE] | None = None
-    """The largest vertical reaction (25.473, 25.479, 23.479), the static load (23.499), or that to
-    which `factors` refer. Give either `reference` or, unless it is a static load, `drop`."""
+    """The largest vertical reaction (25.473, 25.479, 23.479), the static load (23.499), or the load
+    to which `factors` refer. Give either `reference` or, unless it is a static load, `drop`."""
     drop: str | None = None
-    """A case of kind "drop", whose largest vertical reaction is the reference, with its strut as at
-    that instant; for 25.479-drift at 75 % of its stroke then."""
+    """A case of kind "drop". Its largest vertical reaction is the reference, and the strut has its
+    stroke at that instant; for 25.479-drift, 75 % of that stroke."""
     leg: Literal["left", "right", "nose"] | None = None
-    """Where the leg is on the aircraft, which tells inboard from outboard. Default: left; nose for
-    23.499."""
+    """Position of the leg on the aircraft, which distinguishes inboard from outboard. Default:
+    left; nose for 23.499."""
     toward: Side | None = None
     """The side to which a side load acts. Default: inboard; left for a nose wheel."""
     radius: Positive | None = None
@@ -308,8 +310,8 @@ class GroundCase(AtWheel):
     hold: Annotated[list[str], Field(min_length=1)] | None = None
     """Names of the drives, sliders and stops that hold the leg. Default: the drives."""
     spin_up: SpinUpTable | None = None
-    """For the drag of spin-up and spring-back. Default: the wheel of the drop; without either, the
-    most that is required, 0.8 of the vertical reaction."""
+    """Data for the drag of spin-up and spring-back. Default: the wheel of the drop; without either,
+    the largest drag that is required, 0.8 of the vertical reaction."""
 
     @property
     def stands(self) -> Literal["left", "right", "nose"]:
@@ -318,7 +320,7 @@ class GroundCase(AtWheel):
 
     @property
     def rules(self) -> tuple[str, ...]:
-        """The built-in rules of the case or, with a part, of its cases."""
+        """The built-in rules of the case or, with a part, of all its cases."""
         if self.part is not None:
             return RULES_OF_PART[self.part, "nose" if self.stands == "nose" else "main"]
         return (self.rule,) if self.rule is not None else ()

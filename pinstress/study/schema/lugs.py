@@ -1,4 +1,4 @@
-"""The study file's form: the lugs in which pins sit, and what all of them have in common."""
+"""Keys of the lugs in which pins sit in a study file, and their common defaults."""
 
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal
@@ -37,7 +37,7 @@ class BushingTable(StrictTable):
     """Name of a `[material]`."""
     interference: NotNegativeLength | None = None
     """Outer diameter of the bushing minus the diameter of the hole into which it was pressed.
-    Default: the middle of the `fit` or of `range.interference`; else it is bonded."""
+    Default: the middle of the `fit` or of `range.interference`; otherwise it is bonded."""
     fit: Fit | None = None
     """Tolerance classes of hole and bushing by ISO 286-1, as "H7/s6", at the diameter of the hole.
     Not with `interference`."""
@@ -54,15 +54,18 @@ class ShankTable(StrictTable):
     """"round": a round head and a shank of parallel sides; "tapered": a round head whose sides run
     to the shank as tangents; "square": a plate with a straight end."""
     width: PositiveLength | None = None
-    """Width of the shank where it is held, of a square plate throughout. Default: the outer
-    diameter."""
+    """Width of the shank where it is held; for a square plate, its width throughout. Default: the
+    outer diameter."""
     length: PositiveLength | None = None
-    """From the centre of the bore to where the shank is held. Default: 2 outer diameters."""
+    """Distance from the centre of the bore to where the shank is held. Default: 2 outer
+    diameters."""
     end: PositiveLength | None = None
-    """From the centre of the bore to the end of the head. Default: half of the outer diameter."""
+    """Distance from the centre of the bore to the end of the head. Default: half of the outer
+    diameter."""
     angle: Angle | None = None
-    """Direction of the shank from the bore, from the pin's x axis. Default: towards the middle of
-    the body's other joints; where no mechanism gives it, against the largest force on the lug."""
+    """Direction from the bore to the shank, as an angle from the pin's x axis. Default: towards the
+    middle of the body's other joints; without a mechanism that gives it, against the largest force
+    on the lug."""
     toward: Name | None = None
     """Name of the joint, of a linkage in the plane, towards which the shank points. Not with
     `angle`."""
@@ -95,8 +98,9 @@ class LugFactorsTable(StrictTable):
     k_try: Times | None = None
     """Transverse load, yield, by Melcon and Hoblit."""
     gamma: PositiveShare | None = None
-    """Of the middle lug in double shear: the part of a quarter of its thickness that is left of the
-    arm of the pin's bending moment, as pressure peaks at its faces, by Melcon and Hoblit."""
+    """For the middle lug in double shear: the fraction of a quarter of its thickness that remains
+    in the arm of the pin's bending moment, since pressure peaks at the faces, by Melcon and
+    Hoblit."""
     bearing: Annotated[Number, Field(ge=1.0)] | None = None
     """Special factor on the ultimate load in bearing, instead of a lower fitting factor: 14 CFR
     25.623, for a clearance that pounds or vibrates; 25.693, 3.33 in joints of control systems, 2 in
@@ -104,18 +108,18 @@ class LugFactorsTable(StrictTable):
 
 
 class LugRangeTable(StrictTable):
-    """Between what values something of a lug may lie: [lower, upper]."""
+    """Ranges of uncertain properties of a lug: [lower, upper]."""
 
     clearance: tuple[Length, Length] | None = None
-    """Default: that of the `fit`; else none, and twice the given (0.002 of the diameter where none
-    is given)."""
+    """Range of the clearance. Default: that of the `fit`; otherwise from zero to twice the given
+    clearance (0.002 of the diameter if none is given)."""
     stiffness: tuple[Times, Times] | None = None
-    """Times that of the lug as described. Default: [0.5, 2]."""
+    """Range of the stiffness, relative to that of the lug as described. Default: [0.5, 2]."""
     tilt: tuple[Tilt, Tilt] | None = None
-    """Default: ["free", "guided"]."""
+    """Range of the resistance to tilting. Default: ["free", "guided"]."""
     interference: tuple[PositiveLength, PositiveLength] | None = None
-    """Of the bushing; its stress and that of the lug are the largest over it. Default: that of the
-    bushing's `fit`."""
+    """Range of the interference of the bushing; stresses of bushing and lug are the largest over
+    it. Default: that of the bushing's `fit`."""
 
 
 class LugTable(StrictTable):
@@ -134,11 +138,11 @@ class LugTable(StrictTable):
     """Tolerance classes of bore and pin by ISO 286-1, as "H7/f7", at the diameter of the band. Not
     with `clearance`."""
     edge_radius: NotNegativeLength = 0.0
-    """Radius of the edges of the bore. 0 is sharp, where pressure has no bound: then
-    results have no peak of pressure there."""
+    """Radius of the edges of the bore. 0 is a sharp edge, where pressure is unbounded, so results
+    give no peak pressure there."""
     tilt: Tilt | None = None
     """Resistance of the link to tilting of its eye: "guided" (rigid), "free", or a stiffness.
-    Default: the bending stiffness of the lug as far as its `shank.length`; without one, of an eye
+    Default: the bending stiffness of the lug over its `shank.length`; without one, that of an eye
     clamped at a distance of 0.8 outer diameters."""
     bushing: BushingTable | None = None
     """A bushing in the eye."""
@@ -159,7 +163,8 @@ class LugTable(StrictTable):
     factors: LugFactorsTable = LugFactorsTable()
     """Efficiency factors of the lug, which only figures give, and its special factor in bearing."""
     range: LugRangeTable = LugRangeTable()
-    """What is not known of the lug, for the range of the maximum over the joint (`joint.range`)."""
+    """Ranges of uncertain properties of the lug, for the range of the maximum over the joint
+    (`joint.range`)."""
 
     _one_clearance = at_most_one("fit", "clearance")
 
@@ -168,7 +173,7 @@ def with_lug_defaults(raw: dict[str, Any]) -> dict[str, Any]:
     """Return a study's content in which every lug has the keys of `lug_defaults` that it omits, and
     pins that are not clamped have a lug at every connection.
 
-    raw: the content, not validated but for `lug_defaults`.
+    raw: the content, of which only `lug_defaults` is validated.
     """
     defaults, pins, cases = raw.get("lug_defaults"), raw.get("pin"), raw.get("case")
     if not isinstance(defaults, dict) or not isinstance(pins, dict):
@@ -194,7 +199,7 @@ def _in_lugs(pin: dict[str, Any], defaults: dict[str, Any], clamped: bool) -> di
 
 
 def _connections(pin: dict[str, Any]) -> Iterator[str]:
-    """Yield the connections of a pin that is not validated, in their order along it."""
+    """Yield the connections of a pin that is not validated, in their order along the pin."""
     segments, bands = pin.get("profile"), pin.get("band")
     for segment in segments if isinstance(segments, list) else ():
         if isinstance(segment, dict) and isinstance(segment.get("connection"), str):
@@ -205,10 +210,10 @@ def _connections(pin: dict[str, Any]) -> Iterator[str]:
 
 
 def _completed(lug: Any, defaults: dict[str, Any]) -> Any:
-    """Return a lug with the keys of the defaults that it omits, those of its own tables as well.
+    """Return a lug with the keys of the defaults that it omits, including keys of its inner tables.
 
-    Its own fit or clearance replaces what the defaults say of clearance, and likewise its bushing's
-    what they say of interference.
+    Its own fit or clearance replaces the clearance of the defaults, and the fit or interference of
+    its own bushing that of the defaults.
     """
     if not isinstance(lug, dict):
         return lug
@@ -226,9 +231,10 @@ def _completed(lug: Any, defaults: dict[str, Any]) -> Any:
 def _without_replaced(
     defaults: dict[str, Any], lug: dict[str, Any], key: str, table: str = ""
 ) -> dict[str, Any]:
-    """Return the defaults without those of a fit that a lug states itself.
+    """Return the defaults without the fit, and without the values that follow from a fit, that a
+    lug states itself.
 
-    key: what the fit gives. table: in which both are.
+    key: the value that a fit gives. table: the inner table that has both keys.
     """
     given, common = (x[table] if table else x for x in (lug, defaults))
     if "fit" in given or key in given:

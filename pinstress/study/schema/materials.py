@@ -1,4 +1,4 @@
-"""The study file's form: materials."""
+"""Keys of materials in a study file."""
 
 from itertools import pairwise
 from typing import Annotated
@@ -18,7 +18,7 @@ from pinstress.study.schema.types import (
 
 
 class HardenedTable(StrictTable):
-    """A hardened outer surface, by whose depth yield is judged."""
+    """A hardened outer surface, whose yield strength depends on the depth."""
 
     surface: Stress
     """Yield strength of the case: the least from the surface down to `depth`."""
@@ -40,12 +40,12 @@ class HardenedTable(StrictTable):
 
 
 class MaterialRangeTable(StrictTable):
-    """Between what values a strength may lie: [lower, upper]."""
+    """Ranges of uncertain strengths: [lower, upper]."""
 
     yield_strength: tuple[Stress, Stress] | None = None
-    """The outcome of each pin in yield is decided over it; limit loads and checks by formula take
-    the worse end. The stresses of `hardening` change in the same proportion. Default: the
-    `yield_strength` alone."""
+    """Range of the yield strength. The outcome of each pin against yield is decided over the range;
+    limit loads and checks by formula use the worse end. The stresses of `hardening` change in the
+    same proportion. Default: the `yield_strength` alone."""
 
 
 class MaterialTable(StrictTable):
@@ -59,7 +59,8 @@ class MaterialTable(StrictTable):
     """Density, for the weight and inertia of the pin. Default: no weight."""
     thermal_expansion: ThermalExpansion | None = None
     """Mean coefficient of thermal expansion between the reference temperature and those of the
-    cases, which a case with a `temperature` needs of pins in lugs, of these and their bushings."""
+    cases, which a case with a `temperature` needs for pins in lugs, for the lugs and for their
+    bushings."""
     yield_strength: Stress | None = None
     """Yield strength. Without it no safety factors are computed."""
     hardened: HardenedTable | None = None
@@ -86,7 +87,7 @@ class MaterialTable(StrictTable):
     loads; the stress stays constant after the last. Default: perfectly plastic."""
 
     range: MaterialRangeTable = MaterialRangeTable()
-    """What is not known of the material."""
+    """Ranges of uncertain properties of the material."""
 
     @model_validator(mode="after")
     def _within_range(self) -> "MaterialTable":

@@ -1,4 +1,4 @@
-"""The study file's form: the mechanism."""
+"""Keys of a planar mechanism in a study file."""
 
 from typing import Annotated, Any, Literal
 
@@ -117,7 +117,7 @@ class JointTable(StrictTable):
 
     @property
     def origins(self) -> tuple[str, ...]:
-        """The joints from which its position is measured."""
+        """The joints from which the position of the joint is measured."""
         if isinstance(self.at, Polar):
             return (self.at.origin,)
         return self.at.origins if isinstance(self.at, Dyad) else ()
@@ -139,7 +139,7 @@ class BarTable(StrictTable):
 
 
 def require_single_mass(mass: object, weight: object, bar: object, centre: object) -> None:
-    """Raise ArgumentError where two things give the mass of a body, or its centre."""
+    """Raise ArgumentError if two keys give the mass of a body, or two its centre."""
     if [mass, weight, bar].count(None) < 2:
         raise ArgumentError("give one of weight, mass or bar", "give-one")
     if bar is not None and centre is not None:
@@ -162,7 +162,8 @@ class BodyTable(StrictTable):
     """A uniform straight bar, which determines mass, centre and inertia."""
     centre: Point | None = None
     """Centre of mass in the drawn position. Default: midway between the joints, if there are two;
-    at the only joint of a gear, a point mass, and what slides without rotating (inertia = 0)."""
+    at the only joint of a gear, of a point mass, or of a body that slides without rotating (inertia
+    = 0)."""
     inertia: Inertia | None = None
     """Moment of inertia about the centre of mass. Default: that of the bar; without a bar the body
     is a particle, which has one connection or slides on the ground. Static cases need none."""
@@ -259,8 +260,8 @@ class StopTable(StrictTable):
 
 
 class LinkStiffnessTable(StrictTable):
-    """The section of a link, for its stiffness where links share loads out of the plane; of a `bar`
-    it is that of the bar.
+    """The section of a link, for its stiffness where links share loads out of the plane. A `bar`
+    has its own section by default.
     """
 
     diameter: PositiveLength | None = None
@@ -272,11 +273,11 @@ class LinkStiffnessTable(StrictTable):
     youngs_modulus: Annotated[Stress, Field(json_schema_extra={"default": "210 GPa"})] = 210e9
     """Young's modulus; only ratios between links matter."""
     stiffness: Annotated[Annotated[float, Quantity("stiffness")], POSITIVE] | None = None
-    """For a link that is no bar, the force across it at its joint farthest from its centre of mass
-    over the deflection there, the link being held at the centre. It then yields like the round bar
-    of this stiffness."""
+    """For a link that is not a bar: the force across it at the joint farthest from its centre of
+    mass, divided by the deflection there, with the link held at the centre of mass. The link
+    deflects like the round bar of this stiffness."""
     rigid: Switch = False
-    """Whether it does not yield beside the other links."""
+    """Whether the link is rigid compared with the others."""
 
     @model_validator(mode="after")
     def _one_section(self) -> "LinkStiffnessTable":
@@ -311,9 +312,9 @@ class MechanismTable(StrictTable):
     """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom; none
     for a structure, and where `hold` names the locks of every case."""
     gear: dict[str, GearTable] = {}
-    """Pairs of gears by name, which is also that of the force between their teeth."""
+    """Pairs of gears by name, which is also the name of the force between their teeth."""
     rack: dict[str, RackTable] = {}
-    """Racks with their gears by name, which is also that of the force between their teeth."""
+    """Racks with their gears by name, which is also the name of the force between their teeth."""
     point: dict[str, PointTable] = {}
     """Points whose paths are of interest, by name."""
     stop: dict[str, StopTable] = {}
@@ -325,9 +326,9 @@ class MechanismTable(StrictTable):
     sharing: list[SharingTable] = []
     """Redundant connections, and how they share their load."""
     fit_within: Annotated[Length, POSITIVE] | None = None
-    """How far joints may be moved for the loops of redundant links to close in motion: the
-    tolerance of the drawing. The sum of squares of the movements is least. Default: joints stay as
-    drawn, and links that do not fit are refused."""
+    """Distance by which joints may be moved so that the loops of redundant links close in motion:
+    the tolerance of the drawing. The sum of squares of the movements is minimised. Default: joints
+    stay as drawn, and links that do not fit are rejected."""
     link_stiffness: dict[str, LinkStiffnessTable] = {}
-    """Sections of links, by body, by which they share loads out of the plane. Rows of a case with
-    such loads have a range over the stiffness of those of which none is stated."""
+    """Sections of links, by body. By their stiffness, links share loads out of the plane. Rows of a
+    case with such loads have a range over the stiffness of links without a stated section."""

@@ -1,4 +1,4 @@
-"""The study file's form: pins."""
+"""Keys of pins in a study file."""
 
 from itertools import groupby
 from math import inf
@@ -47,7 +47,7 @@ class SegmentTable(StrictTable):
     """Radius to which the edge of the outer surface at the far end is rounded; [a, b] at its start
     and at its far end."""
     bore_radius: NotNegativeAtEnds = 0.0
-    """The same of the corners of the bore, inner ones too."""
+    """The same for the corners of the bore, including inner corners."""
     hardened: HardenedTable | None = None
     """Hardened outer surface of this segment. Default: that of the pin or its material."""
 
@@ -72,12 +72,12 @@ class SegmentTable(StrictTable):
 
     @property
     def diameters(self) -> tuple[float, float]:
-        """The diameters at its start and far end, m."""
+        """The diameters at the start and the far end of the segment, m."""
         return self.diameter if isinstance(self.diameter, tuple) else (self.diameter,) * 2
 
     @property
     def bores(self) -> tuple[float, float]:
-        """The bores at its start and far end, m."""
+        """The bores at the start and the far end of the segment, m."""
         return self.bore if isinstance(self.bore, tuple) else (self.bore,) * 2
 
 
@@ -144,7 +144,7 @@ class SlotTable(StrictTable):
     """A keyway or slot along the pin."""
 
     z: tuple[Length, Length]
-    """Start and end along the pin, with the round ends; open where that is not inside the pin."""
+    """Start and end along the pin, including the round ends; an end outside the pin is open."""
     width: PositiveLength
     """Width across the pin."""
     depth: PositiveLength | None = None
@@ -158,7 +158,7 @@ class SlotTable(StrictTable):
 
 
 class PassageTable(BottomTable):
-    """A hole along the pin, on its axis or beside it."""
+    """A hole along the pin, on its axis or parallel to it."""
 
     end: Literal["start", "end"] = "start"
     """End face from which it is drilled."""
@@ -170,7 +170,7 @@ class BandTable(StrictTable):
     """A band of a pin from a file. Give either `z` or `surface`."""
 
     z: tuple[Length, Length] | None = None
-    """The outermost surface between these two z of the file."""
+    """The outermost surface between two z of the file."""
     surface: str | None = None
     """The surface of this name in the file."""
     connection: Switch = True
@@ -205,7 +205,7 @@ class PinTable(StrictTable):
     """Instead of a profile: the outline from z = 0 to the far end by its corners, [z, r] or
     [z, r, radius to which the corner is rounded], r being half the diameter."""
     bore_meridian: Corners | None = None
-    """The same of the bore. Default: solid. Only with `meridian`."""
+    """The outline of the bore in the same form. Default: solid. Only with `meridian`."""
     fillet: NotNegativeLength = 0.0
     """Radius at every inner corner of the shaft, tangent to the thinner shaft and to the shoulder
     face; 0 is sharp. Only with a profile."""
@@ -230,8 +230,8 @@ class PinTable(StrictTable):
     """Whether `lug_defaults` gives this pin a lug at every connection; it does so for no pin that
     is clamped, in a case or in all."""
     balance: str | None = None
-    """Connection whose force in cases of given forces is minus the sum of the others, and whose
-    torque about the axis likewise; such cases do not state it. For forces that scatter
+    """Connection whose force, in cases of given forces, is minus the sum of the others, and
+    likewise its torque about the axis; such cases do not state it. Useful for forces that scatter
     independently. Default: the cases state all forces."""
     hardened: HardenedTable | None = None
     """Hardened outer surface of all segments. Default: that of its material. Not with `geometry`,
@@ -240,8 +240,8 @@ class PinTable(StrictTable):
     """Whether the pin is meant to be replaced; then EN 1993-1-8, 3.13 limits bearing, bending and
     contact stress at limit load, too."""
     bending_factor: Annotated[Number, Field(gt=0.0)] | None = None
-    """Bending stress Mc/I at rupture over the ultimate strength of the material, off a figure, for
-    the code "aircraft". Default: by Cozzone, from the material's `ultimate_strain`."""
+    """Bending stress Mc/I at rupture over the ultimate strength of the material, read from a
+    figure, for the code "aircraft". Default: by Cozzone, from the material's `ultimate_strain`."""
     clamp: list[str] = []
     """Clamped surfaces: "start" and "end" (the end faces), the name or connection of a segment (its
     outer surface), "hole 1", "flat 1", "slot 1", "passage 1", or a band. Default: none; forces and
@@ -277,7 +277,7 @@ class PinTable(StrictTable):
     def diameters(self) -> tuple[float, ...]:
         """The diameters of the segments or corners in order, m; empty for a pin from a file.
 
-        Each is listed once where equal ones follow each other.
+        Successive equal diameters are listed once.
         """
         of_segments = (d for s in self.profile or () for d in s.diameters)
         of_corners = (2.0 * corner[1] for corner in self.meridian or ())
@@ -302,11 +302,13 @@ class PinTable(StrictTable):
 
     @property
     def ears(self) -> dict[str, str]:
-        """The name of the other ear, by connection, of links that are clevises."""
+        """The name of the second ear of each link that is a clevis, by the link's connection."""
         return {s.ear_of: s.name for s in self.profile or () if s.ear_of and s.name}
 
     @property
-    def like_the_other(self) -> dict[str, str]:
-        """The connection, by the name of the other ear, where one lug is that of both ears."""
+    def shared_lugs(self) -> dict[str, str]:
+        """The connection of the link, by the name of its second ear, if both ears share one lug
+        table.
+        """
         alike = ((ear, name) for name, ear in self.ears.items() if name in self.lug)
         return {ear: name for ear, name in alike if self.lug[ear] is self.lug[name]}

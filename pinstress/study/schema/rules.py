@@ -1,4 +1,4 @@
-"""The study file's form: rules for which keys of a table go together."""
+"""Rules on keys of a table of the study file that belong together or exclude each other."""
 
 from collections.abc import Callable
 from typing import Any
@@ -10,19 +10,19 @@ from pinstress.study.schema.types import StrictTable
 
 
 def require_one(what: str, *given: Any) -> None:
-    """Raise ArgumentError unless exactly one is given."""
+    """Raise ArgumentError unless exactly one value is given."""
     if sum(x is not None for x in given) != 1:
         raise ArgumentError(f"give {what}", "give-one")
 
 
 def require_both(what: str, one: Any, other: Any) -> None:
-    """Raise ArgumentError unless both are given, or neither."""
+    """Raise ArgumentError unless both values are given, or neither."""
     if (one is None) != (other is None):
         raise ArgumentError(f"{what} must be given together", "give-both")
 
 
 def exactly_one(what: str, *keys: str) -> Any:
-    """Return the validator of a table in which one of some keys must be given, and no other."""
+    """Return the validator of a table in which exactly one of some keys must be given."""
     return rule(lambda table: require_one(what, *(getattr(table, key) for key in keys)))
 
 
@@ -43,7 +43,7 @@ def at_most_one(one: str, other: str) -> Any:
 
 
 def not_zero(*keys: str) -> Any:
-    """Return the validator of a table in which vectors, where they are given, have a direction."""
+    """Return the validator of a table in which vectors must not be zero, if they are given."""
 
     def check(table: StrictTable) -> None:
         for key in keys:
@@ -55,7 +55,7 @@ def not_zero(*keys: str) -> Any:
 
 
 def rule(check: Callable[[StrictTable], None]) -> Any:
-    """Return the validator of a whole table that raises what `check` raises."""
+    """Return the validator of a whole table that raises the errors of `check`."""
 
     def checked(table: StrictTable) -> StrictTable:
         check(table)

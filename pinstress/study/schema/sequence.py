@@ -1,4 +1,4 @@
-"""The study file's form: cases one after the other."""
+"""Keys of sequences of cases in a study file."""
 
 from typing import Annotated
 
@@ -11,11 +11,11 @@ class StepTable(StrictTable):
     """One case of a sequence."""
 
     case: str
-    """A case of the study, also one of a table."""
+    """A case of the study, including cases of a table."""
     repeat: Annotated[Whole, Field(ge=1, le=10_000)] = 1
-    """How often it occurs here."""
+    """Number of repetitions in this step."""
     duration: Duration | None = None
-    """How long a case at rest lasts; a motion has its own time."""
+    """Duration of a case at rest; a motion has its own time."""
 
 
 class SequenceTable(StrictTable):

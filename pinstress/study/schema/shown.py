@@ -1,4 +1,4 @@
-"""Names and values of an input as messages show them: always short."""
+"""Names and values of an input as messages show them: always shortened."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from itertools import islice
 
 MAX_TEXT_LENGTH = 80  # characters of a name or value in a message
 MAX_COMPARED_NAMES = 1000  # names compared for a hint, which must be quick
-MAX_HINT_CANDIDATES = 5  # for a hint, by their letters
-MIN_PART_LETTERS = 3  # letters, at least, of a name that is part of another
+MAX_HINT_CANDIDATES = 5  # similar names that are examined for a hint
+MIN_PART_LETTERS = 3  # least length of a name that matches as a part of another
 MAX_LISTED_NAMES = 20  # names that a message lists
 ELLIPSIS = "…"
 
@@ -25,14 +25,14 @@ def cut(text: str, most: int = MAX_TEXT_LENGTH) -> str:
 
 
 def printable(text: str) -> str:
-    """Return the text with its unprintable characters as Python escapes them: raw, they could
-    reorder a message or act on a terminal.
+    """Return the text with its unprintable characters escaped as in Python. Unescaped, they could
+    reorder a message or control a terminal.
     """
     return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
 def as_text(value: object) -> str:
-    """Return a value as Python writes it, shortened; also an integer too long for Python to
+    """Return a value as Python writes it, shortened; even an integer that is too long for Python to
     write.
     """
     if isinstance(value, str):
@@ -43,15 +43,15 @@ def as_text(value: object) -> str:
 
 
 def listed(names: Iterable[object]) -> str:
-    """Return names one after the other: the first few, and how many more there are."""
+    """Return names separated by commas: the first few, and the number of the others."""
     names = list(names)
     more = f" and {len(names) - MAX_LISTED_NAMES:,} more" if len(names) > MAX_LISTED_NAMES else ""
     return (", ".join(cut(str(name)) for name in names[:MAX_LISTED_NAMES]) or "none") + more
 
 
 def nearest(name: object, known: Iterable[str], cutoff: float = 0.6) -> str | None:
-    """Return the known name that is most like this one, None if all merely have some letters in
-    common.
+    """Return the known name that is most similar to a name; None if they merely have some letters
+    in common.
 
     A name that differs only in capitals comes first.
     """
@@ -64,7 +64,7 @@ def nearest(name: object, known: Iterable[str], cutoff: float = 0.6) -> str | No
 
 
 def _misspelt(a: str, b: str) -> bool:
-    """Return whether one is part of the other, or at most a third of the letters are wrong,
+    """Return whether one text is a part of the other, or at most a third of the letters are wrong,
     missing, added or swapped with the next.
     """
     if min(len(a), len(b)) >= MIN_PART_LETTERS and (a in b or b in a):
@@ -73,7 +73,9 @@ def _misspelt(a: str, b: str) -> bool:
 
 
 def _mistakes(a: str, b: str) -> int:
-    """Return the number of such mistakes (the optimal string alignment distance)."""
+    """Return the number of wrong, missing, added or swapped letters (the optimal string alignment
+    distance).
+    """
     before: list[int] = []
     row = list(range(len(b) + 1))
     for i, x in enumerate(a, 1):
@@ -87,7 +89,7 @@ def _mistakes(a: str, b: str) -> int:
 
 
 def near(name: object, known: Iterable[str]) -> str:
-    """Return a hint for a name that is not known."""
+    """Return a hint for an unknown name."""
     known = list(known)
     suggestion = nearest(name, known)
     return f"did you mean {suggestion!r}?" if suggestion else f"there are {listed(known)}"

@@ -1,4 +1,4 @@
-"""The study file's form: what `pinstress size` may do to a pin and the eyes about it."""
+"""Keys of the limits for `pinstress size` in a study file."""
 
 from typing import Annotated, Literal
 
@@ -31,6 +31,6 @@ class SizeTable(StrictTable):
     """Least ratio of the outer diameter of an eye to its bore; an eye that has less in the study
     keeps its own ratio."""
     series: Series | None = None
-    """Standard diameters, to which those of a pin are rounded up: preferred numbers of ISO 3 in the
-    unit in which the study writes the diameter ("R5", "R10", "R20" or "R40"), or a list of
+    """Standard diameters to which the diameters of a pin are rounded up: preferred numbers of ISO 3
+    in the unit in which the study writes the diameter ("R5", "R10", "R20" or "R40"), or a list of
     diameters. Default: any diameter."""

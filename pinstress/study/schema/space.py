@@ -1,4 +1,4 @@
-"""The study file's form: a mechanism in space."""
+"""Keys of a mechanism in space in a study file."""
 
 import math
 from typing import Annotated, Any, Literal
@@ -36,9 +36,9 @@ from pinstress.study.schema.types import (
     Weight,
 )
 
-# Nearer to each other, the axes of a universal joint do not say which second axis was meant.
+# Axes of a universal joint closer to each other than this do not show which second axis was meant.
 MAX_COSINE_OF_SKEW = math.cos(math.radians(1.0))
-PLANAR_PARTS = {  # of a mechanism, and what stands for them in space
+PLANAR_PARTS = {  # parts of a planar mechanism, and their replacement in space
     "slider": 'use a joint of kind = "prismatic" between its two bodies',
     "point": "remove it: bodies.csv has the motion of every body",
 }
@@ -151,7 +151,9 @@ def _require_axes(joint: SpaceJointTable) -> None:
 
 
 def _depth_of(what: str) -> Any:
-    """Return the validator of a rectangular section, which must say where its depth is."""
+    """Return the validator of a rectangular section, which must state the direction of its
+    depth.
+    """
 
     def check(table: Any) -> None:
         section, along = table.section, table.depth_along
@@ -175,8 +177,8 @@ class SpaceBarTable(BarTable):
 
 
 class SpaceLinkStiffnessTable(LinkStiffnessTable):
-    """The section of a link, for its stiffness where joints are redundant; of a `bar` it is that of
-    the bar.
+    """The section of a link, for its stiffness where joints are redundant. A `bar` has its own
+    section by default.
     """
 
     section: tuple[PositiveLength, PositiveLength] | None = None
@@ -204,7 +206,7 @@ class SpaceBodyTable(StrictTable):
     inertia: Annotated[list[SignedInertia], Field(min_length=3, max_length=6)] | None = None
     """Inertia about the centre of mass along the world's axes as drawn: [xx, yy, zz] or [xx, yy,
     zz, xy, xz, yz], the entries of the tensor, so that xy is minus the integral of x y dm. Default:
-    that of the bar; without a bar none, the body's mass being in its centre."""
+    that of the bar; without a bar, none: the mass is at the centre."""
     welded_to: str | None = None
     """Body, or "ground", to which it is fixed."""
 
@@ -238,7 +240,7 @@ class AngleDrive(TurningDrive):
     joint: str
     """The joint."""
     connection: str | None = None
-    """The driven one of its connections. Default: the only one that moves on the pin."""
+    """The connection that is driven. Default: the only one that moves on the pin."""
 
 
 class TravelDrive(SlidingDrive):
@@ -249,7 +251,7 @@ class TravelDrive(SlidingDrive):
     slide: str
     """The joint."""
     connection: str | None = None
-    """The driven one of its connections. Default: the only one that moves on the pin."""
+    """The connection that is driven. Default: the only one that moves on the pin."""
 
 
 class LengthDrive(SlidingDrive):
@@ -313,7 +315,7 @@ class SpaceTorsionSpringTable(TorsionLawTable):
     joint: str
     """The joint."""
     connection: str | None = None
-    """Which of its connections. Default: the only one that moves on the pin."""
+    """The connection concerned. Default: the only one that moves on the pin."""
 
 
 class SpaceStopTable(StrictTable):
@@ -327,7 +329,7 @@ class SpaceStopTable(StrictTable):
     slide: str | None = None
     """The prismatic or cylindrical joint whose travel it keeps."""
     connection: str | None = None
-    """Which of its connections. Default: the only one that moves on the pin."""
+    """The connection concerned. Default: the only one that moves on the pin."""
     between: tuple[JointOrPoint3, JointOrPoint3] | None = None
     """The points of two bodies whose distance it keeps, joints or [x, y, z]; pins are not loaded at
     these joints."""
@@ -360,9 +362,9 @@ class SpaceMechanismTable(StrictTable):
     """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom; none
     for a structure, and where `hold` names the locks of every case."""
     gear: dict[str, SpaceGearTable] = {}
-    """Pairs of gears by name, which is also that of the force between their teeth."""
+    """Pairs of gears by name, which is also the name of the force between their teeth."""
     rack: dict[str, SpaceRackTable] = {}
-    """Racks with their gears by name, which is also that of the force between their teeth."""
+    """Racks with their gears by name, which is also the name of the force between their teeth."""
     stop: dict[str, SpaceStopTable] = {}
     """Stops and locks by name."""
     spring: dict[str, SpaceSpringTable] = {}
@@ -373,9 +375,9 @@ class SpaceMechanismTable(StrictTable):
     """Redundant connections, and how they share their load (default: by the stiffness of links);
     and drives in parallel."""
     link_stiffness: dict[str, SpaceLinkStiffnessTable] = {}
-    """Sections of links, by body, by which they share what statics and `sharing` leave open. Those
-    of which none is stated are as stiff as the mean of the others, and rows have a range over each
-    of them a tenth and ten times as stiff."""
+    """Sections of links, by body. By their stiffness, links share the forces that statics and
+    `sharing` leave undetermined. A link without a stated section is as stiff as the mean of the
+    others, and rows have a range over each such link a tenth and ten times as stiff."""
 
     @model_validator(mode="before")
     @classmethod
@@ -389,12 +391,12 @@ class SpaceMechanismTable(StrictTable):
 
 
 def drivable(joint: SpaceJointTable) -> list[str]:
-    """Return the connections of a joint that move on its pin: all but the first of a floating one,
-    in whose body it is fixed.
+    """Return the connections of a joint that move on its pin: all but the first of a floating pin,
+    which is fixed in the body of that connection.
     """
     return list(joint.connections)[joint.fixed_in is None :]
 
 
 def has_motion(kind: Kind, slides: bool) -> bool:
-    """Return whether joints of a kind have a travel, or else an angle."""
+    """Return whether joints of a kind have a travel (if `slides`) or an angle."""
     return KINDS[kind].travel if slides else KINDS[kind].angle

@@ -1,4 +1,4 @@
-"""The study file's form: every table and key, with its unit, domain and description."""
+"""Tables of a study file, with the unit, domain and description of every key."""
 
 import datetime
 from typing import Annotated, Any, Literal
@@ -43,7 +43,9 @@ from pinstress.study.schema.vary import ReliabilityTable, VaryTable
 
 
 def _plane_or_space(value: object) -> str:
-    """The tag of a mechanism by its dimension; where that is neither 2 nor 3, by its points."""
+    """The tag of a mechanism by its dimension; if that is neither 2 nor 3, by the coordinates of
+    its points.
+    """
     dimension = value.get("dimension", 2) if isinstance(value, dict) else 2
     if not isinstance(value, dict) or dimension in (2, 3):
         return "<space>" if dimension == 3 else "<plane>"
@@ -62,14 +64,14 @@ AnyCase = GivenCase | MotionCase | StaticCase | InstantCase | DropCase | GroundC
 
 
 class PartialFactorsTable(StrictTable):
-    """Partial factors of EN 1993-1-8, as a national annex has them."""
+    """Partial factors of EN 1993-1-8, as a national annex states them."""
 
     M0: Annotated[Number, Field(ge=0.5)] = RECOMMENDED.M0
-    """Of the resistance of cross-sections: bearing and bending of pins."""
+    """Factor for the resistance of cross-sections: bearing and bending of pins."""
     M2: Annotated[Number, Field(ge=0.5)] = RECOMMENDED.M2
-    """Of shear of pins."""
+    """Factor for shear of pins."""
     M6_ser: Annotated[Number, Field(ge=0.5)] = RECOMMENDED.M6_ser
-    """Of replaceable pins at the loads of service."""
+    """Factor for replaceable pins under service loads."""
 
 
 class AnalysisTable(StrictTable):
@@ -78,10 +80,10 @@ class AnalysisTable(StrictTable):
     model: Literal["auto", "beam", "harmonic", "solid"] = "auto"
     """The model; "auto" uses the simplest that is accurate enough."""
     joints: Literal["auto", "contact", "foundation", "prescribed"] = "auto"
-    """How links load the pins: by contact with elastic lugs ("contact"), on elastic foundations in
-    them, a quick beam with a model error ("foundation"), or by prescribed clamps and load
-    distributions ("prescribed"). "auto" uses contact for the pins that have a `lug`, or the beam
-    where its error is within the tolerance and bending governs."""
+    """How links load the pins: by contact with elastic lugs ("contact"), by lugs as elastic
+    foundations of a beam, which is quick but has a model error ("foundation"), or by prescribed
+    clamps and load distributions ("prescribed"). "auto" uses contact for the pins that have a
+    `lug`, or the beam where its error is within the tolerance and bending governs."""
     goal: Literal["value", "decide"] = "value"
     """Refine until the maximum is within the tolerance ("value"), or only until it is decided
     whether the required safety factor is met ("decide", which needs a yield strength)."""
@@ -91,11 +93,11 @@ class AnalysisTable(StrictTable):
     """Distance from a stress singularity within which stress is not evaluated, as a fraction of the
     local diameter."""
     limit_load: LimitLoads = "auto"
-    """For which rows the load is found at which the pin collapses: those that yield, by a beam
-    where that decides whether they carry their loads, otherwise by an elastic-plastic solid
-    ("auto", where each has 20 s of processor time, but with `run --limit-load` as long as it
-    takes); all rows ("always") or those of some pins, by the solid, however long it takes; none
-    ("never"). Where more than "auto" is requested, lugs with a `shank` have theirs, too."""
+    """Rows for which the load is computed at which the pin collapses. "auto": those that yield, by
+    a beam if that decides whether they carry their loads, otherwise by an elastic-plastic solid;
+    each has 20 s of processor time, with `run --limit-load` no limit. "always", or a list of pins:
+    all rows, or those of these pins, by the solid, without a limit of time. "never": none. If more
+    than "auto" is requested, limit loads of lugs with a `shank` are computed, too."""
     required_safety_factor: Annotated[Number, Field(gt=0.0)] | None = None
     """Safety factor that every pin must reach: yield strength over stress under the loads of the
     study, without the factors below. A [[require]] on yield at limit load replaces it for its pins
@@ -112,12 +114,12 @@ class AnalysisTable(StrictTable):
         Annotated[Code, Tag("<one>")] | Annotated[list[Code], Field(min_length=1), Tag("<both>")],
         ONE_OR_BOTH,
     ] = "general"
-    """Which checks of strength are made of pins and lugs: textbooks and EN 1993-1-8 ("general");
-    AFFDL-TR-69-42, Melcon and Hoblit, Ekvall, Cozzone ("aircraft"); ASME BTH-1 ("lifting");
-    EN 1993-1-8, EN 1993-1-1 and ANSI/AISC 360, D5 ("civil"). A list shows them side by side."""
+    """The checks of strength for pins and lugs: textbooks and EN 1993-1-8 ("general");
+    AFFDL-TR-69-42, Melcon and Hoblit, Ekvall, Cozzone ("aircraft"); ASME BTH-1 ("lifting"); EN
+    1993-1-8, EN 1993-1-1 and ANSI/AISC 360, D5 ("civil"). A list shows them side by side."""
     design_factor: Annotated[Number, Field(ge=1.0)] | None = None
-    """Design factor N_d of ASME BTH-1 for the code "lifting"; the standard gives it by the design
-    category of the device."""
+    """Design factor N_d of ASME BTH-1, by the design category of the device, for the code
+    "lifting"."""
 
     partial_factors: PartialFactorsTable = PartialFactorsTable()
     """Partial factors of EN 1993-1-8, for checks of "general" and "civil"."""
@@ -129,14 +131,14 @@ class AnalysisTable(StrictTable):
     ] = 293.15
     """Temperature at which the dimensions, clearances and interferences of the study hold."""
     bending_moment: Literal["joint", "formula"] = "joint"
-    """Which bending moments and shear forces the checks of pins in solved joints take: those of
-    the joint model ("joint") or those of even loads on the bands ("formula"); the others are
-    listed for comparison, but the joint model's govern too where even loads leave a couple over.
-    Pins without a joint model always have the formulas'."""
+    """The bending moments and shear forces that checks of pins in solved joints use: those of the
+    joint model ("joint") or those of even loads on the bands ("formula"). The others are listed for
+    comparison, but those of the joint model also govern where even loads leave a couple unbalanced.
+    Pins without a joint model always use the formulas."""
 
     @property
     def codes(self) -> tuple[Code, ...]:
-        """The sets of checks that are made, each once."""
+        """The chosen sets of checks, each once."""
         return (self.code,) if isinstance(self.code, str) else tuple(dict.fromkeys(self.code))
 
     @model_validator(mode="after")
@@ -193,7 +195,9 @@ class PublishedTable(StrictTable):
 
 
 def _date(value: object) -> object:
-    """Return a date as it is, or as a text; pydantic takes numbers for seconds since 1970."""
+    """Return a date that is given as a date or as text. Numbers are rejected: pydantic would read
+    them as seconds since 1970.
+    """
     text = value.isoformat() if type(value) is datetime.date else value
     try:
         return datetime.date.fromisoformat(text if isinstance(text, str) else "")
@@ -212,11 +216,11 @@ class ReportTable(StrictTable):
     date: Annotated[datetime.date, BeforeValidator(_date)] | None = None
     """Date of the revision, as 2026-03-31 without quotes; also the PDF's date of creation."""
     prepared: Annotated[str, Field(max_length=100)] = ""
-    """Name of who prepared it."""
+    """Name of the person who prepared the report."""
     checked: Annotated[str, Field(max_length=100)] = ""
-    """Name of who checked it."""
+    """Name of the person who checked the report."""
     approved: Annotated[str, Field(max_length=100)] = ""
-    """Name of who approved it."""
+    """Name of the person who approved the report."""
 
 
 class StudyTable(StrictTable):
@@ -233,8 +237,8 @@ class StudyTable(StrictTable):
     """A TOML file with further `[material.NAME]`, in the study's folder; its quantities have
     units."""
     lug_defaults: LugTable | None = None
-    """What every lug has unless its own table says otherwise. With it, pins that are not clamped
-    have a lug at every connection (see `pin.NAME.lugs`)."""
+    """Keys of every lug, unless its own table states them. With this table, pins that are not
+    clamped have a lug at every connection (see `pin.NAME.lugs`)."""
     pin: dict[Name, PinTable] = {}
     """Pins by name; without pins only `pinstress loads` can be used."""
     case: Annotated[
@@ -245,8 +249,8 @@ class StudyTable(StrictTable):
         Field(min_length=1),
     ]
     """Load cases by name; each is run for the pins that it loads. A name with a * stands for
-    several, whose names replace the *: of kind "given" those in the column `case` of its table, of
-    kind "ground" the rules of its `part` and its `factors`."""
+    several cases, whose names replace the *: for kind "given" the names in the column `case` of the
+    table, for kind "ground" the rules of the `part` and the `factors`."""
     sequence: dict[Name, SequenceTable] = {}
     """Duty cycles by name: cases one after the other."""
     mechanism: AnyMechanism | None = None
@@ -265,11 +269,11 @@ class StudyTable(StrictTable):
     published: PublishedTable | None = None
     """Published values for comparison."""
     vary: VaryTable | None = None
-    """What `pinstress sweep` varies; `run` ignores it."""
+    """Numbers that `pinstress sweep` varies; `run` ignores them."""
     reliability: ReliabilityTable = ReliabilityTable()
-    """What `pinstress reliability` finds; `run` ignores it."""
+    """Settings of `pinstress reliability`; `run` ignores them."""
     size: SizeTable = SizeTable()
-    """What `pinstress size` may do; `run` ignores it."""
+    """Limits for `pinstress size`; `run` ignores them."""
     report: ReportTable = ReportTable()
     """The title block of the report."""
     assumptions: list[str] = []
@@ -283,7 +287,7 @@ class StudyTable(StrictTable):
         try:
             LugTable.model_validate(data["lug_defaults"], context=info.context)
         except ValidationError:
-            return data  # its mistakes are reported there, once
+            return data  # the errors of lug_defaults are reported once, for that table
         return with_lug_defaults(data)
 
     @field_validator("case", mode="before")

@@ -1,7 +1,7 @@
-"""Units of temperature, of differences of temperature, and of thermal expansion.
+"""Units of temperature, of temperature difference, and of thermal expansion.
 
-An absolute temperature has a zero: 20 degC is 293.15 K. A difference has none: one of 20 degC is
-20 K, as a standard deviation or a tolerance of a temperature is.
+An absolute temperature has an offset: 20 degC is 293.15 K. A difference has none: a difference of
+20 degC, such as a standard deviation or a tolerance of a temperature, is 20 K.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from pinbase.errors import ArgumentError
 from pinstress.study.schema.shown import as_text
 
 FAHRENHEIT = 5.0 / 9.0  # K
-# K of one unit, and of its zero
+# Size of one unit in K, and temperature of its zero in K
 TEMPERATURES = {
     "K": (1.0, 0.0),
     "degC": (1.0, 273.15),
@@ -33,7 +33,7 @@ EXPANSIONS = {
     "µm/(m K)": 1e-6,
     "in/in/degF": 1.0 / FAHRENHEIT,
 }
-# By dimension: the unit in which tables have it
+# By dimension: the unit of the validated tables
 THERMAL_UNITS = {"temperature": "K", "temperature difference": "K", "thermal expansion": "1/K"}
 
 
@@ -43,9 +43,9 @@ def difference_of(dimension: str) -> str:
 
 
 def thermal_si(number: float, unit: str, dimension: str, text: str) -> float:
-    """A quantity of one of the THERMAL_UNITS in SI.
+    """A quantity of one of the THERMAL_UNITS in SI units.
 
-    text: as the study has it.
+    text: the quantity as the study writes it.
 
     Raises: ArgumentError for another unit, or a temperature below absolute zero.
     """
@@ -67,14 +67,14 @@ def thermal_si(number: float, unit: str, dimension: str, text: str) -> float:
 
 
 def temperature_unit(imperial: bool) -> str:
-    """The unit in which temperatures are shown: degrees Fahrenheit for imperial units, else
+    """The unit in which temperatures are shown: degrees Fahrenheit for imperial units, otherwise
     Celsius.
     """
     return "degF" if imperial else "degC"
 
 
 def shown_temperature(kelvin: float, imperial: bool) -> str:
-    """A temperature in words, in the unit in which temperatures are shown."""
+    """A temperature as text, in the unit in which temperatures are shown."""
     unit = temperature_unit(imperial)
     one, zero = TEMPERATURES[unit]
     return f"{round((kelvin - zero) / one, 1) + 0.0:.10g} {unit}"

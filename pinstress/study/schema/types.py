@@ -1,7 +1,9 @@
-"""The study file's vocabulary: quantities with units, names, tables that know their keys.
+"""Types of the values in a study file, i.e. quantities with units, names, and tables that reject
+unknown keys.
 
-For editors and for the reference in the documentation the JSON Schema gives of every quantity its
-`dimension` and `domain`, and of every key its description: the string under it in the code.
+The JSON Schema, for editors and for the reference in the documentation, states the `dimension` and
+`domain` of every quantity and the description of every key, which is the string below the key in
+the code.
 """
 
 import ast
@@ -40,21 +42,21 @@ REMOVED_KEYS = {
 }
 PROVENANCE_HINT = 'write provenance = "given", "derived", "fitted" or "assumed", and note beside it'
 UNKNOWN_KEY_ERROR = "unknown_key"  # the type of pydantic's error
-MIN_SI_VALUE = 1.0 / MAX_SI_VALUE  # in SI: its square does not underflow
-FORBIDDEN_CHARACTERS = '/\\:*?"<>|'  # in names of files, on some system
+MIN_SI_VALUE = 1.0 / MAX_SI_VALUE  # in SI units: its square does not underflow
+FORBIDDEN_CHARACTERS = '/\\:*?"<>|'  # each is forbidden in file names of some system
 MAX_THERMAL_EXPANSION = 1e-3  # 1/K: metals have 1e-6 to 4e-5, rubber 2e-4
-MAX_NAME_LENGTH = 100  # characters as quoted: two names fit into a file name
+MAX_NAME_LENGTH = 100  # characters after URL quoting, so that two names fit into a file name
 
 
 class Probe(float):
-    """A number that is put where a quantity is, to learn the `dimension` of what reads it."""
+    """A number that is validated in place of a quantity, to learn the `dimension` of the key."""
 
     dimension = ""
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """Marks a float that is read from a number or a string with a unit, and kept in SI."""
+    """Marks a float that is read from a number or a string with a unit, and stored in SI units."""
 
     dimension: str
 
@@ -92,9 +94,9 @@ def complete_schema(schema: dict[str, Any], table: type["StrictTable"]) -> None:
 
 
 def described(table: type["StrictTable"]) -> dict[str, str]:
-    """Return the description of each key: the string under the field in the code.
+    """Return the description of each key: the string below the field in the code.
 
-    It is read only when a schema is requested, since that takes time.
+    The source is read only when a schema is requested, since that takes time.
     """
     descriptions: dict[str, str] = {}
     for one in reversed(table.__mro__):
@@ -187,7 +189,7 @@ def usable_name(name: str) -> str:
     return name
 
 
-Number = Annotated[float, Field(strict=True)]  # else pydantic reads "1" and true as 1.0
+Number = Annotated[float, Field(strict=True)]  # otherwise pydantic reads "1" and true as 1.0
 Whole = Annotated[int, Field(strict=True)]
 Side = Literal["left", "right"]
 Switch = Annotated[bool, Field(strict=True)]
@@ -231,7 +233,7 @@ Stiffness = Annotated[Annotated[float, Quantity("stiffness")], NOT_NEGATIVE]
 Damping = Annotated[Annotated[float, Quantity("damping")], NOT_NEGATIVE]
 TorsionalStiffness = Annotated[Annotated[float, Quantity("torsional stiffness")], NOT_NEGATIVE]
 TorsionalDamping = Annotated[Annotated[float, Quantity("torsional damping")], NOT_NEGATIVE]
-ANY_CASE = "*"  # in a section's name, for every case of its table
+ANY_CASE = "*"  # in the name of a section that stands for several cases
 
 
 def _usable_section(name: str) -> str:
@@ -248,13 +250,13 @@ ThermalExpansion = Annotated[
 ]
 TiltStiffness = Annotated[Annotated[float, Quantity("torsional stiffness")], POSITIVE]
 
-LENGTHS_OF_DIRECTIONS = (1e-6, 1e6)  # beyond, their squares may overflow, or pass for zero
+LENGTHS_OF_DIRECTIONS = (1e-6, 1e6)  # outside, squares may overflow or vanish
 SpaceDirection = TypeVar("SpaceDirection", bound="Sequence[float]")
 
 
 def of_usual_length(direction: SpaceDirection) -> SpaceDirection:
-    """Return a direction, whose length does not matter, divided by its largest component where that
-    is extremely small or large; a zero vector as it is.
+    """Return a direction, whose length does not matter. If it is extremely short or long, it is
+    divided by its largest component. A zero vector is returned unchanged.
     """
     low, high = LENGTHS_OF_DIRECTIONS
     largest = max(map(abs, direction))
@@ -287,7 +289,7 @@ def _coordinate(value: object) -> float | str:
     return value
 
 
-# A number or a text with a unit, whose dimension depends on what it is of.
+# A number or a text with a unit, whose dimension depends on the drive or key that it is for.
 Coordinate = Annotated[float | str, PlainValidator(_coordinate, json_schema_input_type=float | str)]
 
 
@@ -300,7 +302,7 @@ Tilt = Annotated[
 
 
 class OneOrSeveral(BeforeValidator):
-    """Reads a list of tables, of which the study may give a single one."""
+    """Reads a list of tables, which the study may abbreviate to a single table."""
 
     def __get_pydantic_json_schema__(
         self, core: core_schema.CoreSchema, handler: GetJsonSchemaHandler
@@ -316,9 +318,9 @@ ONE_OR_SEVERAL = OneOrSeveral(_listed)
 
 
 class StrictTable(BaseModel):
-    """A table of the study file: unknown keys are errors.
+    """A table of the study file, in which unknown keys are errors.
 
-    Any table may also have `provenance` and `note`; they are taken out before validation.
+    Any table may also have `provenance` and `note`; they are removed before validation.
     """
 
     model_config = ConfigDict(
@@ -338,7 +340,7 @@ class StrictTable(BaseModel):
 
 @cache
 def _keys(table: type[StrictTable]) -> list[str]:
-    """Return the keys of a table, found once: a study is read again for every design."""
+    """Return the keys of a table. They are cached, since a study is read again for every design."""
     return [field.alias or name for name, field in table.model_fields.items()]
 
 
@@ -350,8 +352,8 @@ def unknown_key(key: object, known: list[str]) -> InitErrorDetails:
 
 
 def hint_for_key(key: str, known: list[str]) -> str:
-    """Return a hint on an unknown key; called only for errors that are printed, since it takes
-    time.
+    """Return a hint for an unknown key. It takes time, so it is only requested for errors that are
+    printed.
     """
     if key in REMOVED_KEYS:
         return REMOVED_KEYS[key]

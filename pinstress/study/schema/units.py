@@ -1,4 +1,6 @@
-"""Units: numbers come in and go out in the study's units; inside everything is SI."""
+"""Conversion of numbers from a study's units to SI units, which are used everywhere inside the
+program.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,7 @@ from pinbase.errors import ArgumentError, NumberInSI
 from pinstress.study.schema.shown import as_text, in_toml, nearest
 from pinstress.study.schema.thermal_units import THERMAL_UNITS, thermal_si
 
-# dimension: its exponents of length, force and time, and an example with a unit
+# By dimension: the exponents of length, force and time, and an example with a unit
 DIMENSION_EXPONENTS: dict[str, tuple[tuple[int, int, int], str]] = {
     "length": ((1, 0, 0), "2 in"),
     "force": ((0, 1, 0), "500 lbf"),
@@ -41,7 +43,7 @@ DIMENSION_EXPONENTS: dict[str, tuple[tuple[int, int, int], str]] = {
     "thermal expansion": ((0, 0, 0), "11.7e-6 1/K"),
 }
 
-# Degrees or radians, Celsius or Fahrenheit? By dimension the choice, in words.
+# Dimensions whose numbers are ambiguous without a unit, and the units to choose from, in words
 DIMENSIONS_NEEDING_UNIT = {
     **dict.fromkeys(("angle", "angular velocity", "angular acceleration"), "degrees or radians"),
     "temperature": "degC, degF or K",
@@ -50,24 +52,26 @@ DIMENSIONS_NEEDING_UNIT = {
 }
 
 
-MINUS_SIGN = "\N{MINUS SIGN}"  # which reports print
+MINUS_SIGN = "\N{MINUS SIGN}"  # as reports print it
 DECIMAL_COMMA_PATTERN = re.compile(r"\s*[-+]?\d*,\d")
 NUMBER_PATTERN = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 MAX_QUANTITY_LENGTH = 200  # characters of a quantity with its unit
 # A power of a unit: a small number, or a ratio of two in brackets. Other numbers in a unit are
-# refused: pint would spend hours on 9^9^9.
+# rejected, since pint would spend hours on 9^9^9.
 _SMALL_NUMBER_PATTERN = r"[-+]?\d{1,2}+(?:\.\d{1,3}+)?"
 POWER_PATTERN = re.compile(
     rf"(?<=[\w)])\s*+(?:\^|\*\*)\s*+(?:{_SMALL_NUMBER_PATTERN}|\(\s*{_SMALL_NUMBER_PATTERN}\s*(?:/\s*{_SMALL_NUMBER_PATTERN}\s*)?\))"
     r"(?![\w.]|\s*(?:\^|\*\*))"
 )
 OTHER_NUMBER_PATTERN = re.compile(r"\^|\*\*|(?<!\w)(?!1\s*/)\d")
-MAX_SI_VALUE = 1e18  # in SI: beyond any modulus, and its fourth power does not overflow
+MAX_SI_VALUE = 1e18  # in SI units: above any modulus, and its fourth power does not overflow
 
 
 @dataclass(frozen=True)
 class UnitSystem:
-    """A consistent system: names and SI values of length, force, time; the name of its stress."""
+    """A consistent system of units: names and SI values of length, force and time, and the name of
+    stress.
+    """
 
     name: str
     length: str
@@ -83,26 +87,28 @@ class UnitSystem:
 
     @property
     def scales(self) -> tuple[str, float]:
-        """Name and SI value of the unit in which masses are read: the system's own, such as
-        N s^2/mm, is on no scales.
+        """Name and SI value of the unit in which messages state masses. The system's own unit, such
+        as N s^2/mm, is unusual.
         """
         name = "lb" if self.imperial else "kg"
         return name, USUAL_UNITS[name][1]
 
     def factor(self, dimension: str) -> float:
-        """SI value of this system's unit of a dimension."""
+        """SI value of the system's unit of a dimension."""
         return self._factors[dimension]
 
     @cached_property
     def _factors(self) -> dict[str, float]:
-        """SI values of the units by dimension: a study is read again for every design."""
+        """SI values of the units by dimension, computed once, since a study is read again for every
+        design.
+        """
         return {
             dimension: math.prod(f**e for f, e in zip(self.in_si, exponents, strict=True))
             for dimension, (exponents, _) in DIMENSION_EXPONENTS.items()
         }
 
     def unit(self, dimension: str) -> str:
-        """Name of this system's unit of a dimension, or of what is a product of some."""
+        """Name of the system's unit of a dimension, or of a product of dimensions."""
         names = {
             "length": self.length,
             "force": self.force,
@@ -121,7 +127,7 @@ class UnitSystem:
         return " ".join(names.get(part, part) for part in dimension.split())
 
     def told(self, number: NumberInSI) -> str:
-        """Return a number of a message with its unit in this system, masses as on scales."""
+        """Return a number of a message with its unit in this system; masses are in kg or lb."""
         mass, kilogram = self.scales
         if number.dimension == "mass":
             unit, factor = mass, kilogram
@@ -144,8 +150,8 @@ UNIT_SYSTEMS = {
 }
 
 
-# The usual units as pint has them (a test compares them): importing pint takes longer than checking
-# a study, so it is used only for other units, and to find what is wrong with one.
+# The usual units with pint's values (a test compares them). Importing pint takes longer than
+# checking a study, so pint is used only for other units, and to explain what is wrong with a unit.
 USUAL_UNITS: dict[str, tuple[str, float]] = {
     "m": ("length", 1.0),
     "cm": ("length", 0.01),
@@ -216,7 +222,7 @@ def _expected(dimension: str) -> Any:
 
 
 def to_si(value: object, dimension: str, system: UnitSystem) -> float:
-    """Return a study's number or string as a float in SI.
+    """Return a number or string of a study as a float in SI units.
 
     Raises: ArgumentError with what is wrong with it and the remedy.
     """
@@ -343,8 +349,8 @@ def _by_pint(unit: str, dimension: str, text: str) -> float:
 
 
 def _meant(unit: str, dimension: str) -> str | None:
-    """Return the usual unit of a dimension that is spelled so except for capitals, blanks, dots
-    and marks of powers.
+    """Return the usual unit of a dimension that has the same spelling except for capitals, blanks,
+    dots and signs of powers.
     """
     spelled = {_bare(usual): usual for usual, (of, _) in USUAL_UNITS.items() if of == dimension}
     return spelled.get(_bare(unit))
@@ -355,5 +361,5 @@ def _bare(unit: str) -> str:
 
 
 def _symbols() -> dict[str, None]:
-    """Return the names in the usual units, each once."""
+    """Return the names that occur in the usual units, each once."""
     return dict.fromkeys(name for unit in USUAL_UNITS for name in re.findall(r"[A-Za-z]+", unit))

@@ -1,4 +1,4 @@
-"""The study file's form: numbers of the study that vary, for `sweep` and `reliability`."""
+"""Keys in a study file of numbers that vary, for `sweep` and `reliability`."""
 
 from typing import Annotated, Literal
 
@@ -15,7 +15,7 @@ Triple = tuple[Coordinate, Coordinate, Coordinate]
 
 
 class ParameterTable(StrictTable):
-    """The range of one number by `from` and `to`, or the law by which it varies. All values are
+    """The range of a number, `from` and `to`, or its probability distribution (law). All values are
     numbers in the study's units, or texts with a unit.
     """
 
@@ -33,13 +33,13 @@ class ParameterTable(StrictTable):
     """Least, most likely and largest value."""
     tolerance: Annotated[str, Field(max_length=200)] | None = None
     """Tolerance of a drawing about the number in the study: "+0.1 mm -0.05 mm", "±0.1 mm", or of a
-    diameter an ISO 286 class such as "h7". It is a normal law about the middle of the tolerance,
-    whose limits are three standard deviations away, cut off at the limits."""
+    diameter an ISO 286 class such as "h7". It is a normal distribution about the middle of the
+    tolerance, truncated at the limits, which are three standard deviations away."""
     within: Pair | None = None
-    """Limits at which a normal or lognormal law is cut off."""
+    """Limits at which a normal or lognormal distribution is truncated."""
     steps: Annotated[Whole, Field(ge=1, le=MAX_DESIGNS)] | None = None
-    """Number of values in a grid: evenly from `from` to `to`, of a law the middles of so many parts
-    that are equally likely."""
+    """Number of values in a grid: evenly spaced from `from` to `to`; for a distribution, the
+    medians of as many equally likely parts."""
 
     @model_validator(mode="after")
     def _one_law(self) -> "ParameterTable":
@@ -62,10 +62,10 @@ PROBABILITY_LAWS = ("uniform", "normal", "lognormal", "triangular", "tolerance")
 
 
 class CorrelationTable(StrictTable):
-    """The correlation of two numbers with normal laws."""
+    """The correlation of two numbers with normal distributions."""
 
     between: tuple[str, str]
-    """Keys of two of the parameters, which have normal laws without `within`."""
+    """Keys of two of the parameters, which have normal distributions without `within`."""
     coefficient: Annotated[Number, Field(gt=-1.0, lt=1.0)]
     """Coefficient of correlation."""
 
@@ -79,32 +79,32 @@ class VaryTable(StrictTable):
     count: Annotated[Whole, Field(ge=1, le=MAX_DESIGNS)] = 256
     """Number of designs, except of a grid."""
     seed: Annotated[Whole, Field(ge=0, lt=2**63)] = 1
-    """Of the random numbers: the same seed gives the same designs."""
+    """Seed of the random numbers: the same seed gives the same designs."""
     parameters: Annotated[dict[str, ParameterTable], Field(min_length=1, max_length=MAX_PARAMETERS)]
-    """By key of the study as messages spell it, elements counted from 1, in quotes:
-    "pin.B.profile[2].diameter"."""
+    """The numbers that vary, by their keys in the study as messages spell them, with elements
+    counted from 1, in quotes: "pin.B.profile[2].diameter"."""
     correlations: Annotated[list[CorrelationTable], Field(max_length=MAX_PARAMETERS**2)] = []
-    """Correlations of normal laws; pairs that are not listed are independent."""
+    """Correlations of normal distributions; pairs that are not listed are independent."""
 
 
 class ReliabilityTable(StrictTable):
-    """The failure and the probability at which `pinstress reliability` looks, and the number of
-    designs that it solves. Random are the numbers in `[vary.parameters]` that have a law.
+    """The definition of failure and the probability for `pinstress reliability`, and the number of
+    designs that it solves. The numbers in `[vary.parameters]` that have a distribution are random.
     """
 
     factor: Annotated[Number, Field(gt=0.0)] = 1.0
     """A pin fails where its factor of safety against yield is less than this."""
     probability: Annotated[Number, Field(gt=0.0, lt=1.0)] = 0.001
-    """Largest allowed probability of failure; also that with which the reported factor of safety is
-    not reached."""
+    """Largest allowed probability of failure; also the probability with which the reported factor
+    of safety is not reached."""
     samples: Annotated[Whole, Field(ge=10, le=MAX_SAMPLES)] = 2_000
     """Number of designs of plain (Monte Carlo) sampling."""
     importance_samples: Annotated[Whole, Field(ge=0, le=MAX_SAMPLES)] = 1_000
     """Number of designs of importance sampling about the design points of FORM; 0 for none."""
     sobol_samples: Annotated[Whole, Field(ge=0, le=MAX_SAMPLES)] = 256
-    """Base samples of the Sobol indices, which take as many designs for each parameter and twice
-    more, rounded down to eight sets of a power of two; 0 for none. Not for correlated numbers."""
+    """Base samples N of the Sobol indices, rounded down to eight sets of a power of two; they take
+    N designs for each parameter and 2 N more. 0 for none. Not for correlated numbers."""
     seed: Annotated[Whole, Field(ge=0, lt=2**63)] = 1
-    """Of the random numbers: the same seed gives the same result."""
+    """Seed of the random numbers: the same seed gives the same result."""
     confidence: Annotated[Number, Field(gt=0.0, lt=1.0)] = 0.95
     """Confidence level of all intervals."""

@@ -63,7 +63,7 @@ def test_one_harmonic_is_closed(seed: int, angle: float, couple: float) -> None:
     loads = PinLoads("case", ("B",), force, np.array([couple, 0.3, 0.0]))
     fields = unit_fields(loads, 5, seed)
     around = Circumference(fields, loads)
-    value, at = around.round(np.arange(5), np.zeros(5, dtype=np.int64))
+    value, at = around.largest_over_angle(np.arange(5), np.zeros(5, dtype=np.int64))
     there = von_mises(superposed(fields, loads, 0, at))[np.arange(5), np.arange(5)]
     brute = von_mises(superposed(fields, loads, 0, EVERY)).max(axis=1)
     assert there == pytest.approx(value, rel=1e-10)
@@ -82,7 +82,7 @@ def test_several_harmonics(seed: int, angle: float, terms: int) -> None:
     loads = bearing(angle, terms, axial=0.5)
     fields = unit_fields(loads, 8, seed)
     around = Circumference(fields, loads)
-    value, at = around.round(np.arange(8), np.zeros(8, dtype=np.int64))
+    value, at = around.largest_over_angle(np.arange(8), np.zeros(8, dtype=np.int64))
     brute = von_mises(superposed(fields, loads, 0, EVERY)).max(axis=1)
     there = von_mises(superposed(fields, loads, 0, at))[np.arange(8), np.arange(8)]
     assert np.all(brute <= value * (1.0 + 1e-8))
@@ -98,7 +98,9 @@ def test_two_crests_of_nearly_the_same_height() -> None:
     """
     loads = bearing(0.4)
     fields = unit_fields(loads, 1500, seed=0)
-    value, _ = Circumference(fields, loads).round(np.arange(1500), np.zeros(1500, dtype=np.int64))
+    value, _ = Circumference(fields, loads).largest_over_angle(
+        np.arange(1500), np.zeros(1500, dtype=np.int64)
+    )
     brute = von_mises(superposed(fields, loads, 0, EVERY[::15])).max(axis=1)
     assert np.all(brute <= value * (1.0 + 1e-8))
 
@@ -107,7 +109,9 @@ def test_loads_that_do_not_vary_round_the_axis() -> None:
     """Harmonic 0 in both phases at once: tension and torsion, square roots of sums of squares."""
     loads = PinLoads("case", ("B",), np.array([[[0.0, 0.0, 2.0]]]), np.array([0.0, 0.0, 3.0]))
     fields = unit_fields(loads, 4, seed=1)
-    value, _ = Circumference(fields, loads).round(np.arange(4), np.zeros(4, dtype=np.int64))
+    value, _ = Circumference(fields, loads).largest_over_angle(
+        np.arange(4), np.zeros(4, dtype=np.int64)
+    )
     expected = von_mises(superposed(fields, loads, 0, np.zeros(1)))[:, 0]
     assert value == pytest.approx(expected, rel=1e-12)
 
@@ -151,12 +155,12 @@ def test_chunks_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     loads = bearing(1.0)
     fields = unit_fields(loads, 50, seed=3)
     pairs = np.arange(50), np.zeros(50, dtype=np.int64)
-    whole = Circumference(fields, loads).round(*pairs)
+    whole = Circumference(fields, loads).largest_over_angle(*pairs)
     monkeypatch.setattr(superposed_stress, "PAIR_BATCH", 7)
-    parts = Circumference(fields, loads).round(*pairs)
+    parts = Circumference(fields, loads).largest_over_angle(*pairs)
     assert parts[0] == pytest.approx(whole[0], rel=1e-13)
     # angles may differ: those of two crests, one the other's mirror image, tie
-    none = Circumference(fields, loads).round(pairs[0][:0], pairs[1][:0])
+    none = Circumference(fields, loads).largest_over_angle(pairs[0][:0], pairs[1][:0])
     assert [len(x) for x in none] == [0, 0]
 
 
@@ -213,21 +217,23 @@ def test_loads_that_hardly_change_are_not_evaluated_at_every_instant(
     force = np.stack([size * np.cos(angle), size * np.sin(angle), 0.1 * t], axis=1)[:, None]
     loads = PinLoads("case", ("B",), force, distribution="cosine", terms=8)
     fields = unit_fields(loads, 300, seed)
-    first = Circumference(fields, loads).round(np.arange(300), np.zeros(300, dtype=np.int64))[0]
+    first = Circumference(fields, loads).largest_over_angle(
+        np.arange(300), np.zeros(300, dtype=np.int64)
+    )[0]
     share = np.where(np.arange(300) == 151, 1.0, np.random.default_rng(seed).uniform(0.8, 0.9, 300))
     fields = replace(fields, stress=fields.stress * (share / first)[:, None, None])
     around, among = Circumference(fields, loads), np.arange(300) % 7 > 0
     points = np.flatnonzero(among)
     i, k = (x.ravel() for x in np.meshgrid(points, np.arange(400), indexing="ij"))
-    every = around.round(i, k)[0].reshape(len(points), 400)
+    every = around.largest_over_angle(i, k)[0].reshape(len(points), 400)
 
-    evaluated, plain = [0], Circumference.round
+    evaluated, plain = [0], Circumference.largest_over_angle
 
     def counted(self: Circumference, *given: Any) -> tuple[Floats, Floats]:
         evaluated[0] += len(given[0])
         return plain(self, *given)
 
-    monkeypatch.setattr(Circumference, "round", counted)
+    monkeypatch.setattr(Circumference, "largest_over_angle", counted)
     assert around.maxima(among) == pytest.approx(every.max(axis=0), rel=1e-12)
     evaluated[0] = 0
     top = around.top(among)
@@ -253,7 +259,7 @@ def test_no_load_has_no_harmonic_and_no_stress() -> None:
     loads = PinLoads("case", ("B",), np.zeros((2, 1, 3)))
     around = Circumference(unit_fields(loads, 4, 0), loads)
     assert around.highest == 0
-    assert around.last_at(np.arange(3), np.zeros(3, dtype=int)).tolist() == [0.0] * 3
+    assert around.highest_harmonic_at(np.arange(3), np.zeros(3, dtype=int)).tolist() == [0.0] * 3
     assert around.top(np.ones(4, dtype=bool)).value == 0.0
     value, _ = around.crests(np.arange(3), np.ones(3, dtype=int))
     assert value.tolist() == [0.0] * 3

@@ -89,7 +89,9 @@ def test_the_maximum_at_a_jump_is_that_of_far_finer_elements_near_it(steel: Mate
     mesh = meridian_mesh(PIN, SectionSize().finer(4.0), finest)
     fields = HarmonicModel(PIN, mesh, steel, ()).solve(units, there.reshape(-1, 2))
     rows = np.arange(len(fields.points) - there.size // 2, len(fields.points))
-    value, _ = Circumference(fields, SHEARED).round(rows, np.zeros(len(rows), dtype=int))
+    value, _ = Circumference(fields, SHEARED).largest_over_angle(
+        rows, np.zeros(len(rows), dtype=int)
+    )
     for result in results:
         assert result.maximum == pytest.approx(value.max(), rel=0.03)
         assert np.hypot(*result.location[:2]) == pytest.approx(R, rel=1e-9)

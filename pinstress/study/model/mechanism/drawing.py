@@ -1,4 +1,4 @@
-"""The mechanism as drawn: the positions of its joints, and the bodies on them."""
+"""The mechanism as drawn, with the positions of its joints and the bodies on them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Drawing:
     """The mechanism as drawn.
 
     at: positions of the joints, m.
-    shown: gives a length (m) as text.
+    shown: formats a length (m) as text.
     """
 
     mechanism: MechanismTable
@@ -30,10 +30,10 @@ class Drawing:
         return ([j.fixed_in] if j.fixed_in else []) + list(j.connections.values())
 
     def require_on(self, joint: str, body: str, at: tuple[str, str], right: str) -> None:
-        """Raise LinkageError where the body is not at the joint.
+        """Raise LinkageError if the body is not at the joint.
 
         at: the key in question.
-        right: what to do.
+        right: the remedy that the message names.
         """
         if body not in (on := self.on(joint)):
             raise LinkageError(
@@ -44,7 +44,7 @@ class Drawing:
 
 
 def joints_on(mechanism: AnyMechanism, body: str) -> list[str]:
-    """Return the joints at which a body turns or of which it carries the pin."""
+    """Return the joints on which a body turns or whose pin it carries."""
     joints = mechanism.joint.items()
     return [name for name, j in joints if body in (j.fixed_in, *j.connections.values())]
 

@@ -1,4 +1,4 @@
-"""Laws of a study's drives, and their values in a case."""
+"""The laws of a study's drives, and their values in a case."""
 
 from __future__ import annotations
 
@@ -38,7 +38,9 @@ AnyDriveTable = SliderDrive | RotaryDrive | SpaceDrive
 
 
 class DrawnDrive(Protocol):
-    """A driven coordinate: a slider or turn, or in space a joint's angle or travel or a span."""
+    """A driven coordinate: a slider or a rotation; in space a joint's angle or travel, or a
+    distance.
+    """
 
     @property
     def drawn(self) -> float:
@@ -58,7 +60,7 @@ class Driven(Protocol):
 def mechanism_of(study: Study) -> AnyMechanism:
     """Return the study's mechanism.
 
-    Raises: InputError where it has none.
+    Raises: InputError if it has none.
     """
     if study.table.mechanism is None:
         raise study.error("the study has no [mechanism]; add one", code="no-mechanism")
@@ -81,7 +83,9 @@ def laws(study: Study) -> tuple[Law, ...]:
 
 
 def offsets(study: Study) -> dict[str, float]:
-    """Return the offset subtracted from each driven slider's length to display its position, m."""
+    """Return, for each driven slider, the offset by which its displayed position is less than its
+    length, m.
+    """
     drives = drive_tables(study)
     return {drive_name(d): d.position_offset for d in drives if isinstance(d, SlidingDrive)}
 
@@ -144,7 +148,7 @@ def drive_table(study: Study, drive: AnyDriveTable) -> TableDrive:
 def state(
     study: Study, name: str, case: StaticCase | InstantCase | AtWheel, drawn: Driven
 ) -> list[tuple[float, float, float]]:
-    """Return the position, velocity and acceleration of every drive in a case, SI.
+    """Return the position, velocity and acceleration of every drive in a case, in SI units.
 
     Raises: InputError.
     """

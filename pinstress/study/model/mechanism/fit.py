@@ -1,4 +1,4 @@
-"""Joints moved within the tolerance of a drawing, so that redundant links close: `fit_within`."""
+"""Joints moved within the tolerance of a drawing, so that redundant links close (`fit_within`)."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from loads.motion.least_movement import Draw, LeastMovement, least_movement
 from pinstress.study.model.mechanism.joint_layout import Point
 from pinstress.study.schema.mechanism import MechanismTable
 
-MAX_OFFERED_RATIO = 0.05  # of a movement to the size of the linkage; a larger one is no tolerance
+MAX_OFFERED_RATIO = 0.05  # of a movement to the linkage's size; a larger one is not a tolerance
 MAX_LISTED_JOINTS = 8
-NEGLIGIBLE_RATIO = 1e-3  # of a movement to the largest, to be listed as zero
+NEGLIGIBLE_RATIO = 1e-3  # of a movement to the largest one; smaller ones are listed as zero
 Show = Callable[[float], str]
 
 
 @dataclass(frozen=True)
 class Fitting:
-    """A linkage as drawn, and what draws it with its joints elsewhere.
+    """A linkage as drawn, and a function that draws it with its joints at other positions.
 
-    reach: least and largest value of every drive, SI.
+    reach: least and largest value of every drive, in SI units.
     """
 
     linkage: Linkage
@@ -33,15 +33,15 @@ class Fitting:
 
     @property
     def at(self) -> Mapping[str, Point]:
-        """The places of the joints as drawn."""
+        """The positions of the joints as drawn, m."""
         return {joint.name: joint.at for joint in self.linkage.joints}
 
     def fitted(self, within: float | None, show: Show) -> Linkage:
         """Return the linkage with its joints moved so that its loops close in motion.
 
-        within: the largest movement of a joint, m; as drawn without it.
+        within: the largest movement of a joint, m; None leaves the linkage as drawn.
 
-        Raises: LinkageError where a joint would have to be moved further.
+        Raises: LinkageError if a joint would have to be moved farther.
         """
         if within is None:
             return self.linkage
@@ -68,7 +68,7 @@ class Fitting:
         return self.draw(places)
 
     def note(self, show: Show) -> tuple[str, ...]:
-        """Return a sentence on the joints that are moved; none where no joint is."""
+        """Return a sentence on the joints that are moved; empty if no joint is."""
         movement = least(self)
         if movement is None or not movement.largest:
             return ()
@@ -78,8 +78,10 @@ class Fitting:
         )
 
     def offer(self, show: Show, unit: float) -> str:
-        """Return how far the loops miss, and the movement that would close them; empty where they
-        close or nothing small does. unit: of lengths, m.
+        """Return by how much the loops miss, and the movement that would close them; empty if they
+        close, or no small movement closes them.
+
+        unit: of lengths, m.
         """
         try:
             movement = least(self)
@@ -98,7 +100,7 @@ class Fitting:
 
 
 def reach(mechanism: MechanismTable, linkage: Linkage) -> tuple[tuple[float, float], ...]:
-    """Return the least and largest value of every drive, as drawn and at its ends, SI."""
+    """Return the least and largest value of every drive, as drawn and at its ends, in SI units."""
     ends = []
     for table, drawn in zip(mechanism.drive, linkage.drives, strict=True):
         values = [x for x in (drawn.drawn, table.start, table.end) if x is not None]
@@ -108,7 +110,9 @@ def reach(mechanism: MechanismTable, linkage: Linkage) -> tuple[tuple[float, flo
 
 @lru_cache(maxsize=16)
 def least(fitting: Fitting) -> LeastMovement | None:
-    """Return the least movement of the joints by which the loops close, None if none is found."""
+    """Return the least movement of the joints by which the loops close, or None if none is
+    found.
+    """
     ends = np.array(fitting.reach).reshape(-1, 2)
     return least_movement(fitting.draw, fitting.at, (ends[:, 0], ends[:, 1]))
 

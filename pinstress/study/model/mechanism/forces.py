@@ -49,8 +49,8 @@ RADIANS_PER_DEGREE = math.pi / 180.0
 
 @dataclass(frozen=True)
 class TableColumn:
-    """A column of a table: its name in a file, its dimension, SI value of the file's unit, and
-    its unit in messages.
+    """A column of a table: its name in a file, its dimension, the SI value of the file's unit, and
+    the name of the unit in messages.
     """
 
     name: str
@@ -74,11 +74,11 @@ def angle_column(name: str) -> TableColumn:
 def curve(
     study: Study, where: str, given: CurveTable | None, x: TableColumn, value: tuple[str, str]
 ) -> ForceTable | None:
-    """Return a table as a function.
+    """Return a table as a function; None if none is given.
 
-    where: its key.
-    x: its argument.
-    value: name and dimension of its value.
+    where: the key of the table.
+    x: the argument.
+    value: name and dimension of the value.
 
     Raises: InputError for a table that cannot be used.
     """
@@ -142,7 +142,7 @@ def _torsion(study: Study, name: str, table: TorsionSpringTable) -> Spring:
 
 
 def line_law(study: Study, name: str, table: LineLawTable, drawn: float) -> ForceLaw:
-    """Return the law of a spring of a length. drawn: its length as drawn, m."""
+    """Return the law of a spring that acts along a length. drawn: the length as drawn, m."""
     where, value = f"mechanism.spring.{key_part(name)}", ("force", "force")
     length, velocity = column(study, "length", "length"), column(study, "velocity", "velocity")
     return ForceLaw(
@@ -156,7 +156,7 @@ def line_law(study: Study, name: str, table: LineLawTable, drawn: float) -> Forc
 
 
 def torsion_law(study: Study, name: str, table: TorsionLawTable) -> ForceLaw:
-    """Return the law of a spring of an angle, which is zero as drawn."""
+    """Return the law of a torsion spring, whose angle is zero as drawn."""
     where, value = f"mechanism.torsion_spring.{key_part(name)}", ("moment", "moment")
     rate = TableColumn("angular_velocity", "angular velocity", 1.0, "rad/s")
     return ForceLaw(
@@ -174,7 +174,7 @@ def _at(mechanism: Linkage, place: JointOrPoint) -> Point:
 
 
 def require_centre(study: Study, where: str, body: str) -> None:
-    """Raise InputError for a force at the centre of mass of a body of which that is not known.
+    """Raise InputError for a force at the centre of mass of a body, if that is unknown.
 
     where: the key of the load.
     """
@@ -186,9 +186,9 @@ def require_centre(study: Study, where: str, body: str) -> None:
 def load(
     study: Study, where: str, table: ApplyTable, force: Sequence[float], mechanism: Linkage
 ) -> tuple[SideLoad, ...]:
-    """Return a load of a case.
+    """Return a load of a case; a load that varies is split into its force and its couple.
 
-    force: (fx, fy[, fz]) N, along `force_law` of size one.
+    force: (fx, fy[, fz]) N; with `force_law`, a unit vector.
 
     Raises: InputError.
     """

@@ -1,4 +1,4 @@
-"""Meshing teeth of a study's gears and racks."""
+"""Meshing teeth of the gears and racks of a study in a plane."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from loads import Gear, LinkageError, Rack, Slider, Teeth, gear_pair, rack_and_p
 from pinstress.study.model.mechanism.drawing import Drawing
 from pinstress.study.schema.gears import GearTable, RackTable
 
-# Of the distance of the centres: by so much pitch radii may miss each other
+# Relative to the distance of the centres: the largest gap or overlap of pitch circles
 CENTRE_DISTANCE_TOLERANCE = 1e-3
 NAME_JOINT_REMEDY = "name the joint about which it turns"
 
@@ -39,7 +39,7 @@ def gears(name: str, table: GearTable, drawing: Drawing) -> Teeth:
 
 
 def sizes_of(table: GearTable) -> tuple[float, float]:
-    """Return the pitch radii of gears, or numbers of teeth; negative for a ring."""
+    """Return the pitch radii of gears, or the numbers of teeth; negative for a ring gear."""
     first, second = table.teeth or table.radii or (1.0, 1.0)
     if not table.internal:
         return first, second
@@ -49,9 +49,9 @@ def sizes_of(table: GearTable) -> tuple[float, float]:
 def require_reach(
     name: str, table: GearTable, distance: float, shown: Callable[[float], str]
 ) -> None:
-    """Raise LinkageError where pitch circles of stated size do not touch.
+    """Raise LinkageError for pitch circles of stated size that do not touch.
 
-    distance: of the centres, m. shown: gives a length (m) as text.
+    distance: of the centres, m. shown: formats a length (m) as text.
     """
     if table.teeth is not None and table.module is None:
         return

@@ -1,4 +1,4 @@
-"""Positions of the joints as drawn: coordinates, or distances from other joints."""
+"""Positions of the joints as drawn, given by coordinates or by distances from other joints."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ class LayoutError(CodedError, ValueError):
 
 
 def places(mechanism: MechanismTable, show: Show) -> tuple[dict[str, Point], list[LayoutError]]:
-    """Return the position of every joint as drawn, m, and why joints have none.
+    """Return the position of every joint as drawn, m, and the errors of joints without a position.
 
-    Joints without a position are left out, as are those that are measured from them.
+    Joints without a position are left out, and so are joints measured from them.
 
     show: formats a length.
     """

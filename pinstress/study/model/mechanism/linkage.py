@@ -1,4 +1,4 @@
-"""Linkage of a study's mechanism."""
+"""The linkage of a study's mechanism."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def any_linkage(study: Study) -> AnyLinkage:
 def linkage(study: Study) -> Linkage:
     """Return the linkage of the study's mechanism, which is in a plane.
 
-    Raises: InputError with all its contradictions, or where it is in space.
+    Raises: InputError with all its contradictions, or if it is in space.
     """
     drawn = any_linkage(study)
     if not isinstance(drawn, Linkage):
@@ -87,7 +87,7 @@ def contradictions(
 ) -> tuple[AnyLinkage | None, list[Wrong]]:
     """Return the linkage of the study's mechanism, or None and all its contradictions.
 
-    damage: what the study lacks; contradictions that may follow from it are left out.
+    damage: the parts that the study lacks; contradictions that may follow from them are left out.
     """
     mechanism = mechanism_of(study)
     if isinstance(mechanism, MechanismTable):
@@ -100,7 +100,7 @@ def contradictions(
 def _in_a_plane(
     study: Study, mechanism: MechanismTable, damage: Damage | None
 ) -> tuple[Linkage | None, list[Wrong]]:
-    """Return the linkage of a planar mechanism; arguments as of `contradictions`."""
+    """Return the linkage of a planar mechanism; arguments as in `contradictions`."""
     shown = partial(shown_length, study)
     at, errors = places(mechanism, shown)
     damage = Damage({}) if damage is None else damage
@@ -131,7 +131,7 @@ def _fitting(study: Study, drawing: Drawing, drawn: Linkage) -> Fitting:
 
 
 def _as_drawn(study: Study, mechanism: MechanismTable) -> Fitting:
-    """Return a valid mechanism as drawn, for movements of its joints."""
+    """Return a valid mechanism as drawn, ready to be fitted."""
     shown = partial(shown_length, study)
     drawing = Drawing(mechanism, places(mechanism, shown)[0], shown)
     drawn = _assembled(study, drawing)
@@ -140,7 +140,7 @@ def _as_drawn(study: Study, mechanism: MechanismTable) -> Fitting:
 
 
 def fit_note(study: Study) -> tuple[str, ...]:
-    """Return a sentence on the joints that are moved to close loops; none where no joint is."""
+    """Return a sentence on the joints that are moved to close loops; empty if no joint is moved."""
     mechanism = study.table.mechanism
     if not isinstance(mechanism, MechanismTable) or mechanism.fit_within is None:
         return ()
@@ -148,8 +148,8 @@ def fit_note(study: Study) -> tuple[str, ...]:
 
 
 def fit_offer(study: Study, error: CodedError) -> str:
-    """Return by how much redundant links miss, and the fit_within that would let them meet, for an
-    error that may be due to that; otherwise nothing.
+    """Return the amount by which redundant links do not meet, and the fit_within that would let
+    them meet, for an error that may be due to that; otherwise an empty text.
     """
     mechanism = study.table.mechanism
     unfit = error.code in ("does-not-close", "statically-indeterminate")
@@ -159,18 +159,18 @@ def fit_offer(study: Study, error: CodedError) -> str:
     return fitting.offer(partial(shown_length, study), study.system.factor("length"))
 
 
-# Codes of contradictions of a part that hold whatever else is missing of the mechanism; of bodies,
-# where it has that many joints, as more would not help
+# Codes of contradictions of a part that hold whatever else is missing from the mechanism. Those of
+# OF_A_BODY hold if the body has at least that many joints, since more would not help.
 OF_A_PART = {
     "duplicate-name", "reserved-name", "fixed-and-turning", "friction-floats", "same-body",
     "same-joint", "missing-inertia", "give-one",
 }  # fmt: skip
-OF_MASSES = {"particle", "missing-inertia", "give-one"}  # which static cases may not need
+OF_MASSES = {"particle", "missing-inertia", "give-one"}  # masses, which static cases do not need
 OF_A_BODY = {"missing-centre": 3, "particle": 2}
 
 
 def _certain(error: LinkageError, mechanism: MechanismTable, damage: Damage) -> bool:
-    """Return whether an error cannot follow from what is missing of the mechanism."""
+    """Return whether an error cannot follow from what is missing from the mechanism."""
     part = ("mechanism", *error.at[:2])
     if error.code in OF_MASSES and damage.touches(("case",)) and not _moving(damage.raw):
         return False
@@ -187,7 +187,7 @@ def _certain(error: LinkageError, mechanism: MechanismTable, damage: Damage) -> 
 
 
 def _moving(raw: Mapping[str, Any]) -> bool:
-    """Return whether a study, as it is written, has a case in which masses count."""
+    """Return whether a study, as written, has a case in which masses matter."""
     cases = raw.get("case")
     listed = cases.values() if isinstance(cases, dict) else ()
     kinds = {case.get("kind") for case in listed if isinstance(case, dict)}
@@ -210,7 +210,7 @@ def determined(study: Study, mechanism: AnyLinkage) -> Mobility:
 
     Without drives every case may name locks instead, which are checked with the case.
 
-    Raises: InputError where they do not, or where a sharing rule applies to no indeterminate force.
+    Raises: InputError if the drives do not, or if a sharing rule applies to no indeterminate force.
     """
     if isinstance(mechanism, SpaceLinkage):
         return determined_in_space(study, mechanism, _held_in_all(study))
@@ -221,7 +221,7 @@ def determined(study: Study, mechanism: AnyLinkage) -> Mobility:
 
 
 def _held_in_all(study: Study) -> bool:
-    """Return whether every case, of a mechanism without drives, names the locks that hold it."""
+    """Return whether a mechanism has no drives and every case names the locks that hold it."""
     cases = [case for case in study.table.case.values() if not isinstance(case, GivenCase)]
     holds = [getattr(case, "hold", None) is not None for case in cases]
     return not mechanism_of(study).drive and bool(holds) and all(holds)
@@ -236,7 +236,7 @@ def _assembled(study: Study, drawing: Drawing) -> Linkage | list[LinkageError]:
     def each(
         make: Callable[[A], B], of: Iterable[A], instead: Callable[[A], B] | None = None
     ) -> tuple[B, ...]:
-        """Return the parts; `instead` stands for one with an error, so that others are found."""
+        """Return the parts; `instead` replaces a faulty part, so that other errors are found."""
         parts = []
         for one in of:
             try:
@@ -279,7 +279,7 @@ def _linkage(
 ) -> Linkage:
     """Return the linkage of these parts; at rest, bodies need no inertia.
 
-    Raises: LinkageError where they contradict each other.
+    Raises: LinkageError if they contradict each other.
     """
     mechanism = drawing.mechanism
     make = partial(
@@ -317,7 +317,9 @@ def _linkage(
 
 
 def ground_joint(linkage: Linkage) -> str:
-    """Return the joint about which moments on the ground are taken: the first that stands still."""
+    """Return the joint about which moments on the ground are taken: the first joint that is
+    fixed.
+    """
     for joint in linkage.joints:
         if joint.fixed_in == GROUND or any(c.body == GROUND for c in joint.connections):
             return joint.name

@@ -1,4 +1,4 @@
-"""Masses of bodies and of floating pins, and friction circles, in a plane and in space."""
+"""Masses of bodies and of floating pins, and friction circles, in the plane and in space."""
 
 from __future__ import annotations
 
@@ -25,18 +25,20 @@ def friction_circle(friction: float | None, diameter: float | None) -> float:
 
 
 def at_rest(study: Study) -> bool:
-    """Return whether all cases of a study's mechanism are static, so that no inertia counts."""
+    """Return whether all cases of a study's mechanism are static, so that inertia does not
+    matter.
+    """
     cases = [case for case in study.table.case.values() if not isinstance(case, GivenCase)]
     still = all(isinstance(case, StaticCase) and case.ground_motion is None for case in cases)
     return bool(cases) and still and NO_CASE not in study.table.case
 
 
 def body_mass(study: Study, name: str, body: BodyTable | SpaceBodyTable, gravity: float) -> float:
-    """Return the mass of a body without a bar; zero where it is not stated and does not count.
+    """Return the mass of a body without a bar; zero if it is not stated and does not matter.
 
-    gravity: its amount, m/s^2; 0 without.
+    gravity: its magnitude, m/s^2; 0 without gravity.
 
-    Raises: LinkageError where it counts.
+    Raises: LinkageError if the mass is missing but matters.
     """
     if body.mass is not None:
         return body.mass
@@ -49,7 +51,9 @@ def body_mass(study: Study, name: str, body: BodyTable | SpaceBodyTable, gravity
 
 
 def pin_mass(study: Study, joint: str, weight: float | None, gravity: float) -> float:
-    """Return the mass of a floating pin: as stated, or of the profile of that name, or zero."""
+    """Return the mass of a floating pin, kg: as stated, from the shape of the pin of that name, or
+    zero.
+    """
     if weight is not None:
         return weight / gravity
     if joint not in study.table.pin:

@@ -1,4 +1,4 @@
-"""Bodies, sliders and turns of a linkage from their tables."""
+"""Bodies, sliders and rotations of a linkage, from their tables."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from pinstress.study.schema.tables import AnyMechanism
 
 
 def body_anywhere(item: tuple[str, BodyTable]) -> Body:
-    """Return what stands for a body whose centre is not known."""
+    """Return a substitute for a body whose centre is unknown."""
     return Body(item[0], 0.0, (0.0, 0.0), item[1].inertia)
 
 
 def turn_by_any_angle(drive: RotaryDrive) -> Turn:
-    """Return what stands for a driven angle that is not known as drawn."""
+    """Return a substitute for a driven angle whose value as drawn is unknown."""
     return Turn(drive_name(drive), drive.body, 0.0, drive.against)
 
 
 def stop_turn(name: str, stop: StopTable) -> Turn:
-    """Return the turn that a stop blocks."""
+    """Return the rotation that a stop blocks."""
     base, body = stop.bodies
     return Turn(name, body, 0.0, base, stop.carries)
 
@@ -49,8 +49,8 @@ def require_on_slider(drawing: Drawing, name: str, s: SliderTable) -> None:
 
 
 def turn_of(study: Study, drawing: Drawing, drive: RotaryDrive) -> Turn:
-    """Return the driven angle; of its values a turn apart, the drawn one is nearest to the
-    start.
+    """Return the driven angle. Of its equivalent values, full turns apart, the drawn one is the
+    nearest to the start of the drive.
     """
     at, drawn = ("drive", drive_name(drive)), 0.0
     right = "the line gives its angle; name two of its joints"
@@ -78,7 +78,7 @@ def _direction(line: tuple[str, str], at: dict[str, Point]) -> float:
 
 
 def missing_centre(body: str, joints: int, form: str) -> LinkageError:
-    """Return the error of a body with mass, of which its joints do not tell the centre."""
+    """Return the error for a body with mass whose centre does not follow from its joints."""
     text = f"body {body}: a body with {joints} joint{'s' * (joints != 1)} needs a centre = {form}"
     return LinkageError(text, "missing-centre", ("body", body))
 
@@ -90,9 +90,11 @@ def geared(mechanism: AnyMechanism) -> set[str]:
 
 
 def knows_centre(mechanism: AnyMechanism, name: str) -> bool:
-    """Return whether the centre of mass of a body is stated or follows from its bar or joints: from
-    one joint that of a gear, and in a plane of what slides and never rotates (on the ground, or as
-    its inertia of 0 says), and of a point mass on whose angle neither a drive nor a stop acts.
+    """Return whether the centre of mass of a body is stated or follows from its bar or joints.
+
+    Two joints suffice. One joint suffices for a gear. In a plane, one joint also suffices for a
+    body that slides and never rotates (on the ground, or with a stated inertia of 0), and for a
+    point mass whose angle neither a drive, a stop nor a weld acts on.
     """
     body = mechanism.body[name]
     joints = len(joints_on(mechanism, name))
@@ -111,9 +113,9 @@ def knows_centre(mechanism: AnyMechanism, name: str) -> bool:
 
 
 def body_of(study: Study, drawing: Drawing, name: str, b: BodyTable) -> Body:
-    """Return a body with its mass, its centre and its inertia, of a bar by its section.
+    """Return a body with its mass, centre and inertia; those of a bar follow from its section.
 
-    Raises: LinkageError for a centre that is missing.
+    Raises: LinkageError for a missing centre.
     """
     at = drawing.at
     if b.bar is not None:

@@ -1,4 +1,6 @@
-"""Loads of a case out of the plane of its mechanism: where links lie, how stiff they are."""
+"""Loads of a case out of the plane of its mechanism, with the positions and the stiffness of the
+links.
+"""
 
 from __future__ import annotations
 
@@ -20,15 +22,15 @@ from pinstress.study.model.pins import pin
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import CaseTable, MechanismCase
 
-OUT_OF_LINE = 1e-6  # of the length scale: what a link may be bent without a word
+OUT_OF_LINE = 1e-6  # relative to the length scale: a link may be bent so much without a note
 
 
 @dataclass(frozen=True)
 class Sideways:
     """Loads and stiffness of a case out of the plane.
 
-    loads: of the case. offsets: of its links. links: their stiffness.
-    note: how the offsets follow where they are not stated.
+    loads: of the case. offsets: of its links along z. links: their stiffness.
+    note: the origin of offsets that are not stated.
     """
 
     loads: tuple[SideLoad, ...]
@@ -37,20 +39,21 @@ class Sideways:
     note: str = ""
 
     def noted(self, note: str) -> str:
-        """Return a case's note with this one."""
+        """Return the note of a case with that on the offsets."""
         return " ".join(filter(None, (note, self.note)))
 
     def completed(self, dynamics: Dynamics) -> Dynamics:
-        """Return forces in the plane with those out of it.
+        """Return the dynamics in the plane, completed by the forces out of it.
 
-        Raises: LinkageError where the links of a loop cannot share them.
+        Raises: LinkageError if the links of a loop cannot share them.
         """
         balance = OutOfPlane(dynamics, self.loads, self.offsets)
         return replace(dynamics, reactions=balance.reactions(self.links))
 
     def others(self, dynamics: Dynamics) -> dict[str, Dynamics]:
-        """Return the same for other stiffness of the links, by what is different; nothing where
-        statics determines all forces, or the stiffness of all links is stated.
+        """Return the dynamics for other stiffnesses of the links, by the difference in stiffness.
+
+        Empty if statics determines all forces, or the stiffness of all links is stated.
         """
         balance = OutOfPlane(dynamics, self.loads, self.offsets)
         if not balance.redundancy:
@@ -62,7 +65,7 @@ class Sideways:
 def sideways(
     study: Study, case: CaseTable, mechanism: Linkage, loads: Sequence[SideLoad]
 ) -> Sideways | None:
-    """Return what a case has out of the plane; None where everything is in it.
+    """Return the part of a case out of the plane, or None if everything is in the plane.
 
     loads: of the case.
 
@@ -80,10 +83,11 @@ def sideways(
 
 
 def _offsets(study: Study, mechanism: Linkage) -> tuple[Offsets, str]:
-    """Return where links lie along z, and in words where nothing states that.
+    """Return the positions of links along z, and a sentence on them unless all are stated.
 
-    Links lie at the middles of their bands on the pins, a clevis amid its ears, and a body at the
-    clamps of a pin that it carries. Pins lie where their z says, others so that links are straight.
+    A link lies at the middle of its band on a pin, a clevis midway between its ears, and a body at
+    the clamps of a pin that it carries. Pins lie at their stated z, the others so that links are
+    straight.
     """
     stated, middles, roots = dict[str, float](), dict[str, float](), dict[str, float]()
     for name, joint in plane_of(study).joint.items():
@@ -112,8 +116,10 @@ def _offsets(study: Study, mechanism: Linkage) -> tuple[Offsets, str]:
 
 
 def axle_height(study: Study, body: str, joint: str) -> float | None:
-    """Return the z at which the ground pushes on a body at an axle, m: amid the other links on it,
-    as the wheel, or else at the body. None where no z of the axle is stated.
+    """Return the z at which the ground pushes on a body at an axle, m; None if no z of the axle is
+    stated.
+
+    It is midway between the other links on the axle, such as the wheel, or else at the body.
     """
     table = plane_of(study).joint[joint]
     if table.z is None or joint not in study.table.pin:
@@ -137,11 +143,11 @@ def _arms(mechanism: Linkage) -> dict[str, list[Floats]]:
 
 
 def _clamps(shape: PinLike, clamps: Sequence[str]) -> list[float]:
-    """Return the z of the clamped faces and bands, from the start of the pin, m."""
+    """Return the z of the clamped faces and bands, m, from the start of the pin."""
     ends, out = dict(zip(("start", "end"), shape.ends, strict=True)), list[float]()
     for clamp in clamps:
         try:
             out.append(ends[clamp] if clamp in ends else shape.band(clamp).middle)
         except GeometryError:
-            continue  # a cut has no place along z
+            continue  # a cut has no position along z
     return out

@@ -1,4 +1,4 @@
-"""Linkage in space of a study's mechanism."""
+"""The linkage in space of a study's mechanism."""
 
 from __future__ import annotations
 
@@ -52,11 +52,12 @@ from pinstress.study.schema.space import (
 
 @dataclass(frozen=True)
 class SpacePin:
-    """The place of the pin of a connection, or of teeth, and its axes.
+    """The position of the pin of a connection, or of meshing teeth, and its axes.
 
-    joint: number of its force in the linkage. carrier: the body that carries the pin, or GROUND.
-    at: the joint's point as drawn, m. axes: (3, 3), the pin's axes as drawn, as columns; of teeth
-    out of the first gear, along its pitch circle, and across both.
+    joint: index of its force in the linkage. carrier: the body that carries the pin, or GROUND.
+    at: the joint's point as drawn, m.
+    axes: (3, 3), the pin's axes as drawn, as columns. For teeth: out of the first gear, along its
+    pitch circle, and perpendicular to both.
     """
 
     joint: int
@@ -122,7 +123,7 @@ def space_contradictions(study: Study) -> tuple[SpaceLinkage | None, list[Wrong]
 def _stiffness(
     mechanism: SpaceMechanismTable, bodies: Sequence[RigidBody], joints: Sequence[SpaceJoint]
 ) -> dict[str, LinkStiffness]:
-    """Return the stiffness of the links that state one; floating pins do not yield.
+    """Return the stiffness of the links that state one; floating pins are rigid.
 
     Raises: LinkageError.
     """
@@ -137,9 +138,10 @@ def _stiffness(
 def determined_in_space(study: Study, linkage: SpaceLinkage, held: bool) -> Mobility:
     """Return the mobility of a linkage in space whose drives determine every position.
 
-    held: whether every case names the locks that hold it instead, which are checked with the case.
+    held: whether every case names the locks that hold the linkage instead; locks are checked with
+    the case.
 
-    Raises: InputError where they do not, or where a sharing rule applies to no indeterminate force.
+    Raises: InputError if the drives do not, or if a sharing rule applies to no indeterminate force.
     """
     equations = SpaceEquations(linkage)
     try:
@@ -152,7 +154,7 @@ def determined_in_space(study: Study, linkage: SpaceLinkage, held: bool) -> Mobi
 
 
 def pins_in_space(study: Study, linkage: SpaceLinkage) -> dict[str, SpacePin]:
-    """Return the pin of every connection of the study's mechanism, then the places of teeth."""
+    """Return the pin of every connection of the study's mechanism, and the positions of teeth."""
     mechanism = space_mechanism(study)
     of = {c: joint for joint in mechanism.joint.values() for c in joint.connections}
     teeth = {
@@ -169,8 +171,8 @@ def pins_in_space(study: Study, linkage: SpaceLinkage) -> dict[str, SpacePin]:
 def pin_axes(joint: SpaceJointTable) -> Floats:
     """Return the axes of a joint's pin as drawn, (3, 3), as columns.
 
-    z is the pin's or the joint's axis, or else the world's; x is the world's x (y, where z is along
-    x) less its part along z.
+    z is the axis of the pin or of the joint, or else the world's z. x is the world's x (y, if z is
+    along x) without its component along z.
     """
     axes = directions(joint.pin_axis or joint.axis or (0.0, 0.0, 1.0))
     return np.stack([axes["u"], axes["v"], axes["w"]], axis=1)
@@ -187,7 +189,7 @@ def carrier(mechanism: SpaceMechanismTable, joint: str) -> str:
 
 
 def place(mechanism: SpaceMechanismTable, end: str | Vector) -> Vector:
-    """Return a point as drawn, m: of a joint, or stated."""
+    """Return a point as drawn, m: that of a joint, or a stated point."""
     return mechanism.joint[end].at if isinstance(end, str) else end
 
 
@@ -197,11 +199,11 @@ def length_name(joints: tuple[str, str]) -> str:
 
 
 def _bands(study: Study, name: str, table: SpaceJointTable) -> dict[str, float]:
-    """Return where links lie along the pin's z from the joint's point, m, by connection.
+    """Return the positions of links along the pin's z from the joint's point, m, by connection.
 
-    The pin is that of the joint's name, or the one on whose bands these connections are.
+    The pin is that of the joint's name, or the pin whose bands carry these connections.
 
-    Raises: InputError for a pin that cannot be built, and where several could be meant.
+    Raises: InputError for a pin that cannot be built, and if several pins could be meant.
     """
     if table.z is None:
         return {}
@@ -222,9 +224,10 @@ def _bands(study: Study, name: str, table: SpaceJointTable) -> dict[str, float]:
 
 
 def _joints(name: str, table: SpaceJointTable, bands: dict[str, float]) -> Iterator[SpaceJoint]:
-    """Yield a joint for every connection; a floating pin is fixed to its first one's body.
+    """Yield a joint for every connection; a floating pin is fixed to the body of its first
+    connection.
 
-    bands: as of `_bands`.
+    bands: as from `_bands`.
     """
     base, along = table.fixed_in or pin_body(name), pin_axes(table)[:, 2]
     for connection, body in table.connections.items():
@@ -245,7 +248,7 @@ def _joints(name: str, table: SpaceJointTable, bands: dict[str, float]) -> Itera
 
 
 def _measured(study: Study, mechanism: SpaceMechanismTable) -> Iterator[Measured]:
-    """Yield the coordinates of drives, springs and stops, and those that loads depend on."""
+    """Yield the coordinates of drives, springs and stops, and the lengths that loads depend on."""
     for drive in mechanism.drive:
         yield _driven(mechanism, drive)
     for name, spring in mechanism.spring.items():
@@ -292,8 +295,10 @@ def _driven(mechanism: SpaceMechanismTable, drive: SpaceDrive) -> Measured:
 def _angle(
     mechanism: SpaceMechanismTable, name: str, joint: str, stated: str | None
 ) -> JointAngle | BodyAngle:
-    """Return the angle of a connection at a joint; at a floating pin that of the two bodies, so
-    that a couple along it does not go through the pin.
+    """Return the angle of a connection at a joint.
+
+    At a floating pin it is the angle between the two bodies, so that a couple along it does not go
+    through the pin.
     """
     table, connection = mechanism.joint[joint], _connection(mechanism, joint, stated)
     if table.fixed_in is not None or table.axis is None:
@@ -317,7 +322,7 @@ def _span(
 
 
 def _located(study: Study, errors: Sequence[LinkageError]) -> list[Wrong]:
-    """Return errors at their keys: those of a connection at its joint."""
+    """Return errors at their keys in the study; an error of a connection is at its joint."""
     mechanism = space_mechanism(study)
     of = {c: name for name, joint in mechanism.joint.items() for c in joint.connections}
     of |= {pin_body(name): name for name in mechanism.joint}

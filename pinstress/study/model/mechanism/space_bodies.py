@@ -1,4 +1,4 @@
-"""Bodies of a study's mechanism in space: their masses, centres and inertia."""
+"""Bodies of a study's mechanism in space, with their masses, centres and inertia."""
 
 from __future__ import annotations
 
@@ -15,15 +15,16 @@ from pinstress.study.model.mechanism.parts import knows_centre, missing_centre
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.space import SpaceBarTable, SpaceBodyTable, SpaceMechanismTable
 
-MIN_ACROSS = 1.0 - math.cos(math.radians(1.0))  # part across a bar of a direction that is across
+# The least component across a bar of a unit vector that gives a direction across it
+MIN_ACROSS = math.sin(math.radians(1.0))
 
 
 def body_in_space(
     study: Study, mechanism: SpaceMechanismTable, name: str, b: SpaceBodyTable
 ) -> RigidBody:
-    """Return a body with its mass, its centre and its inertia, of a bar by its section.
+    """Return a body with its mass, centre and inertia; those of a bar follow from its section.
 
-    Raises: LinkageError for a mass or a centre that is missing.
+    Raises: LinkageError for a missing mass or centre.
     """
     stated = None if b.inertia is None else _tensor(b.inertia)
     if b.bar is not None:
@@ -52,8 +53,9 @@ def _tensor(entries: list[float]) -> Inertia:
 
 
 def _bar(name: str, bar: SpaceBarTable, along: Floats) -> tuple[float, Inertia]:
-    """Return mass (kg) and inertia (kg m^2, world axes as drawn) of a bar from its first to its
-    second joint, `along` (3,) m.
+    """Return the mass (kg) and the inertia (kg m^2, world axes as drawn) of a bar.
+
+    along: (3,) m, from the first joint to the second.
     """
     length = float(np.linalg.norm(along))
     if not length:

@@ -1,4 +1,4 @@
-"""Meshing teeth of a study's gears and racks in space."""
+"""Meshing teeth of the gears and racks of a study in space."""
 
 from __future__ import annotations
 
@@ -88,8 +88,8 @@ def rack_of(study: Study, mechanism: SpaceMechanismTable, name: str) -> Mesh:
 
 
 def teeth_axes(teeth: ToothContact) -> Floats:
-    """Return the axes of the place of teeth as drawn, (3, 3), as columns: out of the first gear,
-    along its pitch circle, and across both.
+    """Return the axes at the contact of teeth as drawn, (3, 3), as columns: out of the first gear,
+    along its pitch circle, and perpendicular to both.
     """
     normal = np.array(teeth.normal)
     across = np.cross(normal, teeth.along)
@@ -98,7 +98,7 @@ def teeth_axes(teeth: ToothContact) -> Floats:
 
 
 def _radius(table: SpaceGearTable) -> float | None:
-    """Return the pitch radius of the first gear, m; None where only numbers of teeth are given."""
+    """Return the pitch radius of the first gear, m; None if only numbers of teeth are given."""
     if table.radii is not None:
         return table.radii[0]
     if table.module is not None and table.teeth is not None:
@@ -115,7 +115,10 @@ def _on(mechanism: SpaceMechanismTable, joint: str) -> Sequence[str]:
 def _wheel(
     mechanism: SpaceMechanismTable, body: str, joint: str, key: tuple[str, str]
 ) -> GearWheel:
-    """Return a gear about its joint. Raises: LinkageError where it is not on the joint."""
+    """Return a gear about its joint.
+
+    Raises: LinkageError if the body is not on the joint.
+    """
     if body not in (on := _on(mechanism, joint)):
         raise LinkageError(
             f"{' '.join(key)}: joint {joint} is not on {body} but on {', '.join(on)}; "

@@ -1,4 +1,4 @@
-"""Stiffness of the links that state a section."""
+"""The stiffness of the links that state a section or a stiffness."""
 
 from __future__ import annotations
 
@@ -22,11 +22,13 @@ def stated_stiffness(
     bodies: Mapping[str, BodyTable | SpaceBodyTable],
     joints: Mapping[str, Sequence[Floats]],
 ) -> dict[str, LinkStiffness]:
-    """Return the stiffness of the links that state one, by body; else a bar has its section's.
+    """Return the stiffness of the links that state one, by body; a bar without one has that of its
+    section.
 
-    joints: from the centre of mass of each body to its joints, m.
+    joints: vectors from the centre of mass of each body to its joints, m.
 
-    Raises: LinkageError for a stiffness at a joint that the link does not reach out to.
+    Raises: LinkageError for a stated stiffness of a link whose joints are all at its centre of
+    mass.
     """
     stated = {
         name: _stiffness(table)
@@ -41,7 +43,7 @@ def stated_stiffness(
 
 
 def _bar_like(name: str, table: LinkStiffnessTable, joints: Sequence[Floats]) -> LinkStiffness:
-    """Return the round bar that yields as much at the farthest of a link's joints."""
+    """Return the round bar that deflects as much as stated at the farthest joint of a link."""
     assert table.stiffness is not None
     arm = max((float(np.linalg.norm(joint)) for joint in joints), default=0.0)
     if not arm:

@@ -341,7 +341,7 @@ def test_varied_joints_begin_with_the_cells_of_those_with_their_gaps() -> None:
     span = LugRange(stiffness=(0.5, 2.0), tilt=(0.0, math.inf))
     lugs = tuple(replace(lug, tilt=1e3, range=span) for lug in LUGS)
     model = ContactModel(PIN, STEEL, lugs)
-    changes = JointChanges(model, [model.solve(STEADY)], Requirement(), (), own_cells=True)
+    changes = JointChanges(model, [model.solve(STEADY)], Requirement(), (), ("own",))
     ((solved, missing),) = changes.joints([tuple(joint_variations(model.whole, model.lugs))])
     steps, steps_anew = 0, 0
     for change, joint in solved:

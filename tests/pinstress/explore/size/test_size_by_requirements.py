@@ -14,7 +14,7 @@ import pytest
 from assess.judgement import FAILS, NOT_DECIDED
 from pinstress import load_study, run
 from pinstress.cli.commands import run_command_line
-from pinstress.cli.size import require_wish
+from pinstress.cli.size import sizing_goal
 from pinstress.explore.size.judged_pin import judged_pin
 from pinstress.study.reading.errors import InputError
 from reports.data.decision import factor_ends
@@ -92,15 +92,15 @@ def test_rupture_is_a_goal_too(tmp_path: Path) -> None:
 
 def test_goals_of_pins(tmp_path: Path) -> None:
     often = {"cases": ["often"], "check": "yield", "factor": 4}
-    goal = require_wish(load_study(file(tmp_path, often, required_safety_factor=1.5)), None, None)
+    goal = sizing_goal(load_study(file(tmp_path, often, required_safety_factor=1.5)), None, None)
     assert (goal.required, goal.written) == (1.5, None)
     assert goal.of_pin("P") == {"often": pytest.approx(4.0 / 1.5), "seldom": 1.0}
-    alone = require_wish(load_study(file(tmp_path, often)), None, None)
+    alone = sizing_goal(load_study(file(tmp_path, often)), None, None)
     assert (alone.required, alone.of_pin("P")) == (4.0, {"often": 1.0, "seldom": 0.0})
-    asked = require_wish(load_study(file(tmp_path, often)), 2.0, None)
+    asked = sizing_goal(load_study(file(tmp_path, often)), 2.0, None)
     assert (asked.required, asked.written, asked.multiples) == (2.0, 2.0, {})
     with pytest.raises(InputError, match="needs a factor"):
-        require_wish(load_study(file(tmp_path, {"check": "shear", "factor": 4})), None, None)
+        sizing_goal(load_study(file(tmp_path, {"check": "shear", "factor": 4})), None, None)
 
 
 def test_the_least_weight_reaches_the_factor_of_each_case(

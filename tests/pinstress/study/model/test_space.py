@@ -267,6 +267,8 @@ def test_inertia_of_a_skew_rectangular_bar(tmp_path: Path) -> None:
         ("1e-3, 2e-3, 2e-3, 1e-4, 0, 0", "1e-3, 9e-3, 2e-3", "mechanism: body crank", "sum of"),
         ("[1e-3, 2e-3, 2e-3, 1e-4, 0, 0]", "1e-3", "mechanism.body.crank: ", "[xx, yy, zz]"),
         ("depth_along = [0, 1, 0]", "depth_along = [0, 0, 1]", "mechanism: body rocker", "across"),
+        ("depth_along = [0, 1, 0]", "depth_along = [0, 0.01, 1]", "mechanism: body rocker",
+         "across"),
         ("[mechanism.drive]", '[mechanism.stop.s]\nbodies = ["ground", "crank"]\n'
          "[mechanism.drive]", "mechanism.stop.s: ", "joint, slide or between"),
         ('fixed_in = "rocker"\n', "", "mechanism.joint.C: ", "two connections"),
