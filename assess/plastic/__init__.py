@@ -1,1 +1,1 @@
-"""Beyond yield: the load at which a pin collapses plastically, and its permanent set."""
+"""The load at which a pin collapses plastically, and its permanent set."""

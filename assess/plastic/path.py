@@ -1,9 +1,9 @@
-"""Equilibrium of an elastic-plastic body along its load path, beyond the point where the loads can
-no longer grow.
+"""Equilibrium of an elastic-plastic body along its load path.
 
-The loads are a factor times given forces f. Each step prescribes the work c = f u instead of the
-factor, which then is an unknown. The equations of a step are those of the minimum of a convex
-function (the incremental energy) on a plane. Newton's method with a line search finds it.
+The path continues beyond the point where the loads can no longer grow. The loads are a factor times
+given forces f. Each step prescribes the work c = f u instead of the factor, which then is an
+unknown. The equations of a step are those of the minimum of a convex function (the incremental
+energy) on a plane. Newton's method with a line search finds it.
 
 Source: J. C. Simo, T. J. R. Hughes, Computational Inelasticity (1998), section 4.3, for the
 incremental energy; J.-L. Batoz, G. Dhatt, Int. J. Num. Meth. Eng. 14 (1979) 1262, for the two

@@ -1,6 +1,4 @@
-"""Derivatives of the stress of a pin in contact by the dimensions that the search for its least
-weight may change.
-"""
+"""Derivatives of the stress of a pin in contact by its dimensions, for the least weight."""
 
 from __future__ import annotations
 

@@ -1,5 +1,4 @@
-"""The dimensions of a pin that the search for its least weight may change, its geometric limits and
-its volume.
+"""The variable dimensions of a pin, its geometric limits and its volume, for the least weight.
 
 All diameters, bores and fillets of a body of revolution are linear in the values of its dimensions.
 Limits and volume therefore have closed forms, with their gradients.

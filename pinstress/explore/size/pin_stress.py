@@ -1,5 +1,7 @@
-"""The stresses of a pin with changed dimensions in all load cases, and their derivatives where they
-may govern. They are solved as in a run, so that a run confirms them.
+"""The stresses of a pin with changed dimensions in all load cases, and their derivatives.
+
+Stresses are solved as in a run, so that a run confirms them. Derivatives are found where a stress
+may govern.
 
 For a body of revolution these are the largest stress in both halves of each segment and the largest
 section stress. For a pin in contact they are the largest stress of the surface, of the sections and

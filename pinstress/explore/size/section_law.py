@@ -1,5 +1,6 @@
-"""The next scale of a pin from its trials, by secants and by the growth law of its section
-(assess.diameter_law).
+"""The next scale of a pin from its trials, by secants and by the growth law of its section.
+
+The growth law is that of assess.diameter_law.
 """
 
 from __future__ import annotations

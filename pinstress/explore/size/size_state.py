@@ -1,6 +1,6 @@
-"""The finished part of a `size` command, in a folder beside the new study, so that the command can
-be resumed: sized pins, or searches for the lightest pins.
+"""The finished part of a `size` command, kept in a folder so that the command can be resumed.
 
+The folder is next to the new study. It has the sized pins, or the searches for the lightest pins.
 The writer locks the folder; the lock is released however the writer ends.
 """
 

@@ -1,6 +1,4 @@
-"""Rounding of the dimensions that the search for the least weight finds, and a description of its
-active constraints.
-"""
+"""Rounding of the dimensions of the least weight, and a description of its active constraints."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Sweeps: many designs of a study with varied numbers, sampled, solved and written as one table."""
+"""Sweeps of many designs of a study, which are sampled, solved and written as one table."""

@@ -1,8 +1,8 @@
-"""The keys of a cluster, with which scheduler, workers and pinstress communicate encrypted, and
-only with each other.
+"""The keys of a cluster, for encrypted connections of scheduler, workers and pinstress.
 
-All parties of a cluster have the same certificate, signed by the cluster's own authority. The key
-of the authority is not stored anywhere, so that no further certificate can ever be issued.
+Only those who have the keys can communicate with the cluster. All parties of a cluster have the
+same certificate, signed by the cluster's own authority. The key of the authority is not stored
+anywhere, so that no further certificate can ever be issued.
 """
 
 from __future__ import annotations

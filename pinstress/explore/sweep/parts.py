@@ -1,5 +1,6 @@
-"""Storage of solved designs, each batch in its own file, so that a sweep that is interrupted in any
-way loses only the unfinished batches.
+"""Storage of the solved designs of a sweep, each batch in its own file.
+
+A sweep that is interrupted in any way loses only the unfinished batches.
 """
 
 from __future__ import annotations
