@@ -3,7 +3,7 @@
 Stresses are solved as in a run, so that a run confirms them. Derivatives are found where a stress
 may govern.
 
-For a body of revolution these are the largest stress in both halves of each segment and the largest
+For a body of revolution they are the largest stress in both halves of each segment and the largest
 section stress. For a pin in contact they are the largest stress of the surface, of the sections and
 beneath contact; all three must meet the factor. In a singular row stress is read at half the
 excluded distance, where the upper end of the reported range is.
